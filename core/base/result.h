@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <tl/expected.hpp>
+
+namespace core {
+
+/// A stretch of the user's text. Lines and columns count from 1; line 0 means "no place in a file",
+/// column 0 "the whole line".
+struct SourceSpan {
+    uint32_t line = 0;
+    uint32_t column = 0;
+    uint32_t length = 0;
+};
+
+enum class ErrorCode : uint8_t { io, syntax, unsupported, invalid_value, missing_value };
+
+/// Something wrong with the user's input. Mistakes in our own code are asserts, not Errors.
+struct Error {
+    ErrorCode code;
+    SourceSpan where;
+    std::string message; // one sentence, names the word or file at fault, no trailing newline
+    std::string file{};  // path as the user gave it; filled in by whoever knows it
+};
+
+template <typename T>
+using Result = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> fail(ErrorCode code, std::string message, SourceSpan where = {}) {
+    return tl::unexpected<Error>(Error{code, where, std::move(message)});
+}
+
+} // namespace core
+
+#define FEELER_CONCAT_(a, b) a##b
+#define FEELER_CONCAT(a, b) FEELER_CONCAT_(a, b)
+
+/// FEELER_TRY(auto block, parse_block(line)); declares `block`, or returns the error to our caller.
+#define FEELER_TRY(declaration, expression)                                                        \
+    auto FEELER_CONCAT(feeler_try_, __LINE__) = (expression);                                      \
+    if (!FEELER_CONCAT(feeler_try_, __LINE__))                                                     \
+        return tl::unexpected(std::move(FEELER_CONCAT(feeler_try_, __LINE__)).error());            \
+    declaration = *std::move(FEELER_CONCAT(feeler_try_, __LINE__))

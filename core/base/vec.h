@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/glm.hpp>
+
+namespace core {
+
+using Vec3 = glm::dvec3;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+inline bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// A box along the axes; empty (min above max) until something is added.
+struct Aabb {
+    Vec3 min = Vec3(+infinity);
+    Vec3 max = Vec3(-infinity);
+
+    void extend(const Vec3& p) {
+        min = glm::min(min, p);
+        max = glm::max(max, p);
+    }
+    void extend(const Aabb& b) {
+        min = glm::min(min, b.min);
+        max = glm::max(max, b.max);
+    }
+    bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
+    Vec3 center() const { return 0.5 * (min + max); }
+    Vec3 size() const { return max - min; }
+    Aabb grown(double by) const { return {min - Vec3(by), max + Vec3(by)}; }
+};
+
+/// Whether the closed boxes share a point.
+inline bool overlaps(const Aabb& a, const Aabb& b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y
+           && a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
+/// Squared distance from `p` to the nearest point of `box`; 0 inside.
+inline double distance_squared(const Vec3& p, const Aabb& box) {
+    const Vec3 outside = glm::max(glm::max(box.min - p, p - box.max), Vec3(0.0));
+    return glm::dot(outside, outside);
+}
+
+/// Distance between the nearest points of two boxes; 0 when they overlap.
+inline double distance(const Aabb& a, const Aabb& b) {
+    const Vec3 gap = glm::max(glm::max(a.min - b.max, b.min - a.max), Vec3(0.0));
+    return glm::length(gap);
+}
+
+} // namespace core

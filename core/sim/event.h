@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+
+namespace core {
+
+/// Machine coordinates of X, Y and Z (those of the gauge line, not the tip), mm. Empty: nobody knows.
+using AxisPosition = std::array<std::optional<double>, 3>;
+
+enum class MotionKind : uint8_t { rapid, feed, arc };
+
+/// A circular or helical path: the plane's first two axes turn about the centre, the third advances.
+struct ArcPath {
+    int normal = 2;             // axis along the arc's axis: 0 X, 1 Y, 2 Z
+    Vec3 centre = Vec3(0.0);    // machine coordinates; the component along `normal` is not used
+    double angle = 0.0;         // radians, positive counter-clockwise seen from +normal
+};
+
+/// One rapid, feed or arc move in machine coordinates.
+struct Motion {
+    MotionKind kind = MotionKind::rapid;
+    AxisPosition from, to;
+    std::optional<ArcPath> arc; // when kind is arc; both ends known then
+    double feed = 0.0;          // mm/min along the path; 0 on rapids
+};
+
+/// The tool that is in the spindle from now on; empty for T0, an empty spindle.
+struct ToolChange {
+    std::optional<ToolNumber> tool;
+};
+
+enum class SpindleDirection : uint8_t { stopped, clockwise, counterclockwise };
+
+struct SpindleChange {
+    SpindleDirection direction = SpindleDirection::stopped;
+    double speed = 0.0; // rev/min
+};
+
+struct Dwell {
+    double seconds = 0.0;
+};
+
+/// The length the control adds along Z from now on; empty after G49.
+struct LengthOffsetChange {
+    std::optional<OffsetNumber> number;
+    double length = 0.0; // mm
+};
+
+/// What a block does to the machine, in order.
+using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange>;
+
+} // namespace core
