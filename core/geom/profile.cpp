@@ -1,6 +1,60 @@
 #include "core/geom/profile.h"
 
+#include <optional>
+
 namespace core {
+namespace {
+
+/// How much wider a cone becomes across its axis when its side moves outwards by 1.
+double widening(const ProfileElement& e) {
+    if (e.z1 <= e.z0) return 1.0;
+    const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
+    return std::sqrt(1.0 + slope * slope);
+}
+
+double radius_at(const ProfileElement& e, double z) {
+    if (e.z1 <= e.z0) return std::max(e.r0, e.r1);
+    return e.r0 + (e.r1 - e.r0) * (z - e.z0) / (e.z1 - e.z0);
+}
+
+/// The part of a cone between two heights, its side moved inwards by `by`; empty if nothing is left.
+std::optional<ProfileElement> inner_cone(const ProfileElement& e, double by, double z0, double z1) {
+    if (!(z0 < z1)) return std::nullopt;
+    const double narrower = by * widening(e);
+    double r0 = radius_at(e, z0) - narrower, r1 = radius_at(e, z1) - narrower;
+    if (r0 <= 0.0 && r1 <= 0.0) return std::nullopt;
+    // Where the side reaches the axis the cone now has its tip.
+    if (r0 < 0.0) {
+        z0 += (z1 - z0) * (-r0 / (r1 - r0));
+        r0 = 0.0;
+    }
+    if (r1 < 0.0) {
+        z1 -= (z1 - z0) * (-r1 / (r0 - r1));
+        r1 = 0.0;
+    }
+    return ProfileElement{z0, r0, z1, r1, 0.0};
+}
+
+/// A ball or rounded corner with its margin reduced.
+std::optional<ProfileElement> inner_round(const ProfileElement& e, double by) {
+    ProfileElement inner = e;
+    inner.margin = std::max(0.0, e.margin - by);
+    const double beyond = std::max(0.0, by - e.margin);
+    inner.r0 -= beyond;
+    inner.r1 -= beyond;
+    if (inner.margin == 0.0 || inner.r0 < 0.0) return std::nullopt;
+    return inner;
+}
+
+/// Whether the element shows a flat face downwards: the tip, or a step to a wider piece above.
+bool faces_down(const RevolvedProfile& profile, size_t i) {
+    const ProfileElement& e = profile.elements[i];
+    if (i == 0) return true;
+    const ProfileElement& below = profile.elements[i - 1];
+    return e.r0 > below.r1 + below.margin;
+}
+
+} // namespace
 
 Aabb bounds(const ProfileElement& element) {
     const double r = std::max(element.r0, element.r1) + element.margin;
@@ -11,6 +65,65 @@ Aabb bounds(const RevolvedProfile& profile) {
     Aabb box;
     for (const ProfileElement& element : profile.elements) box.extend(bounds(element));
     return box;
+}
+
+bool is_convex(const RevolvedProfile& profile) {
+    // Walking up the outline, the angle from the axis may only turn inwards.
+    double last_slope = infinity, last_r = 0.0, last_z = -infinity;
+    for (const ProfileElement& e : profile.elements) {
+        if (e.margin > 0.0) { // from the flat or the tip tangentially to upright
+            if (last_z != -infinity) return false;
+            last_slope = 0.0;
+            last_r = e.r0 + e.margin;
+            last_z = e.z1;
+            continue;
+        }
+        if (last_z != -infinity && (e.z0 != last_z || e.r0 != last_r)) return false;
+        const double slope = e.z1 > e.z0 ? (e.r1 - e.r0) / (e.z1 - e.z0) : infinity;
+        if (slope > last_slope) return false;
+        last_slope = slope;
+        last_r = e.r1;
+        last_z = e.z1;
+    }
+    return !profile.empty();
+}
+
+RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by) {
+    RevolvedProfile inner;
+    for (const ProfileElement& e : profile.elements) {
+        const auto kept = e.margin > 0.0 ? inner_round(e, by)
+                                         : inner_cone(e, by, e.z0 + by, e.z1 - by);
+        if (kept) inner.elements.push_back(*kept);
+    }
+    return inner;
+}
+
+RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by) {
+    RevolvedProfile inner;
+    for (size_t i = 0; i < profile.elements.size(); ++i) {
+        const ProfileElement& e = profile.elements[i];
+        const double z0 = faces_down(profile, i) ? e.z0 + by : e.z0;
+        const auto kept = e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, by, z0, e.z1);
+        if (kept) inner.elements.push_back(*kept);
+    }
+    return inner;
+}
+
+RevolvedProfile grown(const RevolvedProfile& profile, double by) {
+    RevolvedProfile outer = profile;
+    for (ProfileElement& e : outer.elements) {
+        if (e.margin > 0.0) {
+            e.margin += by;
+            continue;
+        }
+        const double wider = by * widening(e);
+        const double slope = e.z1 > e.z0 ? (e.r1 - e.r0) / (e.z1 - e.z0) : 0.0;
+        e.r0 += wider + std::max(0.0, -slope) * by;
+        e.r1 += wider + std::max(0.0, slope) * by;
+        e.z0 -= by;
+        e.z1 += by;
+    }
+    return outer;
 }
 
 } // namespace core

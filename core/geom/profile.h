@@ -24,4 +24,18 @@ struct RevolvedProfile {
 Aabb bounds(const ProfileElement& element);
 Aabb bounds(const RevolvedProfile& profile);
 
+/// Whether the union of the pieces is convex, piece upon piece from the tip up.
+bool is_convex(const RevolvedProfile& profile);
+
+/// A profile that lies within the given one, `by` away from its surface everywhere. Seams between
+/// pieces open by up to 2 * by; for a convex profile the hull of the pieces is still within.
+RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by);
+
+/// A profile that holds every point deeper than `by` in the given one, and none outside it: its
+/// sides and its faces seen from below are moved inwards, its upper face is left alone.
+RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by);
+
+/// A profile that holds every point nearer than `by` to the given one.
+RevolvedProfile grown(const RevolvedProfile& profile, double by);
+
 } // namespace core

@@ -1,0 +1,245 @@
+#include "core/dbm/cut_model.h"
+
+namespace core {
+namespace {
+
+/// The lines of a family whose place along `axis` lies within lower .. upper.
+std::pair<int, int> lines_between(const ScanGrid& grid, int axis, double lower, double upper) {
+    const double first = grid.coordinate(axis, 0);
+    const double last = grid.count(axis);
+    const double from = std::ceil((lower - first) / grid.spacing);
+    const double to = std::floor((upper - first) / grid.spacing) + 1.0;
+    return {static_cast<int>(std::clamp(from, 0.0, last)),
+            static_cast<int>(std::clamp(to, 0.0, last))};
+}
+
+LineRange lines_in(const Dbm& dbm, int axis, const Aabb& box) {
+    const int ua = u_axis(axis), va = v_axis(axis);
+    const auto [u0, u1] = lines_between(dbm.grid, ua, box.min[ua], box.max[ua]);
+    const auto [v0, v1] = lines_between(dbm.grid, va, box.min[va], box.max[va]);
+    return {u0, u1, v0, v1};
+}
+
+/// The cells that `box` meets.
+LineRange cells_in(const CutModel& model, const Aabb& box) {
+    const double h = model.lines.grid.spacing;
+    const LineRange lines = lines_in(model.lines, 2, box.grown(h));
+    // Cell i lies between lines i - 1 and i; the lines beyond the last one are not in the range.
+    return {lines.u_first, std::min(lines.u_last + 1, model.columns.u_count()), lines.v_first,
+            std::min(lines.v_last + 1, model.columns.v_count())};
+}
+
+Aabb box_of_line(const Dbm& dbm, int axis, int u, int v) {
+    Aabb box;
+    const IntervalList& line = dbm.families[static_cast<size_t>(axis)].line(u, v);
+    if (line.empty()) return box;
+    box.extend(point_on_line(dbm.grid, axis, u, v, line[0].lower));
+    box.extend(point_on_line(dbm.grid, axis, u, v, line[line.size() - 1].upper));
+    return box;
+}
+
+Aabb box_of_column(const CutModel& model, int i, int j) {
+    const IntervalList& column = model.columns.line(i, j);
+    if (column.empty()) return {};
+    const Square s = cell_square(model, i, j);
+    return {{s.x0, s.y0, column[0].lower}, {s.x1, s.y1, column[column.size() - 1].upper}};
+}
+
+template <typename BoxOf>
+void refit(const ScanLines& lines, TileBoxes& tiles, size_t tile, const BoxOf& box_of) {
+    const LineRange range = lines_of_tile(lines, tiles, tile);
+    Aabb box;
+    for (int v = range.v_first; v < range.v_last; ++v)
+        for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
+    tiles.boxes[tile] = box;
+}
+
+template <typename BoxOf>
+void refit(const ScanLines& lines, TileBoxes& tiles, const LineRange& touched,
+           const BoxOf& box_of) {
+    constexpr int side = ScanLines::tile_side;
+    for (int v = touched.v_first / side * side; v < touched.v_last; v += side)
+        for (int u = touched.u_first / side * side; u < touched.u_last; u += side)
+            refit(lines, tiles, tiles.index(u, v), box_of);
+}
+
+void refit_lines(CutModel& model, int axis, const LineRange& touched) {
+    const auto family = static_cast<size_t>(axis);
+    refit(model.lines.families[family], model.line_boxes[family], touched,
+          [&](int u, int v) { return box_of_line(model.lines, axis, u, v); });
+}
+
+void refit_columns(CutModel& model, const LineRange& touched) {
+    refit(model.columns, model.column_boxes, touched,
+          [&](int u, int v) { return box_of_column(model, u, v); });
+}
+
+/// Takes the sweep out of one family and returns the volume that it says is gone.
+double cut_lines(CutModel& model, int axis, const CutterSweep& sweep, const LineRange& range) {
+    const ScanGrid& grid = model.lines.grid;
+    ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+    double length = 0.0;
+    for (int v = range.v_first; v < range.v_last; ++v) {
+        for (int u = range.u_first; u < range.u_last; ++u) {
+            if (family.line(u, v).empty()) continue;
+            for (const Cutter::Piece& piece : sweep.cutter->pieces) {
+                const auto gone = line_interval(piece.around, sweep, axis,
+                                                grid.coordinate(u_axis(axis), u),
+                                                grid.coordinate(v_axis(axis), v));
+                if (!gone) continue;
+                const IntervalList& line = family.line(u, v);
+                if (gone->upper <= line[0].lower || gone->lower >= line[line.size() - 1].upper)
+                    continue;
+                length += family.edit(u, v).subtract(*gone);
+                if (family.line(u, v).empty()) break;
+            }
+        }
+    }
+    return length * grid.spacing * grid.spacing;
+}
+
+void cut_columns(CutModel& model, const CutterSweep& sweep, const LineRange& range) {
+    for (int j = range.v_first; j < range.v_last; ++j) {
+        for (int i = range.u_first; i < range.u_last; ++i) {
+            const Square square = cell_square(model, i, j);
+            for (const Cutter::Piece& piece : sweep.cutter->pieces) {
+                const IntervalList& column = model.columns.line(i, j);
+                if (column.empty()) break;
+                const auto gone = covered_heights(piece.within, sweep, square);
+                if (gone && gone->upper > column[0].lower
+                    && gone->lower < column[column.size() - 1].upper)
+                    model.columns.edit(i, j).subtract(*gone);
+            }
+        }
+    }
+}
+
+/// Notes the sweep, for all tiles of columns that it may have touched.
+void log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& box, const LineRange& range) {
+    constexpr int side = ScanLines::tile_side;
+    const auto number = static_cast<uint32_t>(model.log.size());
+    bool noted = false;
+    for (int v = range.v_first / side * side; v < range.v_last; v += side) {
+        for (int u = range.u_first / side * side; u < range.u_last; u += side) {
+            const size_t tile = model.column_boxes.index(u, v);
+            if (!overlaps(model.column_boxes.boxes[tile], box)) continue;
+            model.history[tile].push_back(number);
+            noted = true;
+        }
+    }
+    if (noted) model.log.push_back({sweep, box});
+}
+
+/// Runs `act` over the logged sweeps that may reach into a square of cell (i, j).
+template <typename Act>
+void for_sweeps_over(const CutModel& model, int i, int j, const Square& square, const Act& act) {
+    const SharedLog<uint32_t>& numbers = model.history[model.column_boxes.index(i, j)];
+    for (size_t k = 0; k < numbers.size(); ++k) {
+        const LoggedSweep& logged = model.log[numbers[k]];
+        if (logged.box.min.x <= square.x1 && logged.box.max.x >= square.x0
+            && logged.box.min.y <= square.y1 && logged.box.max.y >= square.y0)
+            act(logged.sweep);
+    }
+}
+
+} // namespace
+
+LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t tile) {
+    constexpr int side = ScanLines::tile_side;
+    const int u = static_cast<int>(tile % static_cast<size_t>(tiles.u_tiles)) * side;
+    const int v = static_cast<int>(tile / static_cast<size_t>(tiles.u_tiles)) * side;
+    return {u, std::min(u + side, lines.u_count()), v, std::min(v + side, lines.v_count())};
+}
+
+TileBoxes empty_tile_boxes(const ScanLines& lines) {
+    constexpr int side = ScanLines::tile_side;
+    TileBoxes tiles{(lines.u_count() + side - 1) / side, (lines.v_count() + side - 1) / side, {}};
+    tiles.boxes.resize(static_cast<size_t>(tiles.u_tiles) * static_cast<size_t>(tiles.v_tiles));
+    return tiles;
+}
+
+Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit) {
+    FEELER_TRY(Dbm lines, scan(solid, spacing, memory_limit));
+    CutModel model;
+    model.outer_box = bounds(solid).grown(solid.tolerance);
+    model.solid = std::move(solid);
+    model.lines = std::move(lines);
+    const ScanGrid& grid = model.lines.grid;
+    model.columns = ScanLines(2, grid.count(0) + 1, grid.count(1) + 1);
+    model.column_boxes = empty_tile_boxes(model.columns);
+    model.history.resize(model.column_boxes.boxes.size());
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i) {
+            IntervalList column = column_of(model.solid, cell_square(model, i, j));
+            if (!column.empty()) model.columns.edit(i, j) = std::move(column);
+        }
+    refit_columns(model, {0, model.columns.u_count(), 0, model.columns.v_count()});
+    for (int axis = 0; axis < 3; ++axis) {
+        const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+        model.line_boxes[static_cast<size_t>(axis)] = empty_tile_boxes(family);
+        refit_lines(model, axis, {0, family.u_count(), 0, family.v_count()});
+    }
+    return model;
+}
+
+double cut(CutModel& model, const CutterSweep& sweep) {
+    const Aabb box = bounds(sweep);
+    if (!overlaps(box, model.outer_box)) return 0.0;
+    std::array<double, 3> volumes{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const LineRange range = lines_in(model.lines, axis, box);
+        if (range.empty()) continue;
+        volumes[static_cast<size_t>(axis)] = cut_lines(model, axis, sweep, range);
+        if (volumes[static_cast<size_t>(axis)] > 0.0) refit_lines(model, axis, range);
+    }
+    const LineRange cells = cells_in(model, box);
+    if (!cells.empty()) {
+        log_sweep(model, sweep, box, cells);
+        cut_columns(model, sweep, cells);
+        refit_columns(model, cells);
+    }
+    std::sort(volumes.begin(), volumes.end());
+    return volumes[1];
+}
+
+Square cell_square(const CutModel& model, int i, int j) {
+    const ScanGrid& grid = model.lines.grid;
+    const Aabb& box = model.outer_box;
+    const auto within = [&](int axis, int k) {
+        return std::clamp(grid.coordinate(axis, k), box.min[axis], box.max[axis]);
+    };
+    // The outermost cells reach to the border, however far the tolerance moves it out.
+    const bool last_i = i == grid.count(0), last_j = j == grid.count(1);
+    return {i == 0 ? box.min.x : within(0, i - 1), last_i ? box.max.x : within(0, i),
+            j == 0 ? box.min.y : within(1, j - 1), last_j ? box.max.y : within(1, j)};
+}
+
+IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square) {
+    IntervalList column = column_of(model.solid, square);
+    for_sweeps_over(model, i, j, square, [&](const CutterSweep& sweep) {
+        for (const Cutter::Piece& piece : sweep.cutter->pieces) {
+            if (column.empty()) return;
+            if (const auto gone = covered_heights(piece.within, sweep, square))
+                column.subtract(*gone);
+        }
+    });
+    return column;
+}
+
+IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
+    IntervalList line = line_of(model.solid, 2, x, y);
+    for_sweeps_over(model, i, j, {x, x, y, y}, [&](const CutterSweep& sweep) {
+        for (const Cutter::Piece& piece : sweep.cutter->pieces)
+            if (const auto gone = line_interval(piece.around, sweep, 2, x, y))
+                line.subtract(*gone);
+    });
+    return line;
+}
+
+bool is_gone(const CutModel& model) {
+    for (const Aabb& box : model.column_boxes.boxes)
+        if (!box.empty()) return false;
+    return true;
+}
+
+} // namespace core

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/dbm/solid.h"
+#include "core/dbm/swept_line.h"
+
+namespace core {
+
+/// The flutes of a tool made ready for cutting: convex pieces, each as a profile that lies within
+/// the real one and one that holds it. They differ by the error of the path they are moved along.
+struct Cutter {
+    struct Piece {
+        RevolvedProfile within, around;
+    };
+    std::vector<Piece> pieces;
+};
+
+/// A cutter for paths that stay within `path_error` mm of the straight moves given for them.
+Cutter make_cutter(const RevolvedProfile& flutes, double path_error);
+
+/// One straight move of a cutter. Frame: that of the stock; places of the tool's tip.
+struct CutterSweep {
+    std::shared_ptr<const Cutter> cutter;
+    Vec3 from = Vec3(0.0), to = Vec3(0.0);
+};
+
+/// The box of everything the sweep may remove.
+Aabb bounds(const CutterSweep& sweep);
+
+/// The stretch of a line in the swept volume of a convex profile, as line_interval has it.
+std::optional<Interval> line_interval(const RevolvedProfile& convex, const CutterSweep& sweep,
+                                      int axis, double u, double v);
+
+/// The heights that a convex profile sweeps above the whole of a square: where it covers all four
+/// corners, it covers every point between them.
+std::optional<Interval> covered_heights(const RevolvedProfile& convex, const CutterSweep& sweep,
+                                        const Square& square);
+
+} // namespace core

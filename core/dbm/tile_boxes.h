@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "core/dbm/dbm.h"
+
+namespace core {
+
+/// The box of the matter in each tile of a family of lines or columns; empty where there is none.
+struct TileBoxes {
+    int u_tiles = 0;
+    int v_tiles = 0;
+    std::vector<Aabb> boxes; // u fastest
+
+    size_t index(int u, int v) const {
+        return static_cast<size_t>(v / ScanLines::tile_side) * static_cast<size_t>(u_tiles)
+               + static_cast<size_t>(u / ScanLines::tile_side);
+    }
+};
+
+/// A range of lines or cells, first .. last - 1 in both directions.
+struct LineRange {
+    int u_first = 0, u_last = 0, v_first = 0, v_last = 0;
+
+    bool empty() const { return u_first >= u_last || v_first >= v_last; }
+};
+
+/// The lines of the tile with this index.
+LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t tile);
+
+TileBoxes empty_tile_boxes(const ScanLines& lines);
+
+} // namespace core

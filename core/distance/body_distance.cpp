@@ -1,0 +1,76 @@
+#include "core/distance/body_distance.h"
+
+namespace core {
+namespace {
+
+Separation overlapping_at(const Vec3& point) {
+    return {.lower = 0.0, .upper = 0.0, .point_a = point, .point_b = point, .time_a = 0.0};
+}
+
+/// A point that the shape holds at its first place.
+Vec3 inner_point(const ConvexShape& shape) {
+    const Vec3 place = shape.places[0].at;
+    if (shape.core == ConvexShape::Core::points) return place + shape.points[0];
+    return place + shape.orientation * Vec3(0.0, 0.0, 0.5 * (shape.cone.z0 + shape.cone.z1));
+}
+
+/// The shape of B as it is moved against A.
+ConvexShape moved(const ConvexShape& shape, const Transform& a_from_b, const Vec3& sweep) {
+    const Vec3 places[] = {Vec3(0.0), sweep};
+    return swept(posed(shape, a_from_b), places);
+}
+
+Separation turned_round(Separation found) {
+    std::swap(found.point_a, found.point_b);
+    return found;
+}
+
+/// Meshes whose surfaces never meet: inside one another at the start is inside all the way.
+Separation between_meshes(const SolidMesh& a, const SolidMesh& b, const Transform& a_from_b,
+                          const Vec3& sweep, const SeparationGoal& goal) {
+    for (const Vec3& p : b.shell_points)
+        if (holds(a, a_from_b * p)) return overlapping_at(a_from_b * p);
+    const Transform b_from_a = a_from_b.inverse();
+    for (const Vec3& p : a.shell_points)
+        if (holds(b, b_from_a * p)) return overlapping_at(p);
+    const Vec3 places[] = {Vec3(0.0), sweep};
+    return separation(*a.bvh, *b.bvh, a_from_b, places, goal);
+}
+
+} // namespace
+
+Aabb bounds(const ExactBody& body) {
+    if (const auto* shape = std::get_if<ConvexShape>(&body)) return bounds(*shape);
+    return std::get<SolidMesh>(body).mesh->bounds();
+}
+
+Separation separation(const ConvexShape& shape, const ExactBody& body, const SeparationGoal& goal) {
+    if (const auto* convex = std::get_if<ConvexShape>(&body)) {
+        const Separation found = separation(shape, *convex, goal);
+        return found.upper < goal.limit ? found : Separation{};
+    }
+    const auto& mesh = std::get<SolidMesh>(body);
+    const Separation found = separation(shape, *mesh.bvh, goal);
+    if (found.upper == 0.0) return found;
+    const Vec3 inner = inner_point(shape);
+    return holds(mesh, inner) ? overlapping_at(inner) : found;
+}
+
+Separation separation(const ExactBody& a, const ExactBody& b, const Transform& a_from_b,
+                      const Vec3& sweep, const SeparationGoal& goal) {
+    if (const auto* shape = std::get_if<ConvexShape>(&b))
+        return turned_round(separation(moved(*shape, a_from_b, sweep), a, goal));
+    const auto& mesh_b = std::get<SolidMesh>(b);
+    if (const auto* mesh_a = std::get_if<SolidMesh>(&a))
+        return between_meshes(*mesh_a, mesh_b, a_from_b, sweep, goal);
+    // A is convex: look at it from B, where it moves the other way.
+    const Transform b_from_a = a_from_b.inverse();
+    Separation found = separation(
+        moved(std::get<ConvexShape>(a), b_from_a, -(b_from_a.rotation * sweep)), b, goal);
+    const Vec3 back = found.time_a * sweep;
+    found.point_a = a_from_b * found.point_a + back;
+    found.point_b = a_from_b * found.point_b + back;
+    return found;
+}
+
+} // namespace core

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <variant>
+
+#include "core/dbm/solid.h"
+#include "core/geom/gjk.h"
+
+namespace core {
+
+/// A body whose surface is known exactly: a convex shape, or a closed mesh.
+using ExactBody = std::variant<ConvexShape, SolidMesh>;
+
+Aabb bounds(const ExactBody& body);
+
+/// The distance between a convex shape over its sweep and a body, insides included.
+///
+/// Result: as separation() of the shapes; 0 also when one lies wholly inside the other. Infinite
+///         when nothing lies within `goal.limit`.
+Separation separation(const ConvexShape& shape, const ExactBody& body,
+                      const SeparationGoal& goal = {});
+
+/// The least distance between two bodies while B moves straight from its pose by `sweep`.
+Separation separation(const ExactBody& a, const ExactBody& b, const Transform& a_from_b,
+                      const Vec3& sweep, const SeparationGoal& goal = {});
+
+} // namespace core

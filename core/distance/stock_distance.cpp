@@ -1,0 +1,191 @@
+#include "core/distance/stock_distance.h"
+
+#include <algorithm>
+
+namespace core {
+namespace {
+
+/// Bounds nearer together than this are not told apart, mm; it is subtracted where it matters.
+constexpr double same = 1e-7;
+
+struct NearTile {
+    double bound;
+    size_t tile;
+};
+
+/// One search: several shapes against one stock.
+class StockSearch {
+  public:
+    StockSearch(std::span<const ConvexShape> shapes, const CutModel& stock, const StockGoal& goal)
+        : shapes_(shapes), stock_(stock), goal_(goal) {
+        for (const ConvexShape& shape : shapes) boxes_.push_back(bounds(shape));
+    }
+
+    StockSeparation run() {
+        for (int axis = 0; axis < 3; ++axis) search_lines(axis);
+        search_columns();
+        if (lower_ < goal_.threshold && upper_.upper >= goal_.threshold) refine_columns();
+        result_.separation = upper_.upper < goal_.limit ? upper_ : Separation{};
+        result_.separation.lower = std::max(0.0, std::min({lower_, upper_.upper, goal_.limit}));
+        return result_;
+    }
+
+  private:
+    double box_bound(const Aabb& box) {
+        double bound = infinity;
+        ++result_.box_tests;
+        for (const Aabb& mine : boxes_) bound = std::min(bound, distance(mine, box));
+        return bound;
+    }
+
+    /// Distance of the nearest shape to a convex body, tight only where it is below `limit`.
+    Separation nearest(const ConvexShape& body, double limit) {
+        Separation best;
+        double lower = infinity;
+        for (const ConvexShape& shape : shapes_) {
+            ++result_.shape_tests;
+            const Separation found
+                = core::separation(shape, body, {.tolerance = same, .limit = limit});
+            lower = std::min(lower, found.lower);
+            if (found.upper < best.upper) best = found;
+        }
+        best.lower = lower;
+        return best;
+    }
+
+    /// The tiles with matter nearer than `limit`, nearest first.
+    std::vector<NearTile> near_tiles(const TileBoxes& tiles, double limit) {
+        std::vector<NearTile> near;
+        for (size_t tile = 0; tile < tiles.boxes.size(); ++tile) {
+            if (tiles.boxes[tile].empty()) continue;
+            const double bound = box_bound(tiles.boxes[tile]);
+            if (bound < limit) near.push_back({bound, tile});
+        }
+        std::sort(near.begin(), near.end(), [](const NearTile& a, const NearTile& b) {
+            return a.bound != b.bound ? a.bound < b.bound : a.tile < b.tile;
+        });
+        return near;
+    }
+
+    double line_limit() const { return std::min(goal_.limit, upper_.upper) - same; }
+
+    void search_lines(int axis) {
+        const auto family = static_cast<size_t>(axis);
+        const TileBoxes& tiles = stock_.line_boxes[family];
+        for (const NearTile& near : near_tiles(tiles, line_limit())) {
+            if (near.bound >= line_limit()) break;
+            if (nearest(convex(tiles.boxes[near.tile]), line_limit()).lower >= line_limit())
+                continue;
+            const LineRange range
+                = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
+            for (int v = range.v_first; v < range.v_last; ++v)
+                for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
+        }
+    }
+
+    void search_line(int axis, int u, int v) {
+        for (const Interval& matter :
+             stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
+            offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
+                         point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
+    }
+
+    /// Matter that is certainly there, from `a` to `b`.
+    void offer_matter(const Vec3& a, const Vec3& b) {
+        if (box_bound({a, b}) >= line_limit()) return;
+        const Separation found = nearest(convex_segment(a, b), line_limit());
+        if (found.upper < upper_.upper) upper_ = found;
+    }
+
+    void search_columns() {
+        lower_ = goal_.limit;
+        for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
+            if (near.bound >= lower_ - same) break;
+            const Aabb& box = stock_.column_boxes.boxes[near.tile];
+            if (nearest(convex(box), lower_).lower >= lower_ - same) continue;
+            for_columns(near.tile, [&](int i, int j, const Square& square) {
+                const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
+                lower_ = std::min(lower_, bound);
+            });
+        }
+        // What was passed over is at most `same` nearer than the least that was looked at.
+        lower_ = std::max(0.0, lower_ - same);
+    }
+
+    template <typename Act>
+    void for_columns(size_t tile, const Act& act) {
+        const LineRange range = lines_of_tile(stock_.columns, stock_.column_boxes, tile);
+        for (int j = range.v_first; j < range.v_last; ++j)
+            for (int i = range.u_first; i < range.u_last; ++i)
+                if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+    }
+
+    /// A lower bound of the distance to the boxes of a column, or at least `limit`.
+    double bound_of(const Square& square, const IntervalList& column, double limit) {
+        double bound = infinity;
+        for (const Interval& heights : column) {
+            const Aabb box{{square.x0, square.y0, heights.lower},
+                           {square.x1, square.y1, heights.upper}};
+            const double here = box_bound(box);
+            if (here >= limit) {
+                bound = std::min(bound, here);
+                continue;
+            }
+            bound = std::min(bound, nearest(convex(box), limit).lower);
+        }
+        return bound;
+    }
+
+    void refine_columns() {
+        // Every column that is not looked at here, or not to its end, is at least this far away.
+        refined_lower_ = goal_.threshold + same;
+        for (const NearTile& near : near_tiles(stock_.column_boxes, goal_.threshold + same)) {
+            for_columns(near.tile, [&](int i, int j, const Square& square) {
+                refine(i, j, square, stock_.columns.line(i, j));
+            });
+        }
+        lower_ = std::max(lower_, std::min(refined_lower_ - same, goal_.limit));
+    }
+
+    bool decided_near() const { return upper_.upper < goal_.threshold; }
+
+    /// Divides a square until its bound reaches the threshold; what stays below it is kept.
+    void refine(int i, int j, const Square& square, const IntervalList& column) {
+        const double bound = bound_of(square, column, goal_.threshold + same);
+        const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
+        if (bound >= goal_.threshold + same || decided_near() || side <= goal_.finest
+            || result_.refined >= goal_.work_limit) {
+            refined_lower_ = std::min(refined_lower_, bound);
+            return;
+        }
+        const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
+        for (const Interval& matter : fresh_line(stock_, i, j, x, y))
+            offer_matter({x, y, matter.lower}, {x, y, matter.upper});
+        const Square parts[] = {{square.x0, x, square.y0, y},
+                                {x, square.x1, square.y0, y},
+                                {square.x0, x, y, square.y1},
+                                {x, square.x1, y, square.y1}};
+        for (const Square& part : parts) {
+            ++result_.refined;
+            refine(i, j, part, fresh_column(stock_, i, j, part));
+        }
+    }
+
+    std::span<const ConvexShape> shapes_;
+    const CutModel& stock_;
+    StockGoal goal_;
+    std::vector<Aabb> boxes_;
+    Separation upper_;
+    double lower_ = infinity;
+    double refined_lower_ = infinity;
+    StockSeparation result_;
+};
+
+} // namespace
+
+StockSeparation separation(std::span<const ConvexShape> shapes, const CutModel& stock,
+                           const StockGoal& goal) {
+    return StockSearch(shapes, stock, goal).run();
+}
+
+} // namespace core
