@@ -10,8 +10,8 @@ ScanGrid scan_grid(const Aabb& bounds, double spacing) {
     for (int axis = 0; axis < 3; ++axis) {
         // Line k on one side stands at (k + 0.5) h; a line on the border itself would meet nothing.
         const double half_cells = 0.5 * bounds.size()[axis] / spacing;
-        grid.half_count[static_cast<size_t>(axis)]
-            = std::max(1, static_cast<int>(std::ceil(half_cells - 0.5)));
+        grid.half_count[static_cast<size_t>(axis)] =
+            std::max(1, static_cast<int>(std::ceil(half_cells - 0.5)));
     }
     return grid;
 }

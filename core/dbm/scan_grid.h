@@ -10,8 +10,8 @@ namespace core {
 /// half a cell away from it on either side, and no line that misses the body's box.
 struct ScanGrid {
     Vec3 centre = Vec3(0.0);
-    double spacing = 1.0;                // h, mm
-    std::array<int, 3> half_count = {};  // lines on each side of the centre, along X, Y, Z
+    double spacing = 1.0;               // h, mm
+    std::array<int, 3> half_count = {}; // lines on each side of the centre, along X, Y, Z
 
     int count(int axis) const { return 2 * half_count[static_cast<size_t>(axis)]; }
 

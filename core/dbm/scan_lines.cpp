@@ -1,0 +1,67 @@
+#include "core/dbm/scan_lines.h"
+
+#include <atomic>
+#include <cassert>
+
+namespace core {
+namespace {
+
+constexpr int tiles_for(int lines) {
+    return (lines + ScanLines::tile_side - 1) / ScanLines::tile_side;
+}
+
+constexpr size_t place_in_tile(int u, int v) {
+    constexpr int side = ScanLines::tile_side;
+    return static_cast<size_t>(u % side) + static_cast<size_t>(v % side) * side;
+}
+
+} // namespace
+
+ScanLines::ScanLines(int axis, int u_count, int v_count)
+    : axis_(axis),
+      u_count_(u_count),
+      v_count_(v_count),
+      tiles_(static_cast<size_t>(tiles_for(u_count)) * static_cast<size_t>(tiles_for(v_count))) {
+    assert(axis >= 0 && axis < 3 && u_count >= 0 && v_count >= 0);
+}
+
+size_t ScanLines::tile_of(int u, int v) const {
+    assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
+    return static_cast<size_t>(u / tile_side)
+           + static_cast<size_t>(v / tile_side) * static_cast<size_t>(tiles_for(u_count_));
+}
+
+const IntervalList& ScanLines::line(int u, int v) const {
+    static const IntervalList nothing;
+    const auto& tile = tiles_[tile_of(u, v)];
+    return tile ? (*tile)[place_in_tile(u, v)] : nothing;
+}
+
+IntervalList& ScanLines::edit(int u, int v) {
+    auto& tile = tiles_[tile_of(u, v)];
+    if (!tile) {
+        tile = std::make_shared<Tile>();
+    } else if (tile.use_count() > 1) {
+        tile = std::make_shared<Tile>(*tile);
+    } else {
+        // use_count is a relaxed read: without the fence, reads of a snapshot that another thread
+        // has just dropped could still be under way when we write.
+        std::atomic_thread_fence(std::memory_order_acquire);
+    }
+    return (*tile)[place_in_tile(u, v)];
+}
+
+bool ScanLines::shares_tile(const ScanLines& other, int u, int v) const {
+    return tiles_[tile_of(u, v)] == other.tiles_[other.tile_of(u, v)];
+}
+
+bool ScanLines::operator==(const ScanLines& other) const {
+    if (axis_ != other.axis_ || u_count_ != other.u_count_ || v_count_ != other.v_count_)
+        return false;
+    for (int v = 0; v < v_count_; ++v)
+        for (int u = 0; u < u_count_; ++u)
+            if (!shares_tile(other, u, v) && !(line(u, v) == other.line(u, v))) return false;
+    return true;
+}
+
+} // namespace core

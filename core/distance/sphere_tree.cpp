@@ -1,0 +1,90 @@
+#include "core/distance/sphere_tree.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace core {
+namespace {
+
+constexpr double farthest_coordinate = 1e12;     // squares and sums stay far from overflow
+constexpr size_t most_points = size_t{1} << 31U; // 2 n - 1 nodes are counted in 32 bits
+
+int longest_axis(const Vec3& size) {
+    if (size.x >= size.y && size.x >= size.z) return 0;
+    return size.y >= size.z ? 1 : 2;
+}
+
+class Builder {
+public:
+    explicit Builder(std::span<const Vec3> points) : points_(points), order_(points.size()) {
+        std::iota(order_.begin(), order_.end(), uint32_t{0});
+        nodes_.reserve(2 * points.size() - 1);
+    }
+
+    std::vector<SphereTree::Node> build() && {
+        add(order_);
+        return std::move(nodes_);
+    }
+
+private:
+    /// Adds the node of these points, and all below it. Halving the points keeps the depth
+    /// under 33.
+    void add(std::span<uint32_t> group) {
+        Aabb box;
+        for (const uint32_t i : group) box.extend(points_[i]);
+        const size_t node = nodes_.size();
+        nodes_.push_back({.centre = box.center()});
+        if (group.size() == 1) {
+            nodes_[node] = {.centre = points_[group[0]], .point = group[0]};
+            return;
+        }
+        nodes_[node].radius = radius_about(nodes_[node].centre, group);
+        const size_t half = group.size() / 2;
+        split(group, half, longest_axis(box.size()));
+        add(group.first(half));
+        nodes_[node].right = static_cast<uint32_t>(nodes_.size());
+        add(group.subspan(half));
+    }
+
+    double radius_about(const Vec3& centre, std::span<const uint32_t> group) const {
+        double squared = 0.0;
+        for (const uint32_t i : group) {
+            const Vec3 d = points_[i] - centre;
+            squared = std::max(squared, glm::dot(d, d));
+        }
+        return std::sqrt(squared);
+    }
+
+    void split(std::span<uint32_t> group, size_t half, int axis) const {
+        const auto middle = group.begin() + static_cast<std::ptrdiff_t>(half);
+        std::nth_element(group.begin(), middle, group.end(), [&](uint32_t a, uint32_t b) {
+            const double at_a = points_[a][axis], at_b = points_[b][axis];
+            return at_a != at_b ? at_a < at_b : a < b;
+        });
+        // nth_element fixes who is in which half, not their order; radii and boxes depend on the
+        // former only.
+    }
+
+    std::span<const Vec3> points_;
+    std::vector<uint32_t> order_;
+    std::vector<SphereTree::Node> nodes_;
+};
+
+} // namespace
+
+Result<SphereTree> sphere_tree(std::span<const Vec3> points) {
+    if (points.empty())
+        return fail(ErrorCode::missing_value, "a body without boundary points has no distance");
+    if (points.size() > most_points)
+        return fail(ErrorCode::invalid_value, "a body of more than 2^31 points is too large");
+    for (size_t i = 0; i < points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(points[i][axis]) <= farthest_coordinate))
+                return fail(ErrorCode::invalid_value,
+                            "point " + std::to_string(i)
+                                + " has a coordinate that is not finite or beyond 1e12 mm");
+    return SphereTree{Builder(points).build()};
+}
+
+} // namespace core

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "core/geom/mesh.h"
+#include "core/geom/orientation.h"
+
+namespace core {
+
+/// A triangle seen along `axis`: its corners in the plane across it (the next two axes, cyclically)
+/// and their positions along it.
+struct ProjectedTriangle {
+    std::array<Vec2, 3> corner;
+    std::array<double, 3> along;
+};
+
+ProjectedTriangle project(const Triangle& triangle, int axis);
+
+/// Whether an edge has the line at `p` on its inner side, as a step of the winding number of the
+/// triangle's outline: +1 or -1 if the edge from `a` to `b` passes on the +u side of the line, up
+/// or down; else 0. The line is thought shifted by (e, e * e) for a vanishing e > 0, so that it
+/// meets no edge and no corner, and two triangles never disagree on an edge that they share.
+int edge_step(const Vec2& a, const Vec2& b, const Vec2& p);
+
+/// How often the outline of the triangle goes round the line at `p`: +1 where the line, running
+/// upwards, leaves the body through it, -1 where it enters, 0 where it misses. Summed over a closed
+/// mesh this is exactly 0.
+int crossing_step(const ProjectedTriangle& triangle, const Vec2& p);
+
+/// Where along its axis the line at `p` meets a triangle that it crosses.
+///
+/// Result: within the triangle's own extent; good to some 1e-12 of the coordinates, however steep
+/// the
+///         triangle.
+double crossing_depth(const ProjectedTriangle& triangle, const Vec2& p);
+
+} // namespace core

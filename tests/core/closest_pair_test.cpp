@@ -1,0 +1,177 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/dbm/dbm.h"
+#include "core/distance/closest_pair.h"
+#include "tests/support/brute_force_pair.h"
+#include "tests/support/meshes.h"
+
+namespace core {
+namespace {
+
+using test_support::brute_force_distance;
+using test_support::random_pose;
+
+SphereTree tree_of(const std::vector<Vec3>& points) { return sphere_tree(points).value(); }
+
+SphereTree paper_sphere(double spacing) {
+    return tree_of(boundary_points(scan(Sphere{25.0}, spacing).value()));
+}
+
+std::vector<Vec3> random_cloud(std::mt19937& rng, int count, double reach) {
+    std::uniform_real_distribution<double> place(-reach, reach);
+    std::vector<Vec3> cloud;
+    for (int i = 0; i < count; ++i) cloud.emplace_back(place(rng), place(rng), place(rng));
+    return cloud;
+}
+
+std::vector<Vec3> lattice(int nx, int ny, int nz) {
+    std::vector<Vec3> points;
+    for (int x = 0; x < nx; ++x)
+        for (int y = 0; y < ny; ++y)
+            for (int z = 0; z < nz; ++z) points.emplace_back(x, y, z);
+    return points;
+}
+
+/// The result must be a real pair, and the least one to the last bit.
+void expect_least(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Transform& pose) {
+    const ClosestPair found = closest_pair(tree_of(a), tree_of(b), pose);
+    EXPECT_EQ(found.distance, brute_force_distance(a, b, pose));
+    EXPECT_EQ(found.witness_a, a[found.point_a]);
+    EXPECT_EQ(found.witness_b, pose * b[found.point_b]);
+    EXPECT_EQ(found.distance, glm::distance(found.witness_a, found.witness_b));
+    EXPECT_GT(found.sphere_tests, 0u);
+    EXPECT_GE(found.sphere_tests, found.point_tests);
+}
+
+TEST(SphereTree, RefusesNoPointsAndPointsThatAreNone) {
+    EXPECT_FALSE(sphere_tree({}));
+    for (const double bad : {std::nan(""), infinity, -infinity, 1e200}) {
+        const std::vector<Vec3> points = {Vec3(0.0), Vec3(1.0, bad, 0.0)};
+        ASSERT_FALSE(sphere_tree(points));
+        EXPECT_NE(sphere_tree(points).error().message.find("point 1 "), std::string::npos);
+    }
+}
+
+TEST(SphereTree, HoldsEveryPointOnceInsideEveryNodeAboveIt) {
+    std::mt19937 rng(1);
+    const std::vector<Vec3> points = random_cloud(rng, 777, 10.0);
+    const SphereTree tree = tree_of(points);
+    ASSERT_EQ(tree.nodes.size(), 2 * points.size() - 1);
+    std::vector<int> seen(points.size(), 0);
+    const auto visit = [&](const auto& self, uint32_t at, std::vector<uint32_t> above) -> void {
+        const SphereTree::Node& node = tree.nodes[at];
+        if (node.is_leaf()) {
+            ++seen[node.point];
+            EXPECT_EQ(node.centre, points[node.point]);
+            EXPECT_EQ(node.radius, 0.0);
+            for (const uint32_t i : above)
+                EXPECT_LE(glm::distance(tree.nodes[i].centre, node.centre),
+                          tree.nodes[i].radius * (1.0 + 1e-15));
+            EXPECT_LE(above.size(), 10u);
+            return;
+        }
+        above.push_back(at);
+        self(self, at + 1, above);
+        self(self, node.right, above);
+    };
+    visit(visit, 0, {});
+    EXPECT_EQ(seen, std::vector<int>(points.size(), 1));
+}
+
+TEST(ClosestPair, AgreesWithBruteForceOnRandomClouds) {
+    std::mt19937 rng(12345);
+    int far = 0;
+    for (int i = 0; i < 200; ++i) {
+        const auto a = random_cloud(rng, 1 + i, 10.0);
+        const auto b = random_cloud(rng, 300 - i, 8.0);
+        const Transform pose = random_pose(rng, 30.0);
+        expect_least(a, b, pose);
+        far += brute_force_distance(a, b, pose) > 5.0;
+    }
+    EXPECT_GT(far, 30); // a sample that is all near or all far would prove little
+    EXPECT_LT(far, 170);
+}
+
+TEST(ClosestPair, AgreesWithBruteForceFarFromTheOrigin) {
+    std::mt19937 rng(7);
+    for (int i = 0; i < 50; ++i) {
+        auto a = random_cloud(rng, 200, 1.0);
+        auto b = random_cloud(rng, 200, 1.0);
+        Transform pose = random_pose(rng, 3.0);
+        for (Vec3& p : a) p += Vec3(1e7, -1e7, 1e7);
+        pose.translation += Vec3(1e7, -1e7, 1e7);
+        expect_least(a, b, pose);
+    }
+}
+
+TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
+    const auto plate = lattice(12, 12, 2);
+    for (const double lift : {1.5, 2.0, 3.0, 7.25}) // every column is equally near
+        expect_least(plate, plate, translation({0.0, 0.0, lift}));
+    expect_least(plate, plate, {rotation_xyz_deg({0.0, 0.0, 90.0}), Vec3(3.0, -2.0, 4.0)});
+    expect_least(plate, plate, {rotation_xyz_deg({30.0, 0.0, 45.0}), Vec3(5.0, 5.0, 14.0)});
+}
+
+TEST(ClosestPair, TakesDuplicatesAndSinglePoints) {
+    const std::vector<Vec3> one = {Vec3(1.0, 2.0, 3.0)};
+    const std::vector<Vec3> same(9, Vec3(1.0, 2.0, 7.0));
+    expect_least(one, one, translation({0.0, 3.0, 4.0}));
+    expect_least(one, same, {});
+    expect_least(same, same, translation({0.5, 0.0, 0.0}));
+    const ClosestPair tie = closest_pair(tree_of(one), tree_of(same), {});
+    EXPECT_EQ(tie.distance, 4.0);
+}
+
+TEST(ClosestPair, EndsAtTheFirstPointsThatCoincide) {
+    const auto block = lattice(20, 20, 20);
+    const ClosestPair found = closest_pair(tree_of(block), tree_of(block), {});
+    EXPECT_EQ(found.distance, 0.0);
+    EXPECT_LT(found.point_tests, 1000u);
+}
+
+TEST(ClosestPair, IsTheSameEachTime) {
+    std::mt19937 rng(3);
+    const auto a = random_cloud(rng, 500, 5.0), b = random_cloud(rng, 500, 5.0);
+    const ClosestPair first = closest_pair(tree_of(a), tree_of(b), translation({9.0, 0.0, 0.0}));
+    const ClosestPair again = closest_pair(tree_of(a), tree_of(b), translation({9.0, 0.0, 0.0}));
+    EXPECT_EQ(first.point_a, again.point_a);
+    EXPECT_EQ(first.point_b, again.point_b);
+    EXPECT_EQ(first.sphere_tests, again.sphere_tests);
+    EXPECT_EQ(first.point_tests, again.point_tests);
+}
+
+constexpr double separations[] = {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0};
+
+TEST(PaperSpheres, AreNeverFoundNearerThanTheyAre) {
+    for (const double spacing : {0.5, 1.0, 1.5, 2.0}) {
+        const SphereTree ball = paper_sphere(spacing);
+        for (const double gap : separations)
+            for (const Vec3& direction : {Vec3(1.0, 0.0, 0.0), glm::normalize(Vec3(3, 2, 1))}) {
+                const auto found = closest_pair(ball, ball, translation((50.0 + gap) * direction));
+                EXPECT_GE(found.distance, gap * (1.0 - 1e-12));
+                EXPECT_LT(found.distance, gap + 2.0 * spacing);
+            }
+    }
+}
+
+TEST(PaperSpheres, AreWithinATenthOfAPercentFromTwentyMillimetresOn) {
+    const SphereTree ball = paper_sphere(0.5);
+    for (const double gap : {20.0, 30.0, 50.0}) {
+        const auto found = closest_pair(ball, ball, translation({50.0 + gap, 0.0, 0.0}));
+        EXPECT_LT((found.distance - gap) / gap, 0.001) << gap;
+    }
+}
+
+TEST(PaperSpheres, NeedMoreSphereTestsThanPointTests) {
+    const SphereTree ball = paper_sphere(0.5);
+    for (const double gap : separations) {
+        const auto found = closest_pair(ball, ball, translation({50.0 + gap, 0.0, 0.0}));
+        EXPECT_GT(found.sphere_tests, found.point_tests);
+        EXPECT_GT(found.point_tests, 0u);
+    }
+}
+
+} // namespace
+} // namespace core

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/transform.h"
+
+namespace test_support {
+
+/// The least distance of two sets of points: every pair is tried.
+inline double brute_force_distance(const std::vector<core::Vec3>& a,
+                                   const std::vector<core::Vec3>& b,
+                                   const core::Transform& a_from_b) {
+    double least = core::infinity;
+    for (const core::Vec3& q : b) {
+        const core::Vec3 mapped = a_from_b * q;
+        for (const core::Vec3& p : a) least = std::min(least, glm::distance(p, mapped));
+    }
+    return least;
+}
+
+} // namespace test_support
