@@ -1,0 +1,201 @@
+#include "core/sim/simulator.h"
+
+#include <fmt/format.h>
+
+#include "core/sim/finding_text.h"
+#include "core/sim/leg_check.h"
+
+namespace core {
+namespace {
+
+/// One leg of the block, with when its motion began.
+struct TimedLeg {
+    Leg leg;
+    double start; // seconds after the block's start
+};
+
+/// A block while it is carried out.
+struct BlockRun {
+    const Setup& setup;
+    const BlockEvents& block;
+    SimulatorState& state;
+    BlockResult result = {};
+    std::vector<TimedLeg> legs = {};
+
+    const ToolAssembly* tool() const {
+        if (!state.tool) return nullptr;
+        const auto found = setup.tools.find(*state.tool);
+        return found == setup.tools.end() ? nullptr : &found->second;
+    }
+
+    void find(const std::string& rule, std::string message, std::string cure) {
+        const Severity severity = severity_of(setup, rule);
+        if (severity == Severity::off) return;
+        result.findings.push_back(
+            {rule, severity, block.block, std::move(message), std::move(cure)});
+    }
+
+    void add(Finding finding) {
+        finding.block = block.block;
+        if (finding.severity != Severity::off) result.findings.push_back(std::move(finding));
+    }
+
+    FluteUse use(const Motion& motion) const {
+        const bool feeds = motion.kind != MotionKind::rapid;
+        const bool turns = tool() && state.spindle.direction == tool()->description.cuts;
+        return feeds && turns ? FluteUse::cutting : FluteUse::not_cutting;
+    }
+
+    void carry_out(const Motion& motion);
+    void carry_out(const ToolChange& change);
+    void carry_out(const SpindleChange& change) { state.spindle = change; }
+    void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
+    void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
+
+    void check_limits(const Motion& motion);
+    void check_from_unknown(const Motion& motion, const Path& path);
+    void conclude();
+};
+
+BlockMotion label(const Motion& motion) {
+    switch (motion.kind) {
+    case MotionKind::rapid: return BlockMotion::rapid;
+    case MotionKind::feed: return BlockMotion::feed;
+    default: return BlockMotion::arc;
+    }
+}
+
+void BlockRun::check_limits(const Motion& motion) {
+    for (size_t i = 0; i < 3; ++i)
+        if (!motion.from[i] || !motion.to[i]) return;
+    const Aabb range = axis_range(motion);
+    for (int i = 0; i < 3; ++i) {
+        const MachineAxis& axis = setup.machine.axes[static_cast<size_t>(i)];
+        const double below = axis.min.value_or(-infinity) - range.min[i];
+        const double above = range.max[i] - axis.max.value_or(infinity);
+        const double beyond = std::max(below, above);
+        if (beyond <= resolution) continue;
+        find("over-travel",
+             fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} mm beyond its limit.",
+                         axis_names[i], below > above ? range.min[i] : range.max[i], beyond),
+             "Move the work, or use another tool length or work offset.");
+    }
+}
+
+void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
+    // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
+    std::vector<PairClearance> pairs;
+    for (const Leg& leg : path.legs)
+        LegCheck(setup, *tool(), use(motion), state.statistics)
+            .run(leg, result.duration, state.stock, pairs);
+    const PairClearance* worst = deciding_pair(pairs);
+    if (!path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
+        for (PairClearance& pair : pairs) result.pairs.push_back(pair);
+        return;
+    }
+    result.checked = false;
+    if (std::exchange(state.told_unknown_start, true)) return;
+    find("first-move",
+         "The machine starts from a place nobody knows, so this motion cannot be judged.",
+         "Say where the axes stand at the first block: `start` under [program] in the set-up, or "
+         "the machine's home.");
+}
+
+void BlockRun::carry_out(const Motion& motion) {
+    result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
+    const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
+    if (path.assumed_speed) state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
+                                                     "speed is not stated");
+    check_limits(motion);
+    if (!tool()) {
+        if (state.tool || !state.tool_known) result.checked = false;
+    } else if (path.legs.empty() || !path.legs[0].start_known) {
+        check_from_unknown(motion, path);
+    } else {
+        LegCheck check(setup, *tool(), use(motion), state.statistics);
+        for (const Leg& leg : path.legs) {
+            result.removed += check.run(leg, result.duration, state.stock, result.pairs);
+            legs.push_back({leg, result.duration});
+        }
+    }
+    result.duration += path.duration;
+}
+
+void BlockRun::carry_out(const ToolChange& change) {
+    state.tool = change.tool;
+    state.tool_known = true;
+    result.tool = change.tool;
+    if (!change.tool || tool()) return;
+    if (!state.unknown_tools.insert(*change.tool).second) return;
+    find("tool-not-in-table",
+         fmt::format("Nothing is known about tool {}: its motions cannot be checked.",
+                     value_of(*change.tool)),
+         fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*change.tool)));
+}
+
+/// The place of the witness in time, at its earliest, where several moments are equally near.
+void settle_time(BlockRun& run, PairClearance& pair) {
+    if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
+    for (const TimedLeg& timed : run.legs) {
+        const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
+        if (pair.time < begin || pair.time > end) continue;
+        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.statistics);
+        const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
+        pair.time = std::min(pair.time, begin + share * (end - begin));
+        return;
+    }
+}
+
+void BlockRun::conclude() {
+    std::sort(result.pairs.begin(), result.pairs.end(),
+              [](const PairClearance& a, const PairClearance& b) {
+                  return std::tuple(a.pair.fixture, a.pair.part)
+                         < std::tuple(b.pair.fixture, b.pair.part);
+              });
+    if (const PairClearance* worst = deciding_pair(result.pairs)) {
+        result.deciding = static_cast<size_t>(worst - result.pairs.data());
+        settle_time(*this, result.pairs[*result.deciding]);
+        result.verdict = worst->verdict;
+    }
+    for (const PairClearance& pair : result.pairs)
+        if (pair.verdict != Verdict::clear)
+            add(finding_of(setup, pair, result.motion, state, result.duration));
+    if (result.checked) return;
+    result.verdict = std::max(result.verdict, Verdict::undecided);
+    result.deciding.reset();
+}
+
+} // namespace
+
+const char* name_of(BlockMotion motion) {
+    switch (motion) {
+    case BlockMotion::none: return "none";
+    case BlockMotion::rapid: return "rapid";
+    case BlockMotion::feed: return "feed";
+    case BlockMotion::arc: return "arc";
+    default: return "cycle";
+    }
+}
+
+Result<SimulatorState> start_of_run(const Setup& setup) {
+    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
+    SimulatorState state{.stock = std::move(stock)};
+    state.tool = setup.tool_at_start;
+    state.tool_known = setup.tool_at_start.has_value();
+    return state;
+}
+
+BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state) {
+    BlockRun run{setup, block, state};
+    run.result.time = state.time;
+    run.result.tool = state.tool;
+    for (const Event& event : block.events)
+        std::visit([&](const auto& e) { run.carry_out(e); }, event);
+    if (block.is_cycle && run.result.motion != BlockMotion::none)
+        run.result.motion = BlockMotion::cycle;
+    run.conclude();
+    state.time += run.result.duration;
+    return std::move(run.result);
+}
+
+} // namespace core

@@ -1,0 +1,48 @@
+#include "core/sim/clearance.h"
+
+namespace core {
+
+const std::string& body_name(const Setup& setup, const Pair& pair) {
+    static const std::string stock = "stock";
+    return pair.fixture ? setup.fixtures[*pair.fixture].name : stock;
+}
+
+Verdict judge_distance(const Allowance& allowance, double lower, double upper) {
+    if (allowance.distance <= resolution) return lower > 0.0 ? Verdict::clear : Verdict::undecided;
+    if (lower >= allowance.distance - resolution) return Verdict::clear;
+    if (upper < allowance.distance - resolution) return Verdict::violation;
+    return Verdict::undecided;
+}
+
+Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double shrunk_upper) {
+    if (shrunk_upper == 0.0) return Verdict::collision;
+    if (allowance.distance > resolution) return Verdict::violation;
+    return shrunk_lower > 0.0 ? Verdict::clear : Verdict::undecided;
+}
+
+double contact_depth(const Allowance& allowance) {
+    return std::max(allowance.contact, resolution);
+}
+
+void merge(PairClearance& known, const PairClearance& later) {
+    known.verdict = std::max(known.verdict, later.verdict);
+    known.lower = std::min(known.lower, later.lower);
+    if (later.upper >= known.upper) return;
+    known.upper = later.upper;
+    known.on_tool = later.on_tool;
+    known.on_body = later.on_body;
+    known.time = later.time;
+}
+
+const PairClearance* deciding_pair(const std::vector<PairClearance>& pairs) {
+    const PairClearance* worst = nullptr;
+    for (const PairClearance& pair : pairs) {
+        if (!pair.found() && pair.verdict == Verdict::clear) continue;
+        if (!worst || pair.verdict > worst->verdict
+            || (pair.verdict == worst->verdict && pair.margin() < worst->margin()))
+            worst = &pair;
+    }
+    return worst;
+}
+
+} // namespace core

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/base/ids.h"
+
+namespace core {
+
+enum class Severity : uint8_t { off, note, warning, error };
+
+const char* name_of(Severity severity);
+
+/// Something a person should know about a block.
+struct Finding {
+    std::string rule;    // stable name, as in `near-miss`
+    Severity severity = Severity::warning;
+    std::optional<BlockIndex> block; // empty: the program as a whole
+    std::string message; // one or two sentences as a machinist would say them
+    std::string cure;    // what would make it go away; may be empty
+};
+
+/// What the set-up says about rules by name, in place of their own severity.
+using RuleSeverities = std::map<std::string, Severity>;
+
+/// The severity a rule has unless the set-up says otherwise; empty for a name that is no rule.
+std::optional<Severity> default_severity(const std::string& rule);
+
+} // namespace core

@@ -1,0 +1,102 @@
+#include "core/sim/finding_text.h"
+
+#include <fmt/format.h>
+
+namespace core {
+namespace {
+
+std::string rule_of(const PairClearance& pair, BlockMotion motion, bool spindle_runs) {
+    if (pair.verdict == Verdict::undecided) return "undecided";
+    const bool rapid = motion == BlockMotion::rapid;
+    const bool fixture = pair.pair.fixture.has_value();
+    if (pair.verdict == Verdict::violation)
+        return rapid && fixture ? "rapid-near-clamp" : "near-miss";
+    if (!fixture && rapid) return "rapid-in-stock";
+    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs) return "spindle-off";
+    return pair.pair.part == PartKind::holder ? "holder-into-wall" : "collision";
+}
+
+/// The way out of a near miss: along the axis that leads away from the body most directly.
+std::string way_out(const PairClearance& pair, double missing) {
+    const Vec3 away = pair.on_tool - pair.on_body;
+    const double length = glm::length(away);
+    if (!(length > 0.0)) return "";
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
+    const double along = missing * length / std::abs(away[axis]);
+    return fmt::format("{:.3f} mm more room towards {}{}", along, "XYZ"[axis],
+                       away[axis] > 0.0 ? '+' : '-');
+}
+
+std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body) {
+    const bool fixture = pair.pair.fixture.has_value();
+    if (rule == "rapid-in-stock") return "Raise the retract height, or feed through the material.";
+    if (rule == "spindle-off")
+        return "Start the spindle the right way round before the tool feeds into the stock.";
+    if (rule == "undecided")
+        return "A smaller mesh size decides it; if not, give the block more room.";
+    const double missing = pair.allowance.distance - pair.upper;
+    const std::string room = way_out(pair, missing);
+    const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
+    if (!room.empty()) return fmt::format("{} would do{}.", room, move);
+    if (pair.pair.part != PartKind::flutes && !fixture)
+        return "A longer stick-out or a slimmer holder, or less depth.";
+    return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
+}
+
+std::string message_of(const PairClearance& pair, const std::string& rule, BlockMotion motion,
+                       const std::string& body, double at) {
+    const char* part = name_of(pair.pair.part);
+    const char* kind = motion == BlockMotion::rapid ? "On a rapid, the" : "The";
+    if (rule == "rapid-in-stock")
+        return fmt::format("Rapid into material: the {} runs into the stock.", part);
+    if (rule == "spindle-off")
+        return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
+    if (pair.verdict == Verdict::collision)
+        return fmt::format("{} {} runs into {}, {:.0f} % of the way.", kind, part, body,
+                           100.0 * at);
+    if (pair.verdict == Verdict::violation)
+        return fmt::format("{} {} passes {} at {:.3f} mm; {:.3f} mm must be kept, {:.3f} mm are "
+                           "missing.",
+                           kind, part, body, pair.upper, pair.allowance.distance,
+                           pair.allowance.distance - pair.upper);
+    return fmt::format("{} {} may be as near to {} as {:.3f} mm; {:.3f} mm must be kept.", kind,
+                       part, body, pair.lower, pair.allowance.distance);
+}
+
+/// "The flutes run", "the holder runs".
+std::string in_the_plural(std::string message) {
+    for (const auto& [one, many] : {std::pair{"flutes runs", "flutes run"},
+                                    std::pair{"flutes passes", "flutes pass"}})
+        if (const size_t at = message.find(one); at != std::string::npos)
+            message.replace(at, std::string(one).size(), many);
+    return message;
+}
+
+} // namespace
+
+Severity severity_of(const Setup& setup, const std::string& rule) {
+    const auto set = setup.rules.find(rule);
+    return set != setup.rules.end() ? set->second
+                                    : default_severity(rule).value_or(Severity::warning);
+}
+
+Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion motion,
+                   const SimulatorState& state, double duration) {
+    const ToolAssembly* tool = nullptr;
+    if (state.tool) tool = &setup.tools.at(*state.tool);
+    const bool spindle_runs = tool && state.spindle.direction == tool->description.cuts;
+    const std::string& body = body_name(setup, pair.pair);
+    const double at = duration > 0.0 ? pair.time / duration : 0.0;
+    Finding finding;
+    finding.rule = rule_of(pair, motion, spindle_runs);
+    finding.severity = severity_of(setup, finding.rule);
+    finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
+    finding.cure = cure_of(pair, finding.rule, body);
+    if (!finding.cure.empty())
+        finding.cure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
+    return finding;
+}
+
+} // namespace core

@@ -1,0 +1,260 @@
+#include "core/sim/leg_check.h"
+
+#include <cassert>
+
+namespace core {
+namespace {
+
+PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair,
+                     const Allowance& allowance) {
+    for (PairClearance& known : pairs)
+        if (known.pair == pair) return known;
+    pairs.push_back({.pair = pair, .allowance = allowance});
+    return pairs.back();
+}
+
+/// The stretch of a straight leg between two shares of it.
+Leg stretch(const Leg& leg, double first, double last) {
+    const auto place = [&](double share) {
+        return leg.places[0] + share * (leg.places[1] - leg.places[0]);
+    };
+    const auto time = [&](double share) { return leg.begin + share * (leg.end - leg.begin); };
+    return {{place(first), place(last)}, time(first), time(last), leg.path_error};
+}
+
+double length(const Leg& leg) { return glm::distance(leg.places.front(), leg.places.back()); }
+
+/// What narrows the search against the stock: the interval should not span the allowance.
+double deciding_distance(const Allowance& allowance) {
+    return allowance.distance > resolution ? allowance.distance - resolution : 0.0;
+}
+
+Separation widened(Separation found, double by) {
+    found.lower = std::max(0.0, found.lower - by);
+    if (found.upper > 0.0) found.upper += by;
+    return found;
+}
+
+} // namespace
+
+LegCheck::Shapes LegCheck::shapes(const RevolvedProfile& profile, const Leg& leg) const {
+    std::vector<Vec3> places;
+    for (const Vec3& place : leg.places)
+        places.push_back(place - setup_.stock_origin - Vec3(0.0, 0.0, tool_.length));
+    Shapes result;
+    for (const ProfileElement& element : profile.elements)
+        result.push_back(swept(convex(element), places));
+    return result;
+}
+
+Separation LegCheck::to_fixture(const Shapes& shapes, const Fixture& fixture, double limit) {
+    Separation best;
+    double lower = infinity;
+    for (const ConvexShape& shape : shapes) {
+        ++statistics_.shape_tests;
+        const double worth = std::min(limit, best.upper);
+        const Separation found = separation(shape, fixture.body, {.limit = worth});
+        lower = std::min(lower, found.lower);
+        if (found.upper < best.upper) best = found;
+    }
+    best.lower = std::min(lower, best.upper);
+    return best;
+}
+
+Separation LegCheck::to_stock(const Shapes& shapes, const CutModel& stock, double threshold) {
+    const StockSeparation found = separation(
+        shapes, stock, {.limit = setup_.search_limit, .threshold = threshold});
+    statistics_.box_tests += found.box_tests;
+    statistics_.shape_tests += found.shape_tests;
+    statistics_.refined += found.refined;
+    return found.separation;
+}
+
+void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const ToolPart& part,
+                             std::vector<PairClearance>& pairs) {
+    const Fixture& body = setup_.fixtures[fixture];
+    const Allowance allowance = fixture_allowance(setup_, part.kind, body);
+    PairClearance& known = entry(pairs, {part.kind, fixture}, allowance);
+    const double limit = std::min(setup_.search_limit, known.upper);
+    const Separation found
+        = widened(to_fixture(shapes(part.profile, leg), body, limit), leg.path_error);
+    PairClearance now{.pair = known.pair, .allowance = allowance};
+    now.lower = std::min(found.lower, setup_.search_limit);
+    if (found.found()) {
+        now.upper = found.upper;
+        now.on_tool = found.point_a;
+        now.on_body = found.point_b;
+        now.time = start + leg.begin + found.time_a * (leg.end - leg.begin);
+    }
+    now.verdict = judge_distance(allowance, now.lower, now.upper);
+    if (now.upper == 0.0 || (allowance.distance <= resolution && now.lower <= 0.0)) {
+        const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
+        const Separation shrunk
+            = widened(to_fixture(shapes(inner, leg), body, setup_.search_limit), leg.path_error);
+        now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
+    }
+    merge(known, now);
+}
+
+void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs) {
+    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture)
+        for (const ToolPart& part : tool_.parts) {
+            const bool chips = part.kind == PartKind::flutes && use_ == FluteUse::cutting;
+            if (chips && setup_.fixtures[fixture].expendable) continue;
+            check_fixture(leg, start, fixture, part, pairs);
+        }
+}
+
+LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg,
+                                        const CutModel& stock, const Allowance& allowance) {
+    Observation seen;
+    seen.plain = to_stock(shapes(part.profile, leg), stock, deciding_distance(allowance));
+    const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
+    if (may_touch || seen.plain.upper == 0.0) {
+        const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
+        seen.shrunk = to_stock(shapes(inner, leg), stock, resolution + leg.path_error);
+    }
+    seen.plain = widened(seen.plain, leg.path_error);
+    seen.shrunk = widened(seen.shrunk, leg.path_error);
+    return seen;
+}
+
+PairClearance LegCheck::clearance(const ToolPart& part, const Leg& leg, double start,
+                                  const Observation& before, const Observation& after) const {
+    PairClearance now{.pair = {part.kind, std::nullopt},
+                      .allowance = stock_allowance(setup_, part.kind)};
+    now.lower = before.plain.lower;
+    if (after.plain.found()) {
+        now.upper = after.plain.upper;
+        now.on_tool = after.plain.point_a;
+        now.on_body = after.plain.point_b;
+        now.time = start + leg.begin + after.plain.time_a * (leg.end - leg.begin);
+    }
+    now.verdict = judge_distance(now.allowance, now.lower, now.upper);
+    const bool may_touch = now.allowance.distance <= resolution && now.lower <= 0.0;
+    if (may_touch || now.upper == 0.0)
+        now.verdict = judge_contact(now.allowance, before.shrunk.lower, after.shrunk.upper);
+    return now;
+}
+
+double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
+                               std::vector<PairClearance>& pairs) {
+    struct Check {
+        const ToolPart& part;
+        Observation before;
+    };
+    std::vector<Check> checks;
+    bool settled = true;
+    for (const ToolPart& part : tool_.parts) {
+        if (part.kind == PartKind::flutes) continue;
+        const Observation before = observe(part, leg, stock, stock_allowance(setup_, part.kind));
+        settled = settled && clearance(part, leg, start, before, before).verdict == Verdict::clear;
+        checks.push_back({part, before});
+    }
+    if (!settled && length(leg) > setup_.mesh_size)
+        return check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
+               + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
+
+    const double removed = cut_along(leg, stock);
+    for (const Check& check : checks) {
+        const Allowance allowance = stock_allowance(setup_, check.part.kind);
+        const bool same = removed == 0.0 || !check.before.plain.found();
+        const Observation after = same ? check.before : observe(check.part, leg, stock, allowance);
+        const PairClearance now = clearance(check.part, leg, start, check.before, after);
+        merge(entry(pairs, now.pair, allowance), now);
+    }
+    return removed;
+}
+
+bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
+                           std::vector<PairClearance>& pairs) {
+    bool gouged = false;
+    for (const ToolPart& part : tool_.parts) {
+        const Allowance allowance = stock_allowance(setup_, part.kind);
+        const Observation seen = observe(part, leg, stock, allowance);
+        const PairClearance now = clearance(part, leg, start, seen, seen);
+        gouged = gouged || (part.kind == PartKind::flutes && now.verdict == Verdict::collision);
+        merge(entry(pairs, now.pair, allowance), now);
+    }
+    return gouged;
+}
+
+double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock,
+                                   std::vector<PairClearance>& pairs) {
+    const bool gouged = check_parts(leg, start, stock, pairs);
+    // After the finding the material is gone, so that one crash is one finding.
+    return gouged ? cut_along(leg, stock) : 0.0;
+}
+
+double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
+    assert(leg.straight);
+    const Vec3 tip(0.0, 0.0, tool_.length);
+    const auto cutter
+        = std::make_shared<const Cutter>(make_cutter(tool_.parts[0].profile, leg.path_error));
+    ++statistics_.sweeps;
+    return cut(stock, {cutter, leg.places[0] - setup_.stock_origin - tip,
+                       leg.places[1] - setup_.stock_origin - tip});
+}
+
+double LegCheck::run(const Leg& leg, double start, CutModel& stock,
+                     std::vector<PairClearance>& pairs) {
+    if (!leg.straight) {
+        check_hull(leg, start, stock, pairs);
+        return 0.0;
+    }
+    check_fixtures(leg, start, pairs);
+    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
+                                     : check_not_cutting(leg, start, stock, pairs);
+}
+
+void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
+                          std::vector<PairClearance>& pairs) {
+    // What the hull keeps away from is safe; what it meets need not happen, unless a place that is
+    // certainly taken meets it too.
+    std::vector<PairClearance> anywhere;
+    check_fixtures(leg, start, anywhere);
+    check_parts(leg, start, stock, anywhere);
+    std::vector<PairClearance> certain;
+    for (const Vec3& place : leg.certain) rest(place, stock, certain);
+    for (PairClearance& pair : anywhere) {
+        const bool safe = pair.verdict == Verdict::clear;
+        PairClearance now{.pair = pair.pair, .allowance = pair.allowance, .lower = pair.lower};
+        for (const PairClearance& there : certain)
+            if (there.pair == pair.pair) merge(now, there);
+        now.lower = pair.lower;
+        now.time = start + leg.end;
+        if (!safe) now.verdict = std::max(now.verdict, Verdict::undecided);
+        merge(entry(pairs, pair.pair, pair.allowance), now);
+    }
+}
+
+void LegCheck::rest(const Vec3& place, const CutModel& stock, std::vector<PairClearance>& pairs) {
+    const Leg leg{.places = {place}};
+    check_fixtures(leg, 0.0, pairs);
+    check_parts(leg, 0.0, stock, pairs);
+}
+
+double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
+                          const CutModel& stock) {
+    if (!leg.straight) return 0.0;
+    const ToolPart* part = nullptr;
+    for (const ToolPart& candidate : tool_.parts)
+        if (candidate.kind == pair.part) part = &candidate;
+    const auto reached = [&](double share) {
+        const Shapes moved = shapes(part->profile, stretch(leg, 0.0, share));
+        const double limit = distance + leg.path_error + resolution;
+        const Separation found
+            = pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
+                           : to_stock(moved, stock, 0.0);
+        return found.upper <= limit;
+    };
+    if (reached(0.0)) return 0.0;
+    double before = 0.0, after = 1.0;
+    for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (before + after);
+        (reached(middle) ? after : before) = middle;
+    }
+    return after;
+}
+
+} // namespace core

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/distance/body_distance.h"
+#include "core/sim/finding.h"
+#include "core/sim/machine.h"
+#include "core/sim/tool_assembly.h"
+
+namespace core {
+
+/// Something that holds the work. Frame: that of the stock.
+struct Fixture {
+    std::string name;
+    ExactBody body;
+    bool expendable = false; // flutes that feed may cut it
+};
+
+/// What a pair of bodies must keep, as the set-up says it. A name is a body's, or one of: flutes
+/// shank holder stock fixture.
+struct AllowanceRule {
+    std::array<std::string, 2> between;
+    double distance = 0.0;
+    double contact = 0.0;
+};
+
+/// Everything that does not change while a program runs. mm.
+struct Setup {
+    double mesh_size = 0.5;
+    std::optional<double> allowance; // replaces the default against fixtures and of the holder
+    std::vector<AllowanceRule> allowances;
+    Machine machine;
+    Vec3 stock_origin = Vec3(0.0); // of the stock's frame, in the machine frame
+    Solid stock;                   // in the stock's frame
+    std::vector<Fixture> fixtures;
+    std::map<ToolNumber, ToolAssembly> tools;
+    std::optional<ToolNumber> tool_at_start;
+    RuleSeverities rules;
+    double search_limit = 50.0; // nobody asks beyond it
+};
+
+} // namespace core

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <set>
+#include <span>
+
+#include "core/dbm/cut_model.h"
+#include "core/sim/clearance.h"
+#include "core/sim/finding.h"
+#include "core/sim/path.h"
+#include "core/sim/statistics.h"
+
+namespace core {
+
+/// Everything a run leaves behind for its next block. A plain value: copy it to go back in time.
+struct SimulatorState {
+    CutModel stock;
+    std::optional<ToolNumber> tool; // what is in the spindle; empty: nothing, or nobody knows
+    bool tool_known = false;
+    SpindleChange spindle;
+    LengthOffsetChange length_offset;
+    double time = 0.0;              // seconds since the program's start
+    Statistics statistics;
+    std::set<std::string> assumptions; // what had to be taken for granted on the way
+    std::set<ToolNumber> unknown_tools; // called, but nothing is known about them; told once
+    bool told_unknown_start = false;
+};
+
+/// What a block moves, as a report says it.
+enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
+
+const char* name_of(BlockMotion motion);
+
+/// What a block did and how near it came.
+struct BlockResult {
+    BlockMotion motion = BlockMotion::none;
+    std::optional<ToolNumber> tool;
+    double time = 0.0;     // of its start, seconds
+    double duration = 0.0; // seconds
+    double removed = 0.0;  // mm3
+    bool checked = true;   // false: it moves, but nothing can be said about its clearance
+    Verdict verdict = Verdict::clear;
+    std::vector<PairClearance> pairs;
+    std::optional<size_t> deciding; // the pair that the report shows; empty beyond the limit
+    std::vector<Finding> findings;
+};
+
+/// What a run needs to know of a block.
+struct BlockEvents {
+    BlockIndex block{};
+    bool is_cycle = false; // one block with several motions: a canned cycle, G28
+    std::span<const Event> events;
+};
+
+/// The state before the first block.
+///
+/// Errors: those of make_cut_model, for a stock that cannot be modelled.
+Result<SimulatorState> start_of_run(const Setup& setup);
+
+/// Carries out one block: moves, cuts, measures. The set-up must outlive the result.
+BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state);
+
+} // namespace core
