@@ -1,0 +1,50 @@
+#include "gcode/execution.h"
+
+namespace gcode {
+
+core::Result<void> act(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    if (!entry) return {};
+    switch (entry->code->tenths) {
+    case tenths(10):
+        return write_offset(execution);
+    case tenths(28):
+    case tenths(30):
+        return go_home(execution);
+    case tenths(28, 1):
+    case tenths(30, 1):
+        return store_home(execution);
+    case tenths(52):
+        return set_local_offset(execution);
+    case tenths(92):
+    case tenths(92, 1):
+    case tenths(92, 2):
+    case tenths(92, 3):
+        return set_axis_offset(execution);
+    default:
+        return {}; // G4 and G53 have steps of their own
+    }
+}
+
+core::Result<void> stop(Execution& execution) {
+    if (execution.statement.of(ModalGroup::subprogram))
+        execution.state.ending = Ending::main_return; // M99
+    const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
+    if (!entry) return {};
+    switch (entry->code->tenths) {
+    case tenths(1):
+        execution.emit(OptionalStop{});
+        break;
+    case tenths(2):
+    case tenths(30):
+        execution.state.ending = Ending::program_end;
+        execution.emit(ProgramEnd{});
+        break;
+    default:
+        execution.emit(ProgramStop{});
+        break; // M0, M60
+    }
+    return {};
+}
+
+} // namespace gcode

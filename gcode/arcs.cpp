@@ -1,0 +1,179 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "gcode/arc_geometry.h"
+#include "gcode/execution.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// An arc seen along its normal: coordinates along the plane's first and second axis.
+struct FlatArc {
+    core::SourceSpan where;
+    std::string code; // G2 or G3, for messages
+    bool clockwise;
+    double start[2], end[2];
+};
+
+/// How far an R word may fall short of reaching the end (LinuxCNC: RADIUS_TOLERANCE).
+constexpr double reach_tolerance = 0.00127;
+
+core::Result<void> check_radii(Execution& execution, const FlatArc& arc, const double* centre) {
+    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    if (to_start < reach_tolerance || to_end < reach_tolerance)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the arc has no radius, its centre is on its {}",
+                                      arc.code, to_start < reach_tolerance ? "start" : "end"),
+                          arc.where);
+    const ArcTolerance& allowed = execution.dialect.arc;
+    const double absolute = execution.modal().unit == LengthUnit::inch
+                                ? to_mm(allowed.absolute_inch, LengthUnit::inch)
+                                : allowed.absolute_mm;
+    const double difference = std::abs(to_start - to_end);
+    const bool relative = difference <= absolute * allowed.limit
+                          && difference <= allowed.relative * std::max(to_start, to_end);
+    if (difference <= absolute || relative) return {};
+    const std::string message =
+        fmt::format("{}: the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end",
+                    arc.code, to_start, to_end);
+    if (difference > allowed.warned_mm)
+        return core::fail(ErrorCode::invalid_value, message, arc.where);
+    execution.warn(arc.where, message);
+    return {};
+}
+
+/// The offset words of the plane's axes, I for X, J for Y, K for Z.
+struct CentreWords {
+    const Word* first;
+    const Word* second;
+};
+
+core::Result<void> centre_from_offsets(Execution& execution, const FlatArc& arc,
+                                       const CentreWords& words, double* centre) {
+    const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
+    if (absolute && !(words.first && words.second))
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{}: under G90.1 an arc needs both words of its centre", arc.code),
+            arc.where);
+    centre[0] =
+        (absolute ? 0.0 : arc.start[0]) + (words.first ? length_of(execution, *words.first) : 0.0);
+    centre[1] = (absolute ? 0.0 : arc.start[1])
+                + (words.second ? length_of(execution, *words.second) : 0.0);
+    return check_radii(execution, arc, centre);
+}
+
+/// The centre lies on the line that halves the chord, on the side that R's sign and the turn say.
+core::Result<void> centre_from_radius(const FlatArc& arc, const Word& word, double radius,
+                                      double* centre) {
+    const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
+    const double half = 0.5 * std::hypot(chord[0], chord[1]);
+    if (half == 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: an arc with R cannot end where it starts; give its "
+                                      "centre with I, J, K",
+                                      written(word)),
+                          word.span);
+    if (half - std::abs(radius) > reach_tolerance)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the radius {:.4f} mm does not reach the end, half of "
+                                      "the way is {:.4f} mm",
+                                      written(word), std::abs(radius), half),
+                          word.span);
+    const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
+    const bool right_of_chord = arc.clockwise == (radius > 0.0);
+    const double side = (right_of_chord ? -height : height) / (2.0 * half);
+    centre[0] = 0.5 * (arc.start[0] + arc.end[0]) - side * chord[1];
+    centre[1] = 0.5 * (arc.start[1] + arc.end[1]) + side * chord[0];
+    return {};
+}
+
+core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const PlaneAxes& axes,
+                               double* centre) {
+    constexpr char offset_letters[] = {'I', 'J', 'K'};
+    const Statement& statement = execution.statement;
+    const CentreWords words = {statement.word(offset_letters[axes.first]),
+                               statement.word(offset_letters[axes.second])};
+    const Word* other = statement.word(offset_letters[axes.normal]);
+    const Word* radius = statement.word('R');
+    const Word* surplus = other    ? other
+                          : radius ? (words.first ? words.first : words.second)
+                                   : nullptr;
+    if (surplus) {
+        const std::string message =
+            fmt::format("{}: {} has no use for it here", written(*surplus), arc.code);
+        if (execution.dialect.unused_words_are_errors)
+            return core::fail(ErrorCode::syntax, message, surplus->span);
+        if (surplus->value != 0.0) execution.warn(surplus->span, message);
+    }
+    if (radius) return centre_from_radius(arc, *radius, length_of(execution, *radius), centre);
+    if (words.first || words.second) return centre_from_offsets(execution, arc, words, centre);
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} has no centre: it needs {}, {} or R", arc.code,
+                                  offset_letters[axes.first], offset_letters[axes.second]),
+                      arc.where);
+}
+
+core::Result<FlatArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
+                               const Position& end) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::motion);
+    const bool clockwise = execution.modal().motion == MotionMode::arc_clockwise;
+    FlatArc arc{.where = entry ? entry->word->span : core::SourceSpan{.line = execution.block.line},
+                .code = clockwise ? "G2" : "G3",
+                .clockwise = clockwise,
+                .start = {},
+                .end = {}};
+    const Position& start = execution.modal().position;
+    for (int i = 0; i < 2; ++i) {
+        const size_t axis = static_cast<size_t>(i == 0 ? axes.first : axes.second);
+        if (!start[axis] || !end[axis])
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{}: where the arc starts is unknown along {}; move there "
+                            "first, or say where the machine starts",
+                            arc.code, "XYZ"[axis]),
+                arc.where);
+        arc.start[i] = *start[axis];
+        arc.end[i] = *end[axis];
+    }
+    return arc;
+}
+
+core::Result<int> turns_of(const Execution& execution, bool clockwise) {
+    const Word* word = execution.statement.word('P');
+    if (!word) return clockwise ? -1 : 1;
+    FEELER_TRY(const int turns, whole_number(*word, 1, 1000000));
+    return clockwise ? -turns : turns;
+}
+
+} // namespace
+
+core::Result<void> move_along_arc(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(const FlatArc arc, flat_arc(execution, axes, end));
+    ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
+    if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
+    FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));
+    const auto normal = static_cast<size_t>(axes.normal);
+    std::optional<double> rise;
+    if (modal.position[normal] && end[normal]) rise = *end[normal] - *modal.position[normal];
+    if (modal.position[normal] == end[normal]) rise = 0.0;
+    const double radius =
+        std::hypot(arc.start[0] - command.centre[0], arc.start[1] - command.centre[1]);
+    const double angle = arc_angle(arc.start, arc.end, command.centre, command.turns);
+    std::optional<double> path;
+    if (rise) path = std::hypot(radius * angle, *rise);
+    FEELER_TRY(command.feed, feed_rate(execution, path));
+    modal.position = end;
+    execution.emit(command);
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,27 @@
+#include "gcode/canonical.h"
+
+#include <array>
+
+namespace gcode {
+
+std::string_view command_name(const CanonicalCommand& command) {
+    // In the order of the variant.
+    constexpr std::array<std::string_view, std::variant_size_v<CanonicalCommand>> names = {
+        "straight_traverse",
+        "straight_feed",
+        "arc_feed",
+        "dwell",
+        "select_tool",
+        "change_tool",
+        "spindle",
+        "coolant",
+        "select_plane",
+        "set_offset",
+        "use_tool_length_offset",
+        "program_stop",
+        "optional_stop",
+        "program_end"};
+    return names[command.index()];
+}
+
+} // namespace gcode

@@ -1,0 +1,227 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/execution.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr char letters[] = {'X', 'Y', 'Z'};
+constexpr size_t most_commands = 200000; // of one block
+
+/// A cycle with its levels along the drilling axis, program coordinates.
+struct Drilling {
+    Execution& execution;
+    CannedCycle cycle;
+    size_t first, second, normal;
+    double r, bottom;
+    std::optional<double> clear; // where it retracts to
+    double rate;
+
+    void traverse(std::optional<double> level) {
+        Position end = execution.modal().position;
+        end[normal] = level;
+        execution.traverse(end);
+    }
+    void feed(double level) {
+        Position end = execution.modal().position;
+        end[normal] = level;
+        execution.feed(end, rate);
+    }
+    void dwell() {
+        if (cycle.dwell) execution.emit(Dwell{*cycle.dwell});
+    }
+};
+
+tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycle& cycle,
+                                    char letter) {
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("G{} needs {} word", cycle.code / 10,
+                                  letter == 'R' ? "an R" : fmt::format("a {}", letter)),
+                      {.line = execution.block.line});
+}
+
+/// The modal cycle with the words of this block taken in.
+core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
+    CannedCycle cycle = *execution.modal().cycle;
+    const Statement& statement = execution.statement;
+    if (const Word* word = statement.word(letters[normal]))
+        cycle.bottom = length_of(execution, *word);
+    if (const Word* word = statement.word('R')) cycle.r = length_of(execution, *word);
+    if (const Word* word = statement.word('Q')) {
+        cycle.peck = length_of(execution, *word);
+        if (*cycle.peck <= 0.0)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: a peck goes deeper than 0", written(*word)),
+                              word->span);
+    }
+    if (const Word* word = statement.word('P')) {
+        const bool milliseconds =
+            execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
+        cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
+    }
+    if (!cycle.bottom) return missing(execution, cycle, letters[normal]);
+    if (!cycle.r) return missing(execution, cycle, 'R');
+    const bool pecks = cycle.code == tenths(73) || cycle.code == tenths(83);
+    if (pecks && !cycle.peck) return missing(execution, cycle, 'Q');
+    if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
+    return cycle;
+}
+
+core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
+    const ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const core::SourceSpan line{.line = execution.block.line};
+    const bool incremental = modal.distance == DistanceMode::incremental;
+    if (incremental && !cycle.initial_level)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("G{} under G91 counts from a level that is unknown along {}",
+                                      cycle.code / 10, letters[axes.normal]),
+                          line);
+    const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
+    const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
+    if (r < bottom)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
+                                      "{:.4f} mm",
+                                      cycle.code / 10, r, bottom),
+                          line);
+    if (cycle.peck && (r - bottom) / *cycle.peck > most_commands / 4)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
+            line);
+    std::optional<double> clear = cycle.initial_level;
+    if (modal.retract == RetractMode::r_level || (clear && *clear < r)) clear = r;
+    FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
+    return Drilling{execution,
+                    cycle,
+                    static_cast<size_t>(axes.first),
+                    static_cast<size_t>(axes.second),
+                    static_cast<size_t>(axes.normal),
+                    r,
+                    bottom,
+                    clear,
+                    rate};
+}
+
+/// G83: out of the hole after each peck; G73: only a little back.
+void peck(Drilling& hole, bool out_of_the_hole) {
+    const double back = hole.execution.dialect.peck_clearance;
+    for (double depth = hole.r - *hole.cycle.peck; depth > hole.bottom; depth -= *hole.cycle.peck) {
+        hole.feed(depth);
+        if (out_of_the_hole) hole.traverse(hole.clear);
+        hole.traverse(std::min(depth + back, hole.r));
+    }
+    hole.feed(hole.bottom);
+}
+
+void bore_with_stop(Drilling& hole) {
+    const ModalState& modal = hole.execution.modal();
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.execution.emit(Spindle{core::SpindleDirection::stopped, 0.0});
+    hole.traverse(hole.clear);
+    hole.execution.emit(Spindle{modal.spindle, modal.speed});
+}
+
+void drill(Drilling& hole) {
+    switch (hole.cycle.code) {
+    case tenths(73):
+    case tenths(83):
+        peck(hole, hole.cycle.code == tenths(83));
+        hole.dwell();
+        hole.traverse(hole.clear);
+        return;
+    case tenths(82):
+        hole.feed(hole.bottom);
+        hole.dwell();
+        hole.traverse(hole.clear);
+        return;
+    case tenths(85):
+    case tenths(89):
+        hole.feed(hole.bottom);
+        if (hole.cycle.code == tenths(89)) hole.dwell();
+        if (hole.clear)
+            hole.feed(*hole.clear);
+        else
+            hole.traverse(hole.clear);
+        return;
+    case tenths(86):
+        bore_with_stop(hole);
+        return;
+    default: // G81
+        hole.feed(hole.bottom);
+        hole.traverse(hole.clear);
+        return;
+    }
+}
+
+core::Result<int> repeats_of(const Execution& execution) {
+    const Word* word = execution.statement.word('L');
+    if (!word && execution.dialect.repeats_with_k) word = execution.statement.word('K');
+    if (!word) return 1;
+    return whole_number(*word, 0, 10000);
+}
+
+/// To the next hole, and down to R.
+void approach(Drilling& hole, const Position& target) {
+    Execution& execution = hole.execution;
+    const bool climbs = execution.dialect.g98_cycle_starts_high
+                        && execution.modal().retract == RetractMode::initial_level;
+    Position over = execution.modal().position;
+    over[hole.first] = target[hole.first];
+    over[hole.second] = target[hole.second];
+    if (climbs && hole.clear) over[hole.normal] = hole.clear;
+    execution.traverse(over);
+    if (over[hole.normal] != hole.r) hole.traverse(hole.r);
+}
+
+/// The same step again, for the holes of L under G91.
+void advance(Position& target, const Position& step) {
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (target[axis] && step[axis]) *target[axis] += *step[axis];
+}
+
+Position step_between(const Position& from, const Position& to) {
+    Position step;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (from[axis] && to[axis]) step[axis] = *to[axis] - *from[axis];
+    return step;
+}
+
+} // namespace
+
+core::Result<void> run_canned_cycle(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const auto normal = static_cast<size_t>(axes_of(modal.plane).normal);
+    FEELER_TRY(Position target, target_of(execution));
+    FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, normal));
+    FEELER_TRY(const int repeats, repeats_of(execution));
+    modal.cycle = cycle;
+    execution.result.is_cycle = true;
+    if (repeats == 0) return {};
+    FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
+
+    // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R.
+    if (modal.position[normal] && *modal.position[normal] < hole.r) hole.traverse(hole.r);
+    const Position step = modal.distance == DistanceMode::incremental
+                              ? step_between(modal.position, target)
+                              : zero_position;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        approach(hole, target);
+        drill(hole);
+        advance(target, step);
+        if (execution.result.commands.size() > most_commands)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("G{}: this block makes more than {} moves",
+                                          cycle.code / 10, most_commands),
+                              {.line = execution.block.line});
+    }
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,119 @@
+#include "gcode/dialect.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace gcode {
+namespace {
+
+// LinuxCNC: interp_internal.hh, CENTER_ARC_RADIUS_TOLERANCE and SPIRAL_RELATIVE_TOLERANCE.
+constexpr ArcTolerance linuxcnc_arc = {.absolute_mm = 2 * 0.01 * std::numbers::sqrt2,
+                                       .absolute_inch = 2 * 0.001 * std::numbers::sqrt2,
+                                       .relative = 0.001,
+                                       .limit = 100.0,
+                                       .warned_mm = 0.0};
+
+// Fanuc leaves the tolerance to a parameter (3410); posts round to a micron.
+constexpr ArcTolerance fanuc_arc = {.absolute_mm = 0.005,
+                                    .absolute_inch = 0.0005,
+                                    .relative = 0.0,
+                                    .limit = 1.0,
+                                    .warned_mm = 0.05};
+
+// Grbl: gcode.c refuses above 0.5 mm, or above 0.005 mm and a thousandth of the radius.
+constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
+                                   .absolute_inch = 0.005 / 25.4,
+                                   .relative = 0.001,
+                                   .limit = 100.0,
+                                   .warned_mm = 0.0};
+
+constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
+                              .name = "linuxcnc",
+                              .supported = true,
+                              .unit = LengthUnit::inch,
+                              .arc = linuxcnc_arc,
+                              .peck_clearance = 0.254,
+                              .dwell_without_point_is_milliseconds = false,
+                              .dwell_takes_x_and_u = false,
+                              .bare_length_offset_is_tool = true,
+                              .cycles_are_motions = true,
+                              .axis_words_serve_one_code = true,
+                              .unused_words_are_errors = true,
+                              .machine_move_is_rapid = false,
+                              .local_offset_is_axis_offset = true,
+                              .p0_is_active_offset = true,
+                              .offset_writes_follow_g91 = false,
+                              .feed_before_units = true,
+                              .g98_cycle_starts_high = true,
+                              .repeats_with_k = false,
+                              .tape_mark_ends_program = true,
+                              .repeated_codes_are_errors = true};
+
+constexpr Dialect fanuc = {.id = DialectId::fanuc,
+                           .name = "fanuc",
+                           .supported = true,
+                           .unit = LengthUnit::mm,
+                           .arc = fanuc_arc,
+                           .peck_clearance = 1.0,
+                           .dwell_without_point_is_milliseconds = true,
+                           .dwell_takes_x_and_u = true,
+                           .bare_length_offset_is_tool = false,
+                           .cycles_are_motions = false,
+                           .axis_words_serve_one_code = false,
+                           .unused_words_are_errors = false,
+                           .machine_move_is_rapid = true,
+                           .local_offset_is_axis_offset = false,
+                           .p0_is_active_offset = false,
+                           .offset_writes_follow_g91 = true,
+                           .feed_before_units = false,
+                           .g98_cycle_starts_high = false,
+                           .repeats_with_k = true,
+                           .tape_mark_ends_program = false,
+                           .repeated_codes_are_errors = false};
+
+constexpr Dialect haas = [] {
+    Dialect entry = fanuc;
+    entry.id = DialectId::haas;
+    entry.name = "haas";
+    entry.repeats_with_k = false;
+    return entry;
+}();
+
+constexpr Dialect grbl = [] {
+    Dialect entry = linuxcnc;
+    entry.id = DialectId::grbl;
+    entry.name = "grbl";
+    entry.unit = LengthUnit::mm;
+    entry.arc = grbl_arc;
+    entry.local_offset_is_axis_offset = false;
+    entry.feed_before_units = false;
+    return entry;
+}();
+
+constexpr Dialect unsupported(DialectId id, std::string_view name) {
+    Dialect entry = fanuc;
+    entry.id = id;
+    entry.name = name;
+    entry.supported = false;
+    return entry;
+}
+
+constexpr std::array dialects = {linuxcnc,
+                                 fanuc,
+                                 haas,
+                                 grbl,
+                                 unsupported(DialectId::siemens, "siemens"),
+                                 unsupported(DialectId::heidenhain, "heidenhain")};
+
+} // namespace
+
+const Dialect& dialect(DialectId id) { return dialects[static_cast<size_t>(id)]; }
+
+std::optional<DialectId> dialect_named(std::string_view name) {
+    for (const Dialect& entry : dialects)
+        if (entry.name == name) return entry.id;
+    return std::nullopt;
+}
+
+} // namespace gcode

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gcode/modal_state.h"
+#include "gcode/source.h"
+
+namespace gcode {
+
+enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain };
+
+/// How far the radius to an arc's end may be from the radius to its start.
+struct ArcTolerance {
+    double absolute_mm;   // always allowed
+    double absolute_inch; // the same in inches, while G20 is active
+    double relative;      // of the radius: allowed up to `limit` times the absolute tolerance
+    double limit;
+    double warned_mm; // beyond the above but not beyond this: a warning; 0 refuses
+};
+
+/// How the controls of one kind differ. Everything the interpreter asks about a dialect is here.
+struct Dialect {
+    DialectId id;
+    std::string_view name;
+    bool supported;
+    LengthUnit unit; // until G20 or G21
+    ArcTolerance arc;
+    double peck_clearance; // mm left between a rapid back into the hole and its bottom
+    bool dwell_without_point_is_milliseconds; // P500 is half a second, P0.5 as well
+    bool dwell_takes_x_and_u;                 // G4 X1.5
+    bool bare_length_offset_is_tool;          // G43 without H means the tool in the spindle
+    bool cycles_are_motions;                  // G80-G89 share a modal group with G0-G3
+    bool axis_words_serve_one_code;           // G0 and G28 in one block are refused
+    bool unused_words_are_errors;             // a K word where nothing uses it
+    bool machine_move_is_rapid;               // G53 needs no G0
+    bool local_offset_is_axis_offset;         // G52 and G92 write the same place
+    bool p0_is_active_offset;                 // G10 L2 P0; else the external offset
+    bool offset_writes_follow_g91;            // G10 L2 under G91 adds
+    bool feed_before_units;                   // F is read in the units of the blocks before
+    bool g98_cycle_starts_high;     // under G98 the way to the hole climbs to the initial level
+    bool repeats_with_k;            // K repeats a canned cycle, as L does
+    bool tape_mark_ends_program;    // a second % is as good as M2
+    bool repeated_codes_are_errors; // the same G code twice in a block
+};
+
+const Dialect& dialect(DialectId id);
+
+/// The dialect of a name such as "fanuc"; empty when there is none of that name.
+std::optional<DialectId> dialect_named(std::string_view name);
+
+struct Recognition {
+    DialectId dialect;
+    std::string reason; // "line 2 is a program number (O1000)"
+};
+
+/// The dialect a program looks like, and what in it says so.
+Recognition recognise(const Program& program);
+
+} // namespace gcode

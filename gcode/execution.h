@@ -1,0 +1,78 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+#include "gcode/interpreter.h"
+#include "gcode/statement.h"
+
+namespace gcode {
+
+/// One block on its way: what it says, the state it changes and what comes of it. The functions
+/// below are the steps of a block; each does what its words ask for, or nothing.
+struct Execution {
+    const Environment& environment;
+    const Dialect& dialect;
+    const Block& block;
+    const Statement& statement;
+    InterpreterState& state;
+    BlockResult& result;
+
+    ModalState& modal() { return state.modal; }
+    const ModalState& modal() const { return state.modal; }
+    void emit(CanonicalCommand command) { result.commands.push_back(std::move(command)); }
+    void warn(core::SourceSpan where, std::string message, Severity severity = Severity::warning) {
+        result.warnings.push_back({severity, where, std::move(message)});
+    }
+
+    /// Emits a rapid or a feed and moves there.
+    void traverse(const Position& end);
+    void feed(const Position& end, double rate);
+};
+
+/// The length a word gives, in mm.
+double length_of(const Execution& execution, const Word& word);
+
+/// Where the axis words lead, axis by axis, in program coordinates.
+///
+/// Errors: unsupported when a rotary axis would turn.
+core::Result<Position> target_of(const Execution& execution);
+
+/// The feed rate along a path in mm/min.
+///
+/// Errors: missing_value without F (in this block under G93), without a turning spindle under G95,
+///         without a known path length under G93; invalid_value for F0.
+core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length);
+
+/// Lets a change of offsets leave the machine where it is: program coordinates move instead.
+void change_offsets(Execution& execution, const Offsets& offsets);
+
+core::Result<void> check_words(Execution& execution); // words nobody uses
+core::Result<void> note_assumed_units(Execution& execution);
+core::Result<void> set_feed_mode(Execution& execution);     // G93 G94 G95
+core::Result<void> set_feed(Execution& execution);          // F
+core::Result<void> set_speed(Execution& execution);         // S
+core::Result<void> select_tool(Execution& execution);       // T
+core::Result<void> change_tool(Execution& execution);       // M6
+core::Result<void> turn_spindle(Execution& execution);      // M3 M4 M5 M19
+core::Result<void> set_coolant(Execution& execution);       // M7 M8 M9
+core::Result<void> dwell(Execution& execution);             // G4
+core::Result<void> select_plane(Execution& execution);      // G17 G18 G19
+core::Result<void> set_units(Execution& execution);         // G20 G21
+core::Result<void> set_tool_length(Execution& execution);   // G43 G43.1 G44 G49
+core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
+core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
+core::Result<void> set_retract_mode(Execution& execution);  // G98 G99
+core::Result<void> act(Execution& execution);               // G10 G28 G30 G52 G92
+core::Result<void> move(Execution& execution);              // G0 to G3, G73 to G89, with G53
+core::Result<void> stop(Execution& execution);              // M0 M1 M2 M30 M60 M99
+
+core::Result<void> write_offset(Execution& execution);     // G10
+core::Result<void> go_home(Execution& execution);          // G28 G30
+core::Result<void> store_home(Execution& execution);       // G28.1 G30.1
+core::Result<void> set_local_offset(Execution& execution); // G52
+core::Result<void> set_axis_offset(Execution& execution);  // G92 to G92.3
+core::Result<void> move_along_arc(Execution& execution);   // G2 G3
+core::Result<void> run_canned_cycle(Execution& execution); // G73, G81 to G89
+
+} // namespace gcode

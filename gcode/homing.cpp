@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include "gcode/execution.h"
+
+namespace gcode {
+namespace {
+
+constexpr char letters[] = {'X', 'Y', 'Z'};
+
+/// Home in machine coordinates; machine zero where nobody said, which is said once.
+Position home_of(Execution& execution, const CodeWord& entry) {
+    Position home =
+        entry.code->tenths == tenths(28) ? execution.modal().home : execution.modal().second_home;
+    const bool known = home[0] && home[1] && home[2];
+    if (!known && !execution.state.said_home) {
+        execution.state.said_home = true;
+        execution.warn(entry.word->span,
+                       fmt::format("{}: where home is was not said, taken as machine zero",
+                                   written(*entry.word)));
+    }
+    for (std::optional<double>& axis : home)
+        if (!axis) axis = 0.0;
+    return home;
+}
+
+} // namespace
+
+core::Result<void> go_home(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    ModalState& modal = execution.modal();
+    execution.result.is_cycle = true;
+    const bool all = !execution.statement.has_axis_word();
+    if (!all) {
+        FEELER_TRY(const Position between, target_of(execution));
+        execution.traverse(between);
+    }
+    const Position home = program_from_machine(modal.offsets, home_of(execution, entry));
+    Position end = modal.position;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (all || execution.statement.word(letters[axis])) end[axis] = home[axis];
+    execution.traverse(end);
+    return {};
+}
+
+core::Result<void> store_home(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    ModalState& modal = execution.modal();
+    Position& home = entry.code->tenths == tenths(28, 1) ? modal.home : modal.second_home;
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 0; axis < 3; ++axis) {
+        if (machine[axis])
+            home[axis] = machine[axis];
+        else
+            execution.warn(entry.word->span,
+                           fmt::format("{}: where the machine is along {} is unknown, so nothing "
+                                       "is stored for it",
+                                       written(*entry.word), letters[axis]));
+    }
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include "gcode/execution.h"
+
+namespace gcode {
+
+using core::ErrorCode;
+
+core::Result<void> set_feed_mode(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::feed_mode);
+    if (!entry) return {};
+    const FeedMode before = execution.modal().feed_mode;
+    FeedMode& mode = execution.modal().feed_mode;
+    switch (entry->code->tenths) {
+    case tenths(93):
+        mode = FeedMode::inverse_time;
+        break;
+    case tenths(95):
+        mode = FeedMode::per_turn;
+        break;
+    default:
+        mode = FeedMode::per_minute;
+        break;
+    }
+    // A rate of one mode means nothing in another.
+    if (mode != before) execution.modal().feed.reset();
+    return {};
+}
+
+core::Result<void> set_feed(Execution& execution) {
+    const Word* word = execution.statement.word('F');
+    if (!word) return {};
+    if (word->value < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a feed rate is not negative", written(*word)),
+                          word->span);
+    ModalState& modal = execution.modal();
+    const CodeWord* units = execution.statement.of(ModalGroup::units);
+    LengthUnit unit = modal.unit;
+    if (units && !execution.dialect.feed_before_units)
+        unit = units->code->tenths == tenths(20) ? LengthUnit::inch : LengthUnit::mm;
+    modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
+    return {};
+}
+
+core::Result<void> set_speed(Execution& execution) {
+    const Word* word = execution.statement.word('S');
+    if (!word) return {};
+    if (word->value < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a spindle speed is not negative", written(*word)),
+                          word->span);
+    ModalState& modal = execution.modal();
+    modal.speed = word->value;
+    if (modal.spindle != core::SpindleDirection::stopped
+        && !execution.statement.of(ModalGroup::spindle))
+        execution.emit(Spindle{modal.spindle, modal.speed});
+    return {};
+}
+
+core::Result<void> turn_spindle(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::spindle);
+    if (!entry) return {};
+    ModalState& modal = execution.modal();
+    switch (entry->code->tenths) {
+    case tenths(3):
+        modal.spindle = core::SpindleDirection::clockwise;
+        break;
+    case tenths(4):
+        modal.spindle = core::SpindleDirection::counterclockwise;
+        break;
+    default:
+        modal.spindle = core::SpindleDirection::stopped;
+        break; // M5, and M19 turns to an angle
+    }
+    const bool stopped = modal.spindle == core::SpindleDirection::stopped;
+    execution.emit(Spindle{modal.spindle, stopped ? 0.0 : modal.speed});
+    return {};
+}
+
+core::Result<void> set_coolant(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::coolant);
+    if (!entry) return {};
+    ModalState& modal = execution.modal();
+    switch (entry->code->tenths) {
+    case tenths(7):
+        modal.mist = true;
+        break;
+    case tenths(8):
+        modal.flood = true;
+        break;
+    default:
+        modal.mist = modal.flood = false;
+        break;
+    }
+    execution.emit(Coolant{modal.mist, modal.flood});
+    return {};
+}
+
+core::Result<void> dwell(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    if (!entry || entry->code->tenths != tenths(4)) return {};
+    const Word* word = execution.statement.word('P');
+    if (!word && execution.dialect.dwell_takes_x_and_u) {
+        word = execution.statement.word('X');
+        if (!word) word = execution.statement.word('U');
+    }
+    if (!word)
+        return core::fail(ErrorCode::missing_value, "G4 has no time: it needs a P word",
+                          entry->word->span);
+    if (word->value < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a time is not negative", written(*word)), word->span);
+    const bool milliseconds =
+        execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
+    execution.emit(Dwell{milliseconds ? word->value / 1000.0 : word->value});
+    return {};
+}
+
+core::Result<void> select_plane(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::plane);
+    if (!entry) return {};
+    Plane& plane = execution.modal().plane;
+    switch (entry->code->tenths) {
+    case tenths(18):
+        plane = Plane::zx;
+        break;
+    case tenths(19):
+        plane = Plane::yz;
+        break;
+    default:
+        plane = Plane::xy;
+        break;
+    }
+    execution.emit(SelectPlane{plane});
+    return {};
+}
+
+core::Result<void> set_units(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::units);
+    if (!entry) return {};
+    const bool inch = entry->code->tenths == tenths(20);
+    execution.modal().unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    execution.modal().unit_said = true;
+    return {};
+}
+
+core::Result<void> set_distance_mode(Execution& execution) {
+    const auto mode_of = [](const CodeWord& entry, int absolute) {
+        return entry.code->tenths == absolute ? DistanceMode::absolute : DistanceMode::incremental;
+    };
+    if (const CodeWord* entry = execution.statement.of(ModalGroup::distance))
+        execution.modal().distance = mode_of(*entry, tenths(90));
+    if (const CodeWord* entry = execution.statement.of(ModalGroup::arc_distance))
+        execution.modal().arc_distance = mode_of(*entry, tenths(90, 1));
+    return {};
+}
+
+core::Result<void> set_retract_mode(Execution& execution) {
+    if (const CodeWord* entry = execution.statement.of(ModalGroup::retract))
+        execution.modal().retract =
+            entry->code->tenths == tenths(98) ? RetractMode::initial_level : RetractMode::r_level;
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,88 @@
+#include "gcode/statement.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect) {
+    const Code* code = find_code(word.letter, word.value, dialect.id);
+    if (!code && word.letter == 'M') {
+        statement.unknown_m_codes.push_back(&word);
+        return {};
+    }
+    if (!code)
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: there is no such code in the dialect {}", written(word), dialect.name),
+            word.span);
+    if (!code->refusal.empty())
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: {}", written(word), code->refusal), word.span);
+    const CodeWord* other = statement.of(code->group);
+    const bool cycle_and_motion =
+        dialect.cycles_are_motions
+        && ((code->group == ModalGroup::cycle && statement.of(ModalGroup::motion))
+            || (code->group == ModalGroup::motion && statement.of(ModalGroup::cycle)));
+    if (!other && cycle_and_motion)
+        other =
+            statement.of(code->group == ModalGroup::cycle ? ModalGroup::motion : ModalGroup::cycle);
+    const bool repeated = other && other->code == code && !dialect.repeated_codes_are_errors;
+    if (other && !repeated && code->group != ModalGroup::other)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{} and {} are of one modal group: a block takes one of them",
+                                      written(*other->word), written(word)),
+                          word.span);
+    if (!repeated) statement.codes.push_back({code, &word});
+    return {};
+}
+
+} // namespace
+
+const CodeWord* Statement::of(ModalGroup group) const {
+    for (const CodeWord& entry : codes)
+        if (entry.code->group == group) return &entry;
+    return nullptr;
+}
+
+const CodeWord* Statement::taker_of_axis_words() const {
+    for (const CodeWord& entry : codes) {
+        const Code& code = *entry.code;
+        const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle
+                           || (code.letter == 'G' && code.tenths == tenths(53));
+        const bool dwells = code.letter == 'G' && code.tenths == tenths(4) && !word('P');
+        if ((!moves && code.uses_axes()) || dwells) return &entry;
+    }
+    return nullptr;
+}
+
+core::Result<Statement> statement_from_block(const Block& block, const Dialect& dialect) {
+    Statement statement;
+    for (const Word& word : block.words) {
+        if (word.letter != 'G' && word.letter != 'M') {
+            statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
+            continue;
+        }
+        if (auto added = add_code(statement, word, dialect); !added)
+            return tl::unexpected(std::move(added).error());
+    }
+    return statement;
+}
+
+std::string written(const Word& word) { return fmt::format("{}{:.12g}", word.letter, word.value); }
+
+core::Result<int> whole_number(const Word& word, int lowest, int highest) {
+    const double rounded = std::round(word.value);
+    if (std::abs(word.value - rounded) > 1e-4 || !(rounded >= lowest && rounded <= highest))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: {} takes a whole number from {} to {}", written(word),
+                                      word.letter, lowest, highest),
+                          word.span);
+    return static_cast<int>(rounded);
+}
+
+} // namespace gcode

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "gcode/interpreter.h"
+
+namespace gcode {
+
+/// A command on one line without a line end, as `straight_feed x=10 y=0 z=-1 feed=200`. Numbers to
+/// a millionth; coordinates that nobody knows are left out.
+std::string to_text(const CanonicalCommand& command);
+
+/// The commands of a program, one a line behind the line they come from, then the warnings of each
+/// block, and the error that stopped it: what golden files hold.
+std::string to_text(const Run& run);
+
+} // namespace gcode

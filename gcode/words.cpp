@@ -1,0 +1,83 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/execution.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr std::string_view letters_that_need_a_code = "DHIJKLPQR";
+constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
+
+/// The code of the motion or cycle that a block without one goes on with.
+const Code* going_on(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);
+    if (modal.motion) return find_code('G', static_cast<int>(*modal.motion), execution.dialect.id);
+    return nullptr;
+}
+
+bool is_used(const Execution& execution, char letter) {
+    const Statement& statement = execution.statement;
+    if (!statement.unknown_m_codes.empty()) return true;
+    const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
+    if (std::any_of(statement.codes.begin(), statement.codes.end(), uses)) return true;
+    if (statement.of(ModalGroup::motion) || statement.of(ModalGroup::cycle)) return false;
+    const Code* modal = going_on(execution);
+    return modal && modal->uses(letter);
+}
+
+core::Result<void> check_word(Execution& execution, const Word& word) {
+    if (is_used(execution, word.letter)) return {};
+    const std::string message = fmt::format("{}: nothing in this block uses it", written(word));
+    if (execution.dialect.unused_words_are_errors)
+        return core::fail(ErrorCode::syntax, message, word.span);
+    execution.warn(word.span, message);
+    return {};
+}
+
+} // namespace
+
+double length_of(const Execution& execution, const Word& word) {
+    return to_mm(word.value, execution.modal().unit);
+}
+
+core::Result<void> check_words(Execution& execution) {
+    for (const Word* word : execution.statement.unknown_m_codes)
+        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
+                                               "builder; it is passed over",
+                                               written(*word)));
+    for (const char letter : letters_that_need_a_code)
+        if (const Word* word = execution.statement.word(letter))
+            if (auto checked = check_word(execution, *word); !checked) return checked;
+    for (const char letter : {'U', 'V', 'W'})
+        if (const Word* word = execution.statement.word(letter);
+            word && !is_used(execution, letter))
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("{}: the axes U, V and W are not supported yet", written(*word)),
+                word->span);
+    return {};
+}
+
+core::Result<void> note_assumed_units(Execution& execution) {
+    if (execution.modal().unit_said || execution.state.said_unit
+        || execution.statement.of(ModalGroup::units))
+        return {};
+    for (const Word& word : execution.block.words) {
+        if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;
+        const bool inch = execution.modal().unit == LengthUnit::inch;
+        execution.state.said_unit = true;
+        execution.warn(word.span,
+                       fmt::format("units not said (G20 or G21) before {}, taken as {}",
+                                   written(word), inch ? "inches" : "millimetres"),
+                       Severity::note);
+        return {};
+    }
+    return {};
+}
+
+} // namespace gcode
