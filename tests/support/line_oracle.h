@@ -13,7 +13,7 @@ namespace test_support {
 /// 2^-30.
 inline core::IntervalList line_oracle(const core::Mesh& mesh, int axis, double u, double v) {
     using Quad = __float128;
-    const Quad p_u = Quad(u) + Quad(0x1p-30), p_v = Quad(v) + Quad(0x1p-50);
+    const Quad p_u = Quad(u) + Quad(0x1p-30), p_v = Quad(v) + Quad(0x1p-70);
     const int at_u = (axis + 1) % 3, at_v = (axis + 2) % 3;
     std::vector<std::pair<double, int>> crossings;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {

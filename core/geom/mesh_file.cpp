@@ -1,0 +1,113 @@
+#include "core/geom/mesh_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/geom/mesh_bytes.h"
+#include "core/geom/mesh_check.h"
+#include "core/geom/mesh_text.h"
+#include "core/geom/polygon_soup.h"
+
+namespace core {
+namespace {
+
+constexpr uintmax_t largest_file = uintmax_t{2} << 30U; // bytes
+
+Result<std::string> read_bytes(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) return fail(ErrorCode::io, "there is no such file");
+    if (std::filesystem::is_directory(status)) return fail(ErrorCode::io, "this is a folder");
+    if (!std::filesystem::is_regular_file(status)) return fail(ErrorCode::io, "this is no file");
+    const uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) return fail(ErrorCode::io, error.message());
+    if (size == 0) return fail(ErrorCode::syntax, "the file is empty");
+    if (size > largest_file)
+        return fail(ErrorCode::unsupported,
+                    fmt::format("the file has {} bytes; meshes up to 2 GiB are read", size));
+    std::string bytes(size, '\0');
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+        return fail(ErrorCode::io, "the file cannot be read");
+    return bytes;
+}
+
+bool is_text_stl(std::string_view bytes) {
+    if (has_length_of_binary_stl(bytes)) return false; // some of them begin with "solid", too
+    const size_t first = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    const bool text = bytes.find('\0') == std::string_view::npos;
+    return text && bytes.substr(first, 5) == "solid";
+}
+
+Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view bytes) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".stl")
+        return is_text_stl(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
+    if (extension == ".obj") return MeshFormat::obj;
+    if (extension == ".off") return MeshFormat::off;
+    if (extension == ".ply") return MeshFormat::ply;
+    return fail(ErrorCode::unsupported,
+                fmt::format("'{}' is no mesh format that is read (stl, obj, ply, off)", extension));
+}
+
+/// The soup, known to hold all that the file states.
+Result<PolygonSoup> complete_soup(const std::string& bytes, MeshFormat format,
+                                  const MeshBytes& stated) {
+    FEELER_TRY(PolygonSoup soup, read_soup(bytes, format));
+    const size_t expected = stated.faces - stated.degenerate_faces;
+    if (soup.faces.size() != expected)
+        return fail(ErrorCode::unsupported, fmt::format("only {} of its {} faces could be read",
+                                                        soup.faces.size(), expected));
+    const bool is_stl = format == MeshFormat::stl_ascii || format == MeshFormat::stl_binary;
+    if (!is_stl && soup.vertices.size() != stated.vertices)
+        return fail(ErrorCode::unsupported, fmt::format("only {} of its {} vertices could be read",
+                                                        soup.vertices.size(), stated.vertices));
+    return soup;
+}
+
+Result<PolygonSoup> checked_soup(std::string bytes, MeshFormat format,
+                                 std::vector<std::string>& repairs) {
+    MeshBytes stated;
+    if (format == MeshFormat::stl_binary) {
+        FEELER_TRY(stated, checked_binary_stl(bytes));
+    } else if (format == MeshFormat::ply) {
+        FEELER_TRY(stated, checked_ply(bytes));
+    } else {
+        FEELER_TRY(MeshText plain, format == MeshFormat::obj   ? checked_obj(bytes)
+                                   : format == MeshFormat::off ? checked_off(bytes)
+                                                               : checked_ascii_stl(bytes));
+        stated = {plain.vertices, plain.faces, plain.degenerate_faces};
+        bytes = std::move(plain.text);
+    }
+    if (stated.degenerate_faces > 0)
+        repairs.push_back(fmt::format("{} triangles that name a corner twice were left out",
+                                      stated.degenerate_faces));
+    return complete_soup(bytes, format, stated);
+}
+
+Result<MeshFile> read_solid(const std::filesystem::path& path) {
+    FEELER_TRY(std::string bytes, read_bytes(path));
+    FEELER_TRY(const MeshFormat format, format_of(path, bytes));
+    MeshFile file;
+    FEELER_TRY(PolygonSoup soup, checked_soup(std::move(bytes), format, file.repairs));
+    FEELER_TRY(Mesh triangles, triangulated(std::move(soup)));
+    FEELER_TRY(file.mesh, checked_solid(std::move(triangles), file.repairs));
+    return file;
+}
+
+} // namespace
+
+Result<MeshFile> read_mesh(const std::filesystem::path& path) {
+    return read_solid(path).map_error([&](Error error) {
+        error.message = fmt::format("{}: {}", path.string(), error.message);
+        error.file = path.string();
+        return error;
+    });
+}
+
+} // namespace core
