@@ -115,6 +115,20 @@ std::optional<std::string> TableReader::word(const char* key,
     return std::nullopt;
 }
 
+std::optional<std::vector<std::string>> TableReader::strings(const char* key, size_t length) {
+    const toml::node* at = node(key);
+    if (!at) return std::nullopt;
+    std::vector<std::string> values;
+    if (const toml::array* array = at->as_array())
+        for (const toml::node& item : *array)
+            if (const auto value = item.value<std::string>()) values.push_back(*value);
+    if (values.size() != length || at->as_array()->size() != length) {
+        refuse(key, fmt::format("must be a list of {} texts in quotes", length));
+        return std::nullopt;
+    }
+    return values;
+}
+
 std::optional<std::vector<double>> TableReader::numbers(const char* key, size_t length) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;

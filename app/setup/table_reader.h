@@ -25,6 +25,7 @@ class TableReader {
         : table_(table), name_(std::move(name)), error_(error) {}
 
     bool has(const char* key) const { return table_.contains(key); }
+    bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
 
     std::optional<double> number(const char* key);
     double number_or(const char* key, double otherwise) { return number(key).value_or(otherwise); }
@@ -34,6 +35,9 @@ class TableReader {
 
     /// One of a few words.
     std::optional<std::string> word(const char* key, std::initializer_list<const char*> words);
+
+    /// A list of texts of a fixed length.
+    std::optional<std::vector<std::string>> strings(const char* key, size_t length);
 
     /// A list of numbers, of a fixed length unless `length` is 0.
     std::optional<std::vector<double>> numbers(const char* key, size_t length);

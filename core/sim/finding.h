@@ -19,6 +19,8 @@ struct Finding {
     std::optional<BlockIndex> block; // empty: the program as a whole
     std::string message; // one or two sentences as a machinist would say them
     std::string cure;    // what would make it go away; may be empty
+    std::string subject{}; // the pair it is about, `holder / clamp-1`, so that findings can be grouped
+    double shortfall = 0.0; // how much is missing of what must be kept, mm
 };
 
 /// What the set-up says about rules by name, in place of their own severity.

@@ -94,6 +94,9 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion mo
     finding.severity = severity_of(setup, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
+    finding.subject = fmt::format("{} / {}", name_of(pair.pair.part), body);
+    finding.shortfall = pair.allowance.distance
+                        - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
     if (!finding.cure.empty())
         finding.cure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
     return finding;

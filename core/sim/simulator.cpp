@@ -32,7 +32,7 @@ struct BlockRun {
         const Severity severity = severity_of(setup, rule);
         if (severity == Severity::off) return;
         result.findings.push_back(
-            {rule, severity, block.block, std::move(message), std::move(cure)});
+            {rule, severity, block.block, std::move(message), std::move(cure), {}, 0.0});
     }
 
     void add(Finding finding) {
