@@ -126,15 +126,15 @@ TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
 
 TEST(ClosestPair, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
     std::mt19937 rng(11);
-    for (int i = 0; i < 60; ++i) {
-        // Two plates turned alike: every column is equally near, but for the rounding of its
-        // points.
+    for (int i = 0; i < 400; ++i) {
+        // Two blocks turned alike: every column is equally near, but for the rounding of its
+        // points. Spheres of a column touch its end points, so their gaps are off by the last bits
+        // too.
         const Transform turned = random_pose(rng, 40.0);
-        std::vector<Vec3> a = lattice(9, 9, 2), b = a;
+        std::vector<Vec3> a = lattice(5, 5, 8), b = a;
         for (Vec3& p : a) p = turned * p;
-        for (Vec3& p : b) p = turned * (p + Vec3(0.0, 0.0, 1.0 + i % 7));
+        for (Vec3& p : b) p = turned * (p + Vec3(0.0, 0.0, 8.0 + i % 7));
         expect_least(a, b, {});
-        expect_least(lattice(9, 9, 2), b, turned.inverse());
     }
 }
 
