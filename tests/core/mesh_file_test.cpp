@@ -10,10 +10,13 @@
 #include "core/geom/mesh_check.h"
 #include "core/geom/mesh_file.h"
 #include "tests/support/meshes.h"
+#include "tests/support/stl_writer.h"
 
 namespace core {
 namespace {
 
+using test_support::ascii_stl;
+using test_support::binary_stl;
 using test_support::box_mesh;
 using test_support::together;
 using test_support::torus_mesh;
@@ -46,35 +49,6 @@ std::string error_of(const std::string& name, const std::string& bytes) {
     EXPECT_THAT(result.error().message, HasSubstr(name)); // every error names its file
     EXPECT_FALSE(result.error().file.empty());
     return result.error().message;
-}
-
-std::string binary_stl(const Mesh& mesh, const std::string& header = "made by a test") {
-    std::string bytes = header;
-    bytes.resize(80, ' ');
-    const auto put = [&](const auto& value) {
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    put(static_cast<uint32_t>(mesh.triangles.size()));
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const Triangle t = mesh.triangle(i);
-        for (const Vec3& p : {Vec3(0.0), t.a, t.b, t.c})
-            for (int k = 0; k < 3; ++k) put(static_cast<float>(p[k]));
-        put(uint16_t{0});
-    }
-    return bytes;
-}
-
-std::string ascii_stl(const Mesh& mesh, const std::string& name = "test") {
-    std::string text = std::string("solid ").append(name).append("\n");
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        text += "facet normal 0 0 nan\n outer loop\n";
-        const Triangle t = mesh.triangle(i);
-        for (const Vec3& p : {t.a, t.b, t.c})
-            text += "  vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " "
-                    + std::to_string(p.z) + "\r\n";
-        text += " endloop\nendfacet\n";
-    }
-    return text + "endsolid " + name + "\n";
 }
 
 std::string with(std::string text, const std::string& what, const std::string& instead) {
