@@ -33,7 +33,7 @@ struct Block {
     std::vector<Word> words{};
     std::vector<Comment> comments{};
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
-    bool tape_mark = false;          // a line that begins with %
+    bool tape_mark = false;            // a line that begins with %
 };
 
 } // namespace gcode
