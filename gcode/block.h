@@ -13,7 +13,7 @@ namespace gcode {
 struct Word {
     char letter = '\0'; // upper case
     double value = 0.0;
-    core::SourceSpan span;
+    core::SourceSpan span{};
     bool has_point = false; // X5. rather than X5
 
     bool operator==(const Word& other) const {

@@ -96,6 +96,11 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
             where);
     std::optional<double> clear = cycle.initial_level;
     if (modal.retract == RetractMode::r_level || (clear && *clear < r)) clear = r;
+    if (modal.feed_mode == FeedMode::inverse_time)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
+            where);
     FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
     return Drilling{execution,
                     cycle,
