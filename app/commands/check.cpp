@@ -25,7 +25,8 @@ std::string report(const Options& options, const CheckRun& run) {
 
 ExitCode check(const Options& options) {
     if (options.setup.empty()) {
-        print_error({core::ErrorCode::missing_value, {},
+        print_error({core::ErrorCode::missing_value,
+                     {},
                      "check needs to know what stands in the machine: --setup FILE.toml (a set-up "
                      "is not inferred from the program yet; assets/setups holds examples)"});
         return ExitCode::failed;
@@ -38,7 +39,8 @@ ExitCode check(const Options& options) {
         return ExitCode::failed;
     }
     if (run->stopped) print_error(*run->stopped);
-    // A run that did not come to its end goes to standard output: a file would look like a whole one.
+    // A run that did not come to its end goes to standard output: a file would look like a whole
+    // one.
     const auto written = write_output(run->stopped ? "" : options.output, report(options, *run));
     if (!written) {
         print_error(written.error());
@@ -55,8 +57,9 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("--setup", options->setup, "Set-up file (TOML)");
-    command.add_option("--allowance", options->allowance,
-                       "Clearance to keep from fixtures, and of the holder from the stock, mm")
+    command
+        .add_option("--allowance", options->allowance,
+                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(CLI::PositiveNumber);

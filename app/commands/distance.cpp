@@ -5,8 +5,8 @@
 #include "app/commands/body_argument.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
-#include "app/session/body_pair.h"
 #include "app/report/distance_report.h"
+#include "app/session/body_pair.h"
 
 namespace app {
 namespace {
@@ -46,8 +46,7 @@ ExitCode distance(const Options& options) {
     return ExitCode::failed;
 }
 
-void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
-                const char* help) {
+void add_vector(CLI::App& command, const char* name, std::vector<double>& value, const char* help) {
     command.add_option(name, value, help)
         ->delimiter(',')
         ->expected(3)

@@ -1,3 +1,5 @@
+#include "gcode/trace.h"
+
 #include <memory>
 
 #include <fmt/format.h>
@@ -7,7 +9,6 @@
 #include "app/commands/output.h"
 #include "app/report/text_report.h"
 #include "app/setup/setup_file.h"
-#include "gcode/trace.h"
 
 namespace app {
 namespace {
@@ -29,17 +30,23 @@ Json end_json(const gcode::Position& end) {
 
 const char* plane_name(gcode::Plane plane) {
     switch (plane) {
-    case gcode::Plane::xy: return "XY";
-    case gcode::Plane::zx: return "ZX";
-    default: return "YZ";
+    case gcode::Plane::xy:
+        return "XY";
+    case gcode::Plane::zx:
+        return "ZX";
+    default:
+        return "YZ";
     }
 }
 
 const char* direction_name(core::SpindleDirection direction) {
     switch (direction) {
-    case core::SpindleDirection::stopped: return "stopped";
-    case core::SpindleDirection::clockwise: return "clockwise";
-    default: return "counterclockwise";
+    case core::SpindleDirection::stopped:
+        return "stopped";
+    case core::SpindleDirection::clockwise:
+        return "clockwise";
+    default:
+        return "counterclockwise";
     }
 }
 
@@ -142,8 +149,8 @@ ExitCode trace(const Options& options) {
     const gcode::Run run = gcode::run(*program, *environment);
     print_warnings(options.program, run);
     const bool json = options.format == "jsonl";
-    const auto written = write_output(run.error ? "" : options.output,
-                                      json ? json_lines(run) : gcode::to_text(run));
+    const auto written =
+        write_output(run.error ? "" : options.output, json ? json_lines(run) : gcode::to_text(run));
     if (!written) return failed(written.error(), options.output);
     return run.error ? failed(*run.error, options.program) : ExitCode::clear;
 }
@@ -154,7 +161,8 @@ void add_trace(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("trace", "Print the canonical commands of a program");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup, "Set-up file (TOML): offsets, tool lengths, start");
+    command.add_option("--setup", options->setup,
+                       "Set-up file (TOML): offsets, tool lengths, start");
     command.add_option("--dialect", options->dialect, "linuxcnc, fanuc, haas or grbl")
         ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
     command.add_option("--format", options->format, "text or jsonl")

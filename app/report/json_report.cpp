@@ -28,8 +28,8 @@ void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, 
     json["pair"] = names_of(run, pair);
     const bool found = pair.found();
     json["at"] = found ? Json(duration > 0.0 ? pair.time / duration : 0.0) : Json(nullptr);
-    json["witness"]
-        = found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
+    json["witness"] =
+        found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
 }
 
 /// A motion of which no pair came within the limit, or of which nothing can be said.

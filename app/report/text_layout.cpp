@@ -47,8 +47,8 @@ std::string line_ranges(std::vector<uint32_t> lines) {
         size_t last = i;
         while (last + 1 < lines.size() && lines[last + 1] == lines[last] + 1) ++last;
         if (!text.empty()) text += ", ";
-        text += last == i ? fmt::format("{}", lines[i])
-                          : fmt::format("{}-{}", lines[i], lines[last]);
+        text +=
+            last == i ? fmt::format("{}", lines[i]) : fmt::format("{}-{}", lines[i], lines[last]);
         i = last + 1;
     }
     return text;
@@ -66,10 +66,14 @@ std::string duration_text(double seconds) {
 
 std::string verdict_text(core::Verdict verdict) {
     switch (verdict) {
-    case core::Verdict::clear: return "CLEAR";
-    case core::Verdict::undecided: return "UNDECIDED, not proven clear";
-    case core::Verdict::violation: return "VIOLATION, an allowance is not kept";
-    default: return "COLLISION";
+    case core::Verdict::clear:
+        return "CLEAR";
+    case core::Verdict::undecided:
+        return "UNDECIDED, not proven clear";
+    case core::Verdict::violation:
+        return "VIOLATION, an allowance is not kept";
+    default:
+        return "COLLISION";
     }
 }
 

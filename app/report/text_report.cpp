@@ -55,7 +55,8 @@ std::string findings_text(const CheckRun& run) {
 
 std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
     if (!result.checked) return fmt::format("{:>17}", "not known");
-    if (!result.deciding) return fmt::format("{:>17}", fmt::format("> {:.0f}", run.setup.search_limit));
+    if (!result.deciding)
+        return fmt::format("{:>17}", fmt::format("> {:.0f}", run.setup.search_limit));
     const core::PairClearance& pair = result.pairs[*result.deciding];
     if (!pair.found()) return fmt::format("{:>17}", fmt::format(">= {:.3f}", pair.lower));
     if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>17.3f}", pair.upper);
@@ -105,23 +106,25 @@ std::string summary_text(const CheckRun& run) {
     size_t moving = 0;
     for (const CheckedBlock& block : run.blocks)
         moving += block.result.motion != core::BlockMotion::none;
-    std::string text = fmt::format(
-        "{}: {}\n", trimmed(run.program_file),
-        run.stopped ? "STOPPED, not checked to its end" : verdict_text(run.verdict));
+    std::string text =
+        fmt::format("{}: {}\n", trimmed(run.program_file),
+                    run.stopped ? "STOPPED, not checked to its end" : verdict_text(run.verdict));
     text += fmt::format("  findings   {}\n", counts_text(run));
     text += fmt::format("  blocks     {}, {} of them move; dialect {}\n", run.blocks.size(), moving,
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = nearest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-        text += fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n", block->line,
-                            core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
-                            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+        text +=
+            fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n", block->line,
+                        core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
+                        trimmed(clearance_text(run, block->result)), pair.allowance.distance);
     }
     text += fmt::format("  removed    {:.1f} mm3 in {} of machine time\n", run.removed,
                         duration_text(run.duration));
-    text += fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
-                        run.setup.mesh_size, run.lines, run.points,
-                        run.times.read + run.times.model + run.times.check);
+    text +=
+        fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
+                    run.setup.mesh_size, run.lines, run.points,
+                    run.times.read + run.times.model + run.times.check);
     text += "  assuming\n";
     for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);
     return text;

@@ -49,8 +49,8 @@ void search_points(const core::SphereTree& a, const core::SphereTree& b,
     found.distance = core::infinity;
     for (size_t i = 0; i <= steps; ++i) {
         const double share = steps ? static_cast<double>(i) / static_cast<double>(steps) : 0.0;
-        const core::ClosestPair pair
-            = core::closest_pair(a, b, core::translation(share * sweep) * a_from_b);
+        const core::ClosestPair pair =
+            core::closest_pair(a, b, core::translation(share * sweep) * a_from_b);
         found.distance = std::min(found.distance, pair.distance);
         found.sphere_tests += pair.sphere_tests;
         found.point_tests += pair.point_tests;
@@ -79,9 +79,8 @@ core::Result<BodyPairDistance> measure(const MeasuredBody& a, const MeasuredBody
     search_points(tree_a, tree_b, a_from_b, sweep, mesh_size, found);
     const core::ExactBody exact_a = exact(a), exact_b = exact(b);
     const core::Separation bounds = core::separation(exact_a, exact_b, a_from_b, sweep);
-    const double slack
-        = rounding(core::bounds(exact_a)) + rounding(core::bounds(exact_b))
-          + 1e-12 * (glm::length(a_from_b.translation) + glm::length(sweep));
+    const double slack = rounding(core::bounds(exact_a)) + rounding(core::bounds(exact_b))
+                         + 1e-12 * (glm::length(a_from_b.translation) + glm::length(sweep));
     found.lower = std::max(0.0, bounds.lower - slack);
     found.upper = bounds.upper > 0.0 ? bounds.upper + slack : 0.0;
     found.on_a = bounds.point_a;

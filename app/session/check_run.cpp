@@ -31,8 +31,8 @@ core::Result<gcode::DialectId> choose_dialect(const CheckJob& job, const SetupFi
     } else {
         const gcode::Recognition seen = gcode::recognise(program);
         chosen = seen.dialect;
-        run.assumptions.push_back(fmt::format("dialect {}, because {}",
-                                              gcode::dialect(chosen).name, seen.reason));
+        run.assumptions.push_back(
+            fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
     }
     if (gcode::dialect(chosen).supported) return chosen;
     return core::fail(core::ErrorCode::unsupported,
@@ -42,18 +42,17 @@ core::Result<gcode::DialectId> choose_dialect(const CheckJob& job, const SetupFi
 
 /// What every check of this version takes for granted.
 void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
-    run.assumptions.push_back(fmt::format(
-        "arcs are cut and checked as chords within {:.4f} mm of them",
-        core::chord_error(setup.mesh_size)));
+    run.assumptions.push_back(
+        fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
+                    core::chord_error(setup.mesh_size)));
     run.assumptions.push_back("feeds and rapids run at full speed: accelerations are not counted");
     run.assumptions.push_back(fmt::format(
         "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
     if (setup.stock.tolerance == 0.0)
         run.assumptions.push_back("the raw stock is exactly as large as the set-up says");
-    run.assumptions.push_back(
-        setup.machine.rapid == core::RapidStyle::straight
-            ? "rapids run straight"
-            : "rapids run as dog-legs, each axis at its own speed");
+    run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
+                                  ? "rapids run straight"
+                                  : "rapids run as dog-legs, each axis at its own speed");
 }
 
 void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
@@ -77,8 +76,8 @@ bool calls_tools(const gcode::Program& program, const gcode::Environment& enviro
 core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     core::Finding finding;
     finding.rule = "program";
-    finding.severity = warning.severity == gcode::Severity::note ? core::Severity::note
-                                                                 : core::Severity::warning;
+    finding.severity =
+        warning.severity == gcode::Severity::note ? core::Severity::note : core::Severity::warning;
     if (const auto set = setup.rules.find("program"); set != setup.rules.end())
         finding.severity = set->second;
     finding.message = warning.message;

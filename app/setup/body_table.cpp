@@ -132,9 +132,8 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
 
 /// A cylinder along one of its body's axes, standing on the body's origin.
 core::ConvexShape standing(const CylinderKey& cylinder) {
-    const core::ConvexShape upright
-        = core::convex(core::ProfileElement{0.0, cylinder.radius, cylinder.height,
-                                            cylinder.radius, 0.0});
+    const core::ConvexShape upright = core::convex(
+        core::ProfileElement{0.0, cylinder.radius, cylinder.height, cylinder.radius, 0.0});
     if (cylinder.axis == 2) return upright;
     const core::Vec3 turn = cylinder.axis == 0 ? core::Vec3(0, 90, 0) : core::Vec3(-90, 0, 0);
     return core::posed(upright, {core::rotation_xyz_deg(turn), core::Vec3(0.0)});
@@ -163,7 +162,8 @@ void read_fixture(TableReader& table, BodyContext& context) {
     core::Fixture fixture;
     fixture.name = table.string("name").value_or("");
     if (fixture.name.empty()) return table.need("name");
-    for (const char* reserved : {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
+    for (const char* reserved :
+         {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
         if (fixture.name == reserved) table.refuse("name", "is a word with a meaning of its own");
     for (const core::Fixture& other : setup.fixtures)
         if (other.name == fixture.name)
@@ -173,13 +173,12 @@ void read_fixture(TableReader& table, BodyContext& context) {
     const auto shape = only_shape(table);
     if (!shape) return;
     if (*shape == "model") return table.refuse("model", "is for a stock only");
-    const core::Transform stock_from_body
-        = core::translation(-setup.stock_origin) * placement.machine_from_body();
+    const core::Transform stock_from_body =
+        core::translation(-setup.stock_origin) * placement.machine_from_body();
     if (*shape == "cylinder")
         fixture.body = core::posed(standing(read_cylinder(table)), stock_from_body);
     else
-        fixture.body
-            = core::solid_mesh(read_polyhedron(table, context, *shape, stock_from_body));
+        fixture.body = core::solid_mesh(read_polyhedron(table, context, *shape, stock_from_body));
     context.frames.machine_from[fixture.name] = placement.machine_from_body();
     table.finish();
     setup.fixtures.push_back(std::move(fixture));

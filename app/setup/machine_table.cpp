@@ -52,8 +52,7 @@ void read_machine(TableReader& table, core::Machine& machine) {
         table.refuse("body", "is not supported by this version: bodies of the machine itself are "
                              "not checked yet; what stands on the table can be a [[fixture]]");
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
-        machine.rapid
-            = *rapid == "dogleg" ? core::RapidStyle::dogleg : core::RapidStyle::straight;
+        machine.rapid = *rapid == "dogleg" ? core::RapidStyle::dogleg : core::RapidStyle::straight;
     check_directions(table, machine);
     table.finish();
 }

@@ -11,8 +11,8 @@ namespace app {
 namespace {
 
 constexpr const char* axis_keys[] = {"X", "Y", "Z"};
-constexpr const char* offset_names[]
-    = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
+constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
+                                        "G59", "G59.1", "G59.2", "G59.3"};
 
 core::Result<toml::table> parse(const std::string& path) {
     std::error_code failure;
@@ -33,8 +33,8 @@ core::Result<toml::table> parse(const std::string& path) {
 }
 
 void read_program(TableReader& table, SetupFile& file) {
-    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
-                                                 "heidenhain"}))
+    if (const auto name =
+            table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}))
         file.dialect = gcode::dialect_named(*name);
     file.environment.block_delete = table.boolean("block_delete").value_or(false);
     if (auto start = table.table("start", "[program] start")) {
@@ -56,8 +56,8 @@ void read_offsets(TableReader& table, SetupFile& file) {
     table.finish();
 }
 
-/// One `[[allowance]]`; without `between` it is the general one, as `allowance = MM`. (TOML does not
-/// let a number and a list share a name.)
+/// One `[[allowance]]`; without `between` it is the general one, as `allowance = MM`. (TOML does
+/// not let a number and a list share a name.)
 void read_allowance(TableReader& table, core::Setup& setup) {
     core::AllowanceRule rule;
     const auto distance = table.number("distance");
@@ -82,8 +82,7 @@ void read_allowances(TableReader& root, core::Setup& setup) {
         return;
     }
     setup.allowance = root.number("allowance");
-    if (setup.allowance && *setup.allowance < 0.0)
-        root.refuse("allowance", "must not be negative");
+    if (setup.allowance && *setup.allowance < 0.0) root.refuse("allowance", "must not be negative");
 }
 
 /// A name that no body has would make a rule that never counts.
@@ -91,8 +90,8 @@ void check_allowance_names(TableReader& table, const core::Setup& setup) {
     for (const core::AllowanceRule& rule : setup.allowances) {
         for (const std::string& name : rule.between) {
             bool known = false;
-            for (const char* word : {"flutes", "shank", "holder", "nose", "stock", "fixture",
-                                     "machine"})
+            for (const char* word :
+                 {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
                 known = known || name == word;
             for (const core::Fixture& fixture : setup.fixtures)
                 known = known || name == fixture.name;
@@ -151,8 +150,8 @@ void place_offsets(BodyContext& context) {
     context.frames.machine_from["machine"] = {};
     for (size_t i = 0; i < std::size(offset_names); ++i) {
         const core::Vec3 origin = context.file.environment.work_offsets[i];
-        context.frames.machine_from[offset_names[i]]
-            = core::translation(context.file.setup.machine.place(origin));
+        context.frames.machine_from[offset_names[i]] =
+            core::translation(context.file.setup.machine.place(origin));
     }
 }
 
@@ -182,8 +181,7 @@ void read_root(TableReader& root, BodyContext& context, std::optional<core::Erro
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
     if (auto table = root.table("program", "[program]")) read_program(*table, file);
-    if (auto table = root.table("machine", "[machine]"))
-        read_machine_table(*table, context, error);
+    if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     place_offsets(context);
     for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, file);

@@ -19,7 +19,7 @@ namespace app {
 /// The first mistake is kept, with its place, and every later reading gives nothing; so a caller
 /// reads what it needs and looks at the error once, at the end.
 class TableReader {
-  public:
+public:
     /// `name` is how messages call the table: `[stock]`. `error` outlives the reader.
     TableReader(const toml::table& table, std::string name, std::optional<core::Error>& error)
         : table_(table), name_(std::move(name)), error_(error) {}
@@ -66,7 +66,7 @@ class TableReader {
 
     const std::string& name() const { return name_; }
 
-  private:
+private:
     const toml::node* node(const char* key);
     void refuse_at(const toml::source_region& where, const std::string& why);
 

@@ -8,11 +8,11 @@ namespace {
 using core::ToolShape;
 
 std::optional<ToolShape> shape_named(const std::string& name) {
-    static const std::map<std::string, ToolShape> shapes
-        = {{"flat", ToolShape::flat},   {"ball", ToolShape::ball},
-           {"bull", ToolShape::bull},   {"drill", ToolShape::drill},
-           {"taper", ToolShape::taper}, {"chamfer", ToolShape::chamfer},
-           {"profile", ToolShape::profile}};
+    static const std::map<std::string, ToolShape> shapes = {
+        {"flat", ToolShape::flat},      {"ball", ToolShape::ball},
+        {"bull", ToolShape::bull},      {"drill", ToolShape::drill},
+        {"taper", ToolShape::taper},    {"chamfer", ToolShape::chamfer},
+        {"profile", ToolShape::profile}};
     const auto found = shapes.find(name);
     if (found == shapes.end()) return std::nullopt;
     return found->second;
@@ -26,9 +26,9 @@ std::vector<core::ConeStep> cones(TableReader& table, const char* key) {
 }
 
 void read_shape(TableReader& table, core::ToolDescription& tool) {
-    const auto shape = table.word("shape", {"flat", "ball", "bull", "drill", "taper", "chamfer",
-                                            "profile", "tslot", "dovetail", "lollipop",
-                                            "threadmill"});
+    const auto shape =
+        table.word("shape", {"flat", "ball", "bull", "drill", "taper", "chamfer", "profile",
+                             "tslot", "dovetail", "lollipop", "threadmill"});
     if (!shape) return table.need("shape");
     const auto known = shape_named(*shape);
     if (!known)
@@ -69,9 +69,8 @@ void read_tool(TableReader& table, SetupFile& file) {
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
     if (tool.holder.empty())
-        file.assumptions.push_back(
-            fmt::format("tool {} has no holder in the set-up: only what is described is checked",
-                        *number));
+        file.assumptions.push_back(fmt::format(
+            "tool {} has no holder in the set-up: only what is described is checked", *number));
     if (!tool.cuts_at_centre)
         file.assumptions.push_back(fmt::format(
             "tool {} does not cut at its centre; this version cuts as if it did", *number));

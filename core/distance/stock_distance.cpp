@@ -15,7 +15,7 @@ struct NearTile {
 
 /// One search: several shapes against one stock.
 class StockSearch {
-  public:
+public:
     StockSearch(std::span<const ConvexShape> shapes, const CutModel& stock, const StockGoal& goal)
         : shapes_(shapes), stock_(stock), goal_(goal) {
         for (const ConvexShape& shape : shapes) boxes_.push_back(bounds(shape));
@@ -30,7 +30,7 @@ class StockSearch {
         return result_;
     }
 
-  private:
+private:
     double box_bound(const Aabb& box) {
         double bound = infinity;
         ++result_.box_tests;
@@ -44,8 +44,8 @@ class StockSearch {
         double lower = infinity;
         for (const ConvexShape& shape : shapes_) {
             ++result_.shape_tests;
-            const Separation found
-                = core::separation(shape, body, {.tolerance = same, .limit = limit});
+            const Separation found =
+                core::separation(shape, body, {.tolerance = same, .limit = limit});
             lower = std::min(lower, found.lower);
             if (found.upper < best.upper) best = found;
         }
@@ -76,16 +76,14 @@ class StockSearch {
             if (near.bound >= line_limit()) break;
             if (nearest(convex(tiles.boxes[near.tile]), line_limit()).lower >= line_limit())
                 continue;
-            const LineRange range
-                = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
+            const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
             for (int v = range.v_first; v < range.v_last; ++v)
                 for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
         }
     }
 
     void search_line(int axis, int u, int v) {
-        for (const Interval& matter :
-             stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
+        for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
     }

@@ -20,9 +20,7 @@ Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double sh
     return shrunk_lower > 0.0 ? Verdict::clear : Verdict::undecided;
 }
 
-double contact_depth(const Allowance& allowance) {
-    return std::max(allowance.contact, resolution);
-}
+double contact_depth(const Allowance& allowance) { return std::max(allowance.contact, resolution); }
 
 void merge(PairClearance& known, const PairClearance& later) {
     known.verdict = std::max(known.verdict, later.verdict);

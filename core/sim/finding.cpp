@@ -52,19 +52,27 @@ constexpr std::array<std::pair<const char*, Severity>, 35> rules = {{
 
 const char* name_of(Severity severity) {
     switch (severity) {
-    case Severity::off: return "off";
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    default: return "error";
+    case Severity::off:
+        return "off";
+    case Severity::note:
+        return "note";
+    case Severity::warning:
+        return "warning";
+    default:
+        return "error";
     }
 }
 
 const char* name_of(Verdict verdict) {
     switch (verdict) {
-    case Verdict::clear: return "clear";
-    case Verdict::undecided: return "undecided";
-    case Verdict::violation: return "violation";
-    default: return "collision";
+    case Verdict::clear:
+        return "clear";
+    case Verdict::undecided:
+        return "undecided";
+    case Verdict::violation:
+        return "violation";
+    default:
+        return "collision";
     }
 }
 

@@ -62,8 +62,8 @@ Separation LegCheck::to_fixture(const Shapes& shapes, const Fixture& fixture, do
 }
 
 Separation LegCheck::to_stock(const Shapes& shapes, const CutModel& stock, double threshold) {
-    const StockSeparation found = separation(
-        shapes, stock, {.limit = setup_.search_limit, .threshold = threshold});
+    const StockSeparation found =
+        separation(shapes, stock, {.limit = setup_.search_limit, .threshold = threshold});
     statistics_.box_tests += found.box_tests;
     statistics_.shape_tests += found.shape_tests;
     statistics_.refined += found.refined;
@@ -76,8 +76,8 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     const Allowance allowance = fixture_allowance(setup_, part.kind, body);
     PairClearance& known = entry(pairs, {part.kind, fixture}, allowance);
     const double limit = std::min(setup_.search_limit, known.upper);
-    const Separation found
-        = widened(to_fixture(shapes(part.profile, leg), body, limit), leg.path_error);
+    const Separation found =
+        widened(to_fixture(shapes(part.profile, leg), body, limit), leg.path_error);
     PairClearance now{.pair = known.pair, .allowance = allowance};
     now.lower = std::min(found.lower, setup_.search_limit);
     if (found.found()) {
@@ -89,8 +89,8 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     now.verdict = judge_distance(allowance, now.lower, now.upper);
     if (now.upper == 0.0 || (allowance.distance <= resolution && now.lower <= 0.0)) {
         const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
-        const Separation shrunk
-            = widened(to_fixture(shapes(inner, leg), body, setup_.search_limit), leg.path_error);
+        const Separation shrunk =
+            widened(to_fixture(shapes(inner, leg), body, setup_.search_limit), leg.path_error);
         now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
     }
     merge(known, now);
@@ -105,8 +105,8 @@ void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClea
         }
 }
 
-LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg,
-                                        const CutModel& stock, const Allowance& allowance) {
+LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
+                                        const Allowance& allowance) {
     Observation seen;
     seen.plain = to_stock(shapes(part.profile, leg), stock, deciding_distance(allowance));
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
@@ -189,8 +189,8 @@ double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock
 double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
     const Vec3 tip(0.0, 0.0, tool_.length);
-    const auto cutter
-        = std::make_shared<const Cutter>(make_cutter(tool_.parts[0].profile, leg.path_error));
+    const auto cutter =
+        std::make_shared<const Cutter>(make_cutter(tool_.parts[0].profile, leg.path_error));
     ++statistics_.sweeps;
     return cut(stock, {cutter, leg.places[0] - setup_.stock_origin - tip,
                        leg.places[1] - setup_.stock_origin - tip});
@@ -243,9 +243,9 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
     const auto reached = [&](double share) {
         const Shapes moved = shapes(part->profile, stretch(leg, 0.0, share));
         const double limit = distance + leg.path_error + resolution;
-        const Separation found
-            = pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
-                           : to_stock(moved, stock, 0.0);
+        const Separation found =
+            pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
+                         : to_stock(moved, stock, 0.0);
         return found.upper <= limit;
     };
     if (reached(0.0)) return 0.0;

@@ -15,7 +15,7 @@ enum class FluteUse : uint8_t { cutting, not_cutting };
 ///
 /// Refers to what it was given; make one where it is needed.
 class LegCheck {
-  public:
+public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, Statistics& statistics)
         : setup_(setup), tool_(tool), use_(use), statistics_(statistics) {}
 
@@ -34,7 +34,7 @@ class LegCheck {
     /// The least share of the leg after which the pair is as near as `distance` for the first time.
     double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock);
 
-  private:
+private:
     using Shapes = std::vector<ConvexShape>;
 
     /// What one state of the stock says of a part: as it is, and shrunk by the contact depth.
