@@ -1,1 +1,41 @@
-int main() { return 0; }
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/commands/commands.h"
+#include "app/version.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+    CLI::App cli("Feeler tells how close every block of an NC program comes to a crash.", "feeler");
+    cli.set_version_flag("--version", fmt::format("feeler {}", app::version));
+    cli.require_subcommand(1);
+    app::ExitCode exit_code = app::ExitCode::clear;
+    app::add_check(cli, exit_code);
+    app::add_trace(cli, exit_code);
+    app::add_distance(cli, exit_code);
+    try {
+        cli.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // Help and version are no errors; every misuse is the same to a script.
+        return cli.exit(error) == 0 ? 0 : static_cast<int>(app::ExitCode::failed);
+    }
+    return static_cast<int>(exit_code);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "feeler: there is not enough memory; a larger mesh size needs less\n");
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "feeler: a mistake of the program itself: {}\n", error.what());
+    }
+    return static_cast<int>(app::ExitCode::failed);
+}

@@ -121,9 +121,8 @@ core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const P
 
 core::Result<FlatArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
                                const Position& end) {
-    const CodeWord* entry = execution.statement.of(ModalGroup::motion);
     const bool clockwise = execution.modal().motion == MotionMode::arc_clockwise;
-    FlatArc arc{.where = entry ? entry->word->span : core::SourceSpan{.line = execution.block.line},
+    FlatArc arc{.where = moving_word(execution).span,
                 .code = clockwise ? "G2" : "G3",
                 .clockwise = clockwise,
                 .start = {},

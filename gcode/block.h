@@ -13,7 +13,7 @@ namespace gcode {
 struct Word {
     char letter = '\0'; // upper case
     double value = 0.0;
-    core::SourceSpan span;
+    core::SourceSpan span{};
     bool has_point = false; // X5. rather than X5
 
     bool operator==(const Word& other) const {
@@ -33,7 +33,7 @@ struct Block {
     std::vector<Word> words{};
     std::vector<Comment> comments{};
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
-    bool tape_mark = false;          // a line that begins with %
+    bool tape_mark = false;            // a line that begins with %
 };
 
 } // namespace gcode

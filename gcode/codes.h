@@ -26,6 +26,8 @@ enum class ModalGroup : uint8_t {
     spindle_mode,
     scaling,
     rotation,
+    polar,
+    mirror,
     macro,
     other,
     stopping,

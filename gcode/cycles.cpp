@@ -41,7 +41,7 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
     return core::fail(ErrorCode::missing_value,
                       fmt::format("G{} needs {} word", cycle.code / 10,
                                   letter == 'R' ? "an R" : fmt::format("a {}", letter)),
-                      {.line = execution.block.line});
+                      moving_word(execution).span);
 }
 
 /// The modal cycle with the words of this block taken in.
@@ -71,29 +71,43 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
     return cycle;
 }
 
-core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
-    const ModalState& modal = execution.modal();
-    const PlaneAxes axes = axes_of(modal.plane);
-    const core::SourceSpan line{.line = execution.block.line};
-    const bool incremental = modal.distance == DistanceMode::incremental;
-    if (incremental && !cycle.initial_level)
-        return core::fail(ErrorCode::missing_value,
-                          fmt::format("G{} under G91 counts from a level that is unknown along {}",
-                                      cycle.code / 10, letters[axes.normal]),
-                          line);
-    const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
-    const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
+/// Whether the cycle can be carried out between its levels, and ends.
+core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
+                                double bottom) {
+    const core::SourceSpan where = moving_word(execution).span;
     if (r < bottom)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
                                       "{:.4f} mm",
                                       cycle.code / 10, r, bottom),
-                          line);
+                          where);
     if (cycle.peck && (r - bottom) / *cycle.peck > most_commands / 4)
         return core::fail(
             ErrorCode::invalid_value,
             fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
-            line);
+            where);
+    if (execution.modal().feed_mode == FeedMode::inverse_time)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
+            where);
+    return {};
+}
+
+core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
+    const ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const core::SourceSpan where = moving_word(execution).span;
+    const bool incremental = modal.distance == DistanceMode::incremental;
+    if (incremental && !cycle.initial_level)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("G{} under G91 counts from a level that is unknown along {}",
+                                      cycle.code / 10, letters[axes.normal]),
+                          where);
+    const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
+    const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
+    if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
+        return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;
     if (modal.retract == RetractMode::r_level || (clear && *clear < r)) clear = r;
     FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
@@ -219,7 +233,7 @@ core::Result<void> run_canned_cycle(Execution& execution) {
             return core::fail(ErrorCode::invalid_value,
                               fmt::format("G{}: this block makes more than {} moves",
                                           cycle.code / 10, most_commands),
-                              {.line = execution.block.line});
+                              moving_word(execution).span);
     }
     return {};
 }

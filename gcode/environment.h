@@ -24,11 +24,11 @@ struct Environment {
     DialectId dialect = DialectId::linuxcnc;
     bool block_delete = false; // true: blocks with `/` are left out
     std::array<core::Vec3, work_offset_count> work_offsets{};
-    std::map<core::OffsetNumber, LengthOffset> length_offsets;
-    std::map<core::ToolNumber, double> tool_lengths; // for H numbers without an entry
-    Position start;                                  // gauge line; empty where nobody knows
-    std::optional<core::Vec3> home;                  // G28; machine zero when nobody says
-    std::optional<core::Vec3> second_home;           // G30; likewise
+    std::map<core::OffsetNumber, LengthOffset> length_offsets{};
+    std::map<core::ToolNumber, double> tool_lengths{}; // for H numbers without an entry
+    Position start{};                                  // gauge line; empty where nobody knows
+    std::optional<core::Vec3> home{};                  // G28; machine zero when nobody says
+    std::optional<core::Vec3> second_home{};           // G30; likewise
 };
 
 } // namespace gcode

@@ -30,6 +30,9 @@ struct Execution {
     void feed(const Position& end, double rate);
 };
 
+/// The word that makes this block move: its motion or cycle code, else its first axis word.
+const Word& moving_word(const Execution& execution);
+
 /// The length a word gives, in mm.
 double length_of(const Execution& execution, const Word& word);
 

@@ -91,6 +91,7 @@ InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;
     ModalState& modal = state.modal;
     modal.unit = dialect(environment.dialect).unit;
+    modal.retract = dialect(environment.dialect).retract;
     modal.offsets.work = environment.work_offsets;
     modal.position = program_from_machine(modal.offsets, environment.start);
     for (int axis = 0; axis < 3; ++axis) {

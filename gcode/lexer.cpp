@@ -104,8 +104,9 @@ tl::unexpected<core::Error> missing_number(const Lexer& lexer, size_t begin) {
                                       "letter needs a number",
                                       written(lexer, begin, end)),
                           span_of(lexer, begin, end));
-    const char next = peek(lexer);
-    if (next == '#' || next == '[' || next == '<') return unexpected_character(lexer, lexer.at);
+    const size_t next = lexer.line.find_first_not_of("+- \t", lexer.at);
+    if (next != std::string_view::npos && std::string_view("#[<").find(lexer.line[next]) < 3)
+        return unexpected_character(lexer, next);
     return core::fail(ErrorCode::syntax,
                       fmt::format("'{}' has no number behind it", written(lexer, begin, begin + 1)),
                       span_of(lexer, begin, begin + 1));

@@ -13,9 +13,9 @@ enum class TokenKind : uint8_t { end, word, comment, slash, percent };
 struct Token {
     TokenKind kind = TokenKind::end;
     core::SourceSpan span{};
-    char letter = '\0';     // of a word, upper case
-    double value = 0.0;     // of a word; of a slash, its switch (1 when it has no digit)
-    bool has_point = false; // of a word
+    char letter = '\0';      // of a word, upper case
+    double value = 0.0;      // of a word; of a slash, its switch (1 when it has no digit)
+    bool has_point = false;  // of a word
     std::string_view text{}; // of a comment
 };
 

@@ -93,9 +93,11 @@ core::Result<void> set_motion_mode(Execution& execution) {
         modal.cycle.reset();
     }
     if (!cycle) return {};
-    if (cycle->code->tenths == tenths(80)) modal.cycle.reset();
-    if (execution.dialect.cycles_are_motions) modal.motion.reset();
-    if (cycle->code->tenths == tenths(80)) return {};
+    if (execution.dialect.cycles_are_motions && !motion) modal.motion.reset();
+    if (cycle->code->tenths == tenths(80)) {
+        modal.cycle.reset();
+        return {};
+    }
     if (!modal.cycle) modal.cycle = CannedCycle{};
     modal.cycle->code = cycle->code->tenths;
     return {};
@@ -135,6 +137,15 @@ void Execution::feed(const Position& end, double rate) {
     emit(StraightFeed{end, rate});
 }
 
+const Word& moving_word(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    for (const ModalGroup group : {ModalGroup::cycle, ModalGroup::motion})
+        if (const CodeWord* entry = statement.of(group)) return *entry->word;
+    for (const Word& word : execution.block.words)
+        if (std::string_view("XYZABCIJK").find(word.letter) != std::string_view::npos) return word;
+    return execution.block.words.front();
+}
+
 core::Result<Position> target_of(const Execution& execution) {
     if (auto checked = check_rotary_axes(execution); !checked)
         return tl::unexpected(std::move(checked).error());
@@ -159,23 +170,22 @@ core::Result<Position> target_of(const Execution& execution) {
 
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length) {
     const ModalState& modal = execution.modal();
-    const core::SourceSpan line{.line = execution.block.line};
+    const Word& mover = moving_word(execution);
+    const auto refuse = [&](std::string_view why) {
+        return core::fail(ErrorCode::missing_value, fmt::format("{}: {}", written(mover), why),
+                          mover.span);
+    };
     const bool inverse = modal.feed_mode == FeedMode::inverse_time;
-    if (!modal.feed || (inverse && !execution.statement.word('F')))
-        return core::fail(ErrorCode::missing_value,
-                          inverse ? "this block needs its own F word, because of G93"
-                                  : "this motion has no feed rate: no F word came before it",
-                          line);
-    if (*modal.feed == 0.0)
-        return core::fail(ErrorCode::invalid_value, "this motion has the feed rate F0", line);
+    if (inverse && !execution.statement.word('F'))
+        return refuse("under G93 every feed needs its own F word");
+    if (!modal.feed) return refuse("this motion has no feed rate, no F word came before it");
+    if (*modal.feed == 0.0) return refuse("this motion has the feed rate F0");
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)
-        return core::fail(ErrorCode::missing_value,
-                          "G93 gives no feed rate here: where this motion starts is unknown", line);
+        return refuse("G93 gives no feed rate here, where the motion starts is unknown");
     if (inverse) return *modal.feed * *path_length;
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
-        return core::fail(ErrorCode::missing_value,
-                          "G95 gives no feed rate here: the spindle does not turn", line);
+        return refuse("G95 gives no feed rate here, the spindle does not turn");
     return *modal.feed * modal.speed;
 }
 

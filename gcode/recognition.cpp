@@ -1,9 +1,9 @@
 #include <array>
-#include <cmath>
+#include <cctype>
 
 #include <fmt/format.h>
 
-#include "gcode/dialect.h"
+#include "gcode/codes.h"
 #include "gcode/parser.h"
 
 namespace gcode {
@@ -16,10 +16,6 @@ Recognition found(DialectId dialect, size_t line, std::string_view what) {
     return {dialect, fmt::format("line {} {}", line, what)};
 }
 
-bool starts_with_word(std::string_view text, std::string_view word) {
-    return text.substr(0, word.size()) == word;
-}
-
 /// Languages that are no G-code give themselves away before any word can be read.
 Clue foreign_clue(std::string_view text, size_t line) {
     const size_t first = text.find_first_not_of(" \t");
@@ -29,80 +25,97 @@ Clue foreign_clue(std::string_view text, size_t line) {
     const std::string_view words =
         after_number == std::string_view::npos ? "" : rest.substr(after_number);
     for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "TOOL DEF", "BLK FORM"})
-        if (starts_with_word(words, word))
+        if (words.starts_with(word))
             return found(DialectId::heidenhain, line, fmt::format("says {}", word));
     for (const std::string_view word : {"PROC ", "DEF ", "EXTERN ", "MCALL", "CYCLE8", "%_N_"})
-        if (starts_with_word(words, word))
+        if (words.starts_with(word))
             return found(DialectId::siemens, line, fmt::format("says {}", word));
     return std::nullopt;
 }
 
 /// Things only LinuxCNC reads, which the parser of this version refuses.
 Clue linuxcnc_clue(std::string_view text, size_t line) {
-    if (text.find("#<") != std::string_view::npos || text.find("O<") != std::string_view::npos
-        || text.find("o<") != std::string_view::npos)
+    std::string letters;
+    for (const char c : text)
+        if (c != ' ' && c != '\t')
+            letters.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    if (letters.find("#<") != std::string::npos || letters.starts_with("O<"))
         return found(DialectId::linuxcnc, line, "has a named parameter or O word");
-    if (text.find("(AXIS,") != std::string_view::npos
-        || text.find("(DEBUG,") != std::string_view::npos)
+    if (letters.find("(AXIS,") != std::string::npos || letters.find("(DEBUG,") != std::string::npos)
         return found(DialectId::linuxcnc, line, "has an active comment");
+    const size_t after_number = letters.find_first_not_of("0123456789", 1);
+    if (!letters.starts_with('O') || after_number == std::string::npos) return std::nullopt;
+    const std::string_view rest = std::string_view(letters).substr(after_number);
+    for (const std::string_view word : {"SUB", "CALL", "IF", "WHILE", "DO", "REPEAT"})
+        if (rest.starts_with(word))
+            return found(DialectId::linuxcnc, line, fmt::format("has an O word ({})", word));
     return std::nullopt;
 }
 
-Clue word_clue(const Block& block) {
-    for (const Word& word : block.words) {
-        if (word.letter == 'O' && block.words.front().letter == 'O')
-            return found(DialectId::fanuc, block.line,
-                         fmt::format("is a program number (O{:.12g})", word.value));
-        if (word.letter != 'G') continue;
-        const double tenth = word.value * 10.0 - 10.0 * std::floor(word.value);
-        for (const double code : {61.1, 90.1, 59.1, 59.2, 59.3, 92.2, 92.3, 33.0})
-            if (word.value == code)
-                return found(DialectId::linuxcnc, block.line,
-                             fmt::format("has G{:.12g}", word.value));
-        if (word.value == 187.0 || word.value == 103.0)
-            return found(DialectId::haas, block.line, fmt::format("has G{:.12g}", word.value));
-        if (tenth < 0.5 && (word.value == 69.0 || word.value == 15.0 || word.value == 67.0))
-            return found(DialectId::fanuc, block.line, fmt::format("has G{:.12g}", word.value));
-    }
-    return std::nullopt;
-}
+constexpr std::array candidates = {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas,
+                                   DialectId::grbl};
 
-/// What the whole program has or lacks, for when no line gives it away.
+/// What the whole program has or lacks.
 struct Habits {
-    size_t tape_marks = 0;
-    size_t first_length_offset = 0; // line of a G43 with H
-    size_t first_home_with_motion = 0;
+    std::array<size_t, candidates.size()> first_unknown{}; // line of a G code not in that dialect
+    size_t first_length_offset = 0;                        // G43 with H
+    size_t first_crowd = 0; // G28 or a cycle with a motion code in one block
+    bool has_tape_mark = false;
     bool changes_tools = false;
-    bool uses_cycles = false;
+    bool has_expressions = false;
 };
 
+void remember(size_t& first, bool seen, uint32_t line) {
+    if (seen && first == 0) first = line;
+}
+
 void observe(const Block& block, Habits& habits) {
-    habits.tape_marks += block.tape_mark;
-    bool has_g28 = false, has_g43 = false, has_h = false, has_motion = false;
+    habits.has_tape_mark |= block.tape_mark;
+    bool homes = false, length = false, offset_number = false, moves = false;
     for (const Word& word : block.words) {
         const bool g = word.letter == 'G';
-        has_g28 |= g && word.value == 28.0;
-        has_g43 |= g && word.value == 43.0;
-        has_motion |= g && word.value <= 3.0;
-        has_h |= word.letter == 'H';
+        homes |= g && (word.value == 28.0 || word.value == 30.0);
+        length |= g && word.value == 43.0;
+        moves |= g && word.value <= 3.0;
+        offset_number |= word.letter == 'H';
         habits.changes_tools |= word.letter == 'T' || (word.letter == 'M' && word.value == 6.0);
-        habits.uses_cycles |= g && word.value >= 73.0 && word.value <= 89.0 && word.value != 80.0;
+        for (size_t i = 0; g && i < candidates.size(); ++i)
+            remember(habits.first_unknown[i], !find_code('G', word.value, candidates[i]),
+                     block.line);
     }
-    if (has_g43 && has_h && !habits.first_length_offset) habits.first_length_offset = block.line;
-    if (has_g28 && has_motion && !habits.first_home_with_motion)
-        habits.first_home_with_motion = block.line;
+    remember(habits.first_length_offset, length && offset_number, block.line);
+    remember(habits.first_crowd, homes && moves, block.line);
+}
+
+/// A G code that only some dialects have rules out the others.
+Clue clue_of_codes(const Habits& habits) {
+    const auto [linuxcnc, fanuc, haas, grbl] = habits.first_unknown;
+    if (linuxcnc && fanuc && !haas)
+        return found(DialectId::haas, fanuc, "has a code that only Haas controls have");
+    if (linuxcnc && !fanuc)
+        return found(DialectId::fanuc, linuxcnc, "has a code that LinuxCNC does not have");
+    if (!linuxcnc && fanuc && grbl)
+        return found(DialectId::linuxcnc, fanuc, "has a code that only LinuxCNC has");
+    return std::nullopt;
 }
 
 Recognition judge(const Habits& habits) {
-    if (habits.first_home_with_motion)
-        return found(DialectId::fanuc, habits.first_home_with_motion,
+    if (Clue clue = clue_of_codes(habits)) return *clue;
+    if (habits.first_crowd)
+        return found(DialectId::fanuc, habits.first_crowd,
                      "has G28 and a motion code in one block");
-    if (habits.first_length_offset && habits.tape_marks > 0)
-        return found(DialectId::fanuc, habits.first_length_offset,
-                     "has G43 with H, and the program stands between % marks");
-    if (habits.changes_tools || habits.uses_cycles || habits.tape_marks > 0)
+    if (habits.first_length_offset)
+        return found(DialectId::fanuc, habits.first_length_offset, "has G43 with H");
+    const bool grbl_knows_all = habits.first_unknown.back() == 0;
+    if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark || !grbl_knows_all)
         return {DialectId::linuxcnc, "nothing in it is of one control alone"};
-    return {DialectId::grbl, "it has no tools, no cycles and no % marks"};
+    return {DialectId::grbl, "it has no tools, no expressions, no % marks and only codes of Grbl"};
+}
+
+Clue program_number_clue(const Block& block) {
+    if (block.words.empty() || block.words.front().letter != 'O') return std::nullopt;
+    return found(DialectId::fanuc, block.line,
+                 fmt::format("is a program number (O{:.12g})", block.words.front().value));
 }
 
 } // namespace
@@ -114,8 +127,9 @@ Recognition recognise(const Program& program) {
         if (Clue clue = foreign_clue(text, number)) return *clue;
         if (Clue clue = linuxcnc_clue(text, number)) return *clue;
         const auto block = parse_line(text, static_cast<uint32_t>(number));
+        habits.has_expressions |= !block && block.error().code == core::ErrorCode::unsupported;
         if (!block) continue;
-        if (Clue clue = word_clue(*block)) return *clue;
+        if (Clue clue = program_number_clue(*block)) return *clue;
         observe(*block, habits);
     }
     return judge(habits);

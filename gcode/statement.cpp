@@ -9,6 +9,20 @@ namespace {
 
 using core::ErrorCode;
 
+bool is_cycle(const Code& code) {
+    return code.group == ModalGroup::cycle && code.tenths != tenths(80);
+}
+
+/// The code of the block that this one cannot stand beside. G80 gets on with any motion.
+const CodeWord* rival_of(const Statement& statement, const Code& code, const Dialect& dialect) {
+    if (code.group == ModalGroup::other) return nullptr;
+    if (const CodeWord* same = statement.of(code.group)) return same;
+    if (!dialect.cycles_are_motions) return nullptr;
+    const CodeWord* cycle = statement.of(ModalGroup::cycle);
+    if (code.group == ModalGroup::motion && cycle && is_cycle(*cycle->code)) return cycle;
+    return is_cycle(code) ? statement.of(ModalGroup::motion) : nullptr;
+}
+
 core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect) {
     const Code* code = find_code(word.letter, word.value, dialect.id);
     if (!code && word.letter == 'M') {
@@ -23,16 +37,9 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
     if (!code->refusal.empty())
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: {}", written(word), code->refusal), word.span);
-    const CodeWord* other = statement.of(code->group);
-    const bool cycle_and_motion =
-        dialect.cycles_are_motions
-        && ((code->group == ModalGroup::cycle && statement.of(ModalGroup::motion))
-            || (code->group == ModalGroup::motion && statement.of(ModalGroup::cycle)));
-    if (!other && cycle_and_motion)
-        other =
-            statement.of(code->group == ModalGroup::cycle ? ModalGroup::motion : ModalGroup::cycle);
+    const CodeWord* other = rival_of(statement, *code, dialect);
     const bool repeated = other && other->code == code && !dialect.repeated_codes_are_errors;
-    if (other && !repeated && code->group != ModalGroup::other)
+    if (other && !repeated)
         return core::fail(ErrorCode::syntax,
                           fmt::format("{} and {} are of one modal group: a block takes one of them",
                                       written(*other->word), written(word)),

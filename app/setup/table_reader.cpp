@@ -115,6 +115,20 @@ std::optional<std::string> TableReader::word(const char* key,
     return std::nullopt;
 }
 
+std::optional<std::vector<std::string>> TableReader::strings(const char* key, size_t length) {
+    const toml::node* at = node(key);
+    if (!at) return std::nullopt;
+    std::vector<std::string> values;
+    if (const toml::array* array = at->as_array())
+        for (const toml::node& item : *array)
+            if (const auto value = item.value<std::string>()) values.push_back(*value);
+    if (values.size() != length || at->as_array()->size() != length) {
+        refuse(key, fmt::format("must be a list of {} texts in quotes", length));
+        return std::nullopt;
+    }
+    return values;
+}
+
 std::optional<std::vector<double>> TableReader::numbers(const char* key, size_t length) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;
@@ -141,9 +155,8 @@ std::vector<std::vector<double>> TableReader::rows(const char* key, size_t lengt
     std::vector<std::vector<double>> result;
     const toml::node* at = node(key);
     if (!at) return result;
-    const std::string shape
-        = fmt::format("must be a list of rows of {} numbers each, as in [[{}]]", length,
-                      length == 2 ? "0, 0], [5, 10" : "10, 10, 25");
+    const std::string shape = fmt::format("must be a list of rows of {} numbers each, as in [[{}]]",
+                                          length, length == 2 ? "0, 0], [5, 10" : "10, 10, 25");
     const toml::array* array = at->as_array();
     if (!array) {
         refuse(key, shape);
@@ -196,10 +209,11 @@ void TableReader::finish() {
         const std::string name(key.str());
         if (known_.contains(name)) continue;
         const std::string meant = nearest(name, known_);
-        refuse_at(key.source(),
-                  meant.empty()
-                      ? fmt::format("unknown key \"{}\"; known here: {}", name, fmt::join(known_, " "))
-                      : fmt::format("unknown key \"{}\"; did you mean \"{}\"?", name, meant));
+        refuse_at(
+            key.source(),
+            meant.empty()
+                ? fmt::format("unknown key \"{}\"; known here: {}", name, fmt::join(known_, " "))
+                : fmt::format("unknown key \"{}\"; did you mean \"{}\"?", name, meant));
         return;
     }
 }

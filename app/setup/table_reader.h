@@ -19,12 +19,13 @@ namespace app {
 /// The first mistake is kept, with its place, and every later reading gives nothing; so a caller
 /// reads what it needs and looks at the error once, at the end.
 class TableReader {
-  public:
+public:
     /// `name` is how messages call the table: `[stock]`. `error` outlives the reader.
     TableReader(const toml::table& table, std::string name, std::optional<core::Error>& error)
         : table_(table), name_(std::move(name)), error_(error) {}
 
     bool has(const char* key) const { return table_.contains(key); }
+    bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
 
     std::optional<double> number(const char* key);
     double number_or(const char* key, double otherwise) { return number(key).value_or(otherwise); }
@@ -34,6 +35,9 @@ class TableReader {
 
     /// One of a few words.
     std::optional<std::string> word(const char* key, std::initializer_list<const char*> words);
+
+    /// A list of texts of a fixed length.
+    std::optional<std::vector<std::string>> strings(const char* key, size_t length);
 
     /// A list of numbers, of a fixed length unless `length` is 0.
     std::optional<std::vector<double>> numbers(const char* key, size_t length);
@@ -62,7 +66,7 @@ class TableReader {
 
     const std::string& name() const { return name_; }
 
-  private:
+private:
     const toml::node* node(const char* key);
     void refuse_at(const toml::source_region& where, const std::string& why);
 

@@ -18,10 +18,14 @@ SinCos sin_cos_deg(double angle_deg) {
     const double s = std::sin(rest);
     const double c = std::cos(rest);
     switch ((static_cast<int>(quarter) + 4) % 4) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+        return {s, c};
+    case 1:
+        return {c, -s};
+    case 2:
+        return {-s, -c};
+    default:
+        return {-c, s};
     }
 }
 

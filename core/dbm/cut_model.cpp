@@ -83,9 +83,9 @@ double cut_lines(CutModel& model, int axis, const CutterSweep& sweep, const Line
         for (int u = range.u_first; u < range.u_last; ++u) {
             if (family.line(u, v).empty()) continue;
             for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-                const auto gone = line_interval(piece.around, sweep, axis,
-                                                grid.coordinate(u_axis(axis), u),
-                                                grid.coordinate(v_axis(axis), v));
+                const auto gone =
+                    line_interval(piece.around, sweep, axis, grid.coordinate(u_axis(axis), u),
+                                  grid.coordinate(v_axis(axis), v));
                 if (!gone) continue;
                 const IntervalList& line = family.line(u, v);
                 if (gone->upper <= line[0].lower || gone->lower >= line[line.size() - 1].upper)
@@ -230,8 +230,7 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
     IntervalList line = line_of(model.solid, 2, x, y);
     for_sweeps_over(model, i, j, {x, x, y, y}, [&](const CutterSweep& sweep) {
         for (const Cutter::Piece& piece : sweep.cutter->pieces)
-            if (const auto gone = line_interval(piece.around, sweep, 2, x, y))
-                line.subtract(*gone);
+            if (const auto gone = line_interval(piece.around, sweep, 2, x, y)) line.subtract(*gone);
     });
     return line;
 }

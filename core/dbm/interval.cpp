@@ -28,22 +28,22 @@ IntervalList& IntervalList::operator=(IntervalList&& other) noexcept {
 }
 
 IntervalList::~IntervalList() {
-    if (on_heap()) delete[] many_;
+    if (on_heap()) delete[] many;
 }
 
 void IntervalList::swap(IntervalList& other) noexcept {
     const bool mine = on_heap(), others = other.on_heap();
-    const Interval my_one = mine ? Interval{} : one_;
-    const Interval other_one = others ? Interval{} : other.one_;
-    Interval* const my_many = mine ? many_ : nullptr;
+    const Interval kept_one = mine ? Interval{} : one;
+    const Interval given_one = others ? Interval{} : other.one;
+    Interval* const kept_many = mine ? many : nullptr;
     if (others)
-        many_ = other.many_;
+        many = other.many;
     else
-        one_ = other_one;
+        one = given_one;
     if (mine)
-        other.many_ = my_many;
+        other.many = kept_many;
     else
-        other.one_ = my_one;
+        other.one = kept_one;
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
 }
@@ -53,8 +53,8 @@ void IntervalList::reserve(uint32_t capacity) {
     const uint32_t grown = std::max(capacity, 2 * capacity_);
     auto* const bigger = new Interval[grown];
     std::copy(begin(), end(), bigger);
-    if (on_heap()) delete[] many_;
-    many_ = bigger;
+    if (on_heap()) delete[] many;
+    many = bigger;
     capacity_ = grown;
 }
 

@@ -50,16 +50,16 @@ public:
 
 private:
     bool on_heap() const { return capacity_ > 1; }
-    const Interval* data() const { return on_heap() ? many_ : &one_; }
-    Interval* data() { return on_heap() ? many_ : &one_; }
+    const Interval* data() const { return on_heap() ? many : &one; }
+    Interval* data() { return on_heap() ? many : &one; }
     void swap(IntervalList& other) noexcept;
     void reserve(uint32_t capacity);
     /// Replaces the intervals first .. last - 1 by `with`.
     void replace(size_t first, size_t last, std::span<const Interval> with);
 
     union {
-        Interval one_ = {};
-        Interval* many_;
+        Interval one = {};
+        Interval* many;
     };
     uint32_t size_ = 0;
     uint32_t capacity_ = 1;

@@ -21,7 +21,7 @@ struct Crossing {
 bool comes_before(const Crossing& a, const Crossing& b) {
     if (a.line != b.line) return a.line < b.line;
     if (a.depth != b.depth) return a.depth < b.depth;
-    return a.step > b.step; // enter before leaving: shells that touch leave no gap
+    return a.step > b.step; // which of them does not matter, but the order is fixed
 }
 
 struct LineScan {

@@ -32,7 +32,7 @@ size_t ScanLines::tile_of(int u, int v) const {
 }
 
 const IntervalList& ScanLines::line(int u, int v) const {
-    static const IntervalList nothing;
+    static const IntervalList nothing{};
     const auto& tile = tiles_[tile_of(u, v)];
     return tile ? (*tile)[place_in_tile(u, v)] : nothing;
 }

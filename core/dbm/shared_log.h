@@ -10,7 +10,7 @@ namespace core {
 /// A list that only grows, in chunks that copies share: a copy costs a pointer per chunk.
 template <typename T>
 class SharedLog {
-  public:
+public:
     static constexpr size_t chunk_size = 64;
 
     size_t size() const { return size_; }
@@ -25,7 +25,7 @@ class SharedLog {
         ++size_;
     }
 
-  private:
+private:
     std::vector<std::shared_ptr<std::vector<T>>> chunks_;
     size_t size_ = 0;
 };

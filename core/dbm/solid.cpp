@@ -139,16 +139,15 @@ std::vector<Vec3> shell_points(const Mesh& mesh) {
 }
 
 IntervalList nominal_column(const Solid& solid, const Square& s) {
-    return std::visit(
-        Overloaded{[&](const SolidBox& b) -> IntervalList {
-                       if (s.x1 < b.box.min.x || s.x0 > b.box.max.x || s.y1 < b.box.min.y
-                           || s.y0 > b.box.max.y)
-                           return {};
-                       return IntervalList({b.box.min.z, b.box.max.z});
-                   },
-                   [&](const SolidCylinder& c) { return column_of_cylinder(c, s); },
-                   [&](const SolidMesh& m) { return column_of_mesh(m, s); }},
-        solid.shape);
+    return std::visit(Overloaded{[&](const SolidBox& b) -> IntervalList {
+                                     if (s.x1 < b.box.min.x || s.x0 > b.box.max.x
+                                         || s.y1 < b.box.min.y || s.y0 > b.box.max.y)
+                                         return {};
+                                     return IntervalList({b.box.min.z, b.box.max.z});
+                                 },
+                                 [&](const SolidCylinder& c) { return column_of_cylinder(c, s); },
+                                 [&](const SolidMesh& m) { return column_of_mesh(m, s); }},
+                      solid.shape);
 }
 
 } // namespace

@@ -92,9 +92,8 @@ struct LineMotion {
         const std::array<double, 3> line = {0.0, u, v};
         for (int k = 0; k < 3; ++k) {
             const int world = (axis + k) % 3;
-            offset[static_cast<size_t>(world)]
-                = {line[static_cast<size_t>(k)] - sweep.from[world],
-                   -(sweep.to[world] - sweep.from[world])};
+            offset[static_cast<size_t>(world)] = {line[static_cast<size_t>(k)] - sweep.from[world],
+                                                  -(sweep.to[world] - sweep.from[world])};
         }
     }
     const Linear& operator[](int axis) const { return offset[static_cast<size_t>(axis)]; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/distance/shape_outline.h"
+
 namespace core {
 namespace {
 
@@ -15,10 +17,10 @@ struct NearTile {
 
 /// One search: several shapes against one stock.
 class StockSearch {
-  public:
+public:
     StockSearch(std::span<const ConvexShape> shapes, const CutModel& stock, const StockGoal& goal)
         : shapes_(shapes), stock_(stock), goal_(goal) {
-        for (const ConvexShape& shape : shapes) boxes_.push_back(bounds(shape));
+        for (const ConvexShape& shape : shapes) outlines_.push_back(outline(shape));
     }
 
     StockSeparation run() {
@@ -30,22 +32,27 @@ class StockSearch {
         return result_;
     }
 
-  private:
+private:
     double box_bound(const Aabb& box) {
         double bound = infinity;
         ++result_.box_tests;
-        for (const Aabb& mine : boxes_) bound = std::min(bound, distance(mine, box));
+        for (const ShapeOutline& mine : outlines_)
+            bound = std::min(bound, distance_bound(mine, box));
         return bound;
     }
 
     /// Distance of the nearest shape to a convex body, tight only where it is below `limit`.
-    Separation nearest(const ConvexShape& body, double limit) {
+    Separation nearest(const ConvexShape& body, const Aabb& box, double limit) {
         Separation best;
         double lower = infinity;
-        for (const ConvexShape& shape : shapes_) {
+        for (size_t i = 0; i < shapes_.size(); ++i) {
+            if (const double bound = distance_bound(outlines_[i], box); bound >= limit) {
+                lower = std::min(lower, bound);
+                continue;
+            }
             ++result_.shape_tests;
-            const Separation found
-                = core::separation(shape, body, {.tolerance = same, .limit = limit});
+            const Separation found =
+                core::separation(shapes_[i], body, {.tolerance = same, .limit = limit});
             lower = std::min(lower, found.lower);
             if (found.upper < best.upper) best = found;
         }
@@ -74,18 +81,17 @@ class StockSearch {
         const TileBoxes& tiles = stock_.line_boxes[family];
         for (const NearTile& near : near_tiles(tiles, line_limit())) {
             if (near.bound >= line_limit()) break;
-            if (nearest(convex(tiles.boxes[near.tile]), line_limit()).lower >= line_limit())
+            if (nearest(convex(tiles.boxes[near.tile]), tiles.boxes[near.tile], line_limit()).lower
+                >= line_limit())
                 continue;
-            const LineRange range
-                = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
+            const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
             for (int v = range.v_first; v < range.v_last; ++v)
                 for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
         }
     }
 
     void search_line(int axis, int u, int v) {
-        for (const Interval& matter :
-             stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
+        for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
     }
@@ -93,7 +99,8 @@ class StockSearch {
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
         if (box_bound({a, b}) >= line_limit()) return;
-        const Separation found = nearest(convex_segment(a, b), line_limit());
+        const Separation found =
+            nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, line_limit());
         if (found.upper < upper_.upper) upper_ = found;
     }
 
@@ -102,7 +109,7 @@ class StockSearch {
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
             if (near.bound >= lower_ - same) break;
             const Aabb& box = stock_.column_boxes.boxes[near.tile];
-            if (nearest(convex(box), lower_).lower >= lower_ - same) continue;
+            if (nearest(convex(box), box, lower_).lower >= lower_ - same) continue;
             for_columns(near.tile, [&](int i, int j, const Square& square) {
                 const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
                 lower_ = std::min(lower_, bound);
@@ -131,7 +138,7 @@ class StockSearch {
                 bound = std::min(bound, here);
                 continue;
             }
-            bound = std::min(bound, nearest(convex(box), limit).lower);
+            bound = std::min(bound, nearest(convex(box), box, limit).lower);
         }
         return bound;
     }
@@ -174,7 +181,7 @@ class StockSearch {
     std::span<const ConvexShape> shapes_;
     const CutModel& stock_;
     StockGoal goal_;
-    std::vector<Aabb> boxes_;
+    std::vector<ShapeOutline> outlines_;
     Separation upper_;
     double lower_ = infinity;
     double refined_lower_ = infinity;

@@ -9,17 +9,17 @@ namespace core {
 
 /// What a search against a stock should decide, and what it may spend.
 struct StockGoal {
-    double limit = 50.0;         // mm: beyond it nobody asks
-    double threshold = 0.0;      // mm: the interval is narrowed until it lies on one side of this
-    double finest = 0.03;        // mm: squares are not divided below this side
-    size_t work_limit = 20'000;  // squares that may be worked out afresh
+    double limit = 50.0;        // mm: beyond it nobody asks
+    double threshold = 0.0;     // mm: the interval is narrowed until it lies on one side of this
+    double finest = 0.03;       // mm: squares are not divided below this side
+    size_t work_limit = 20'000; // squares that may be worked out afresh
 };
 
 /// How far a shape is from a stock that is being cut.
 struct StockSeparation {
-    Separation separation; // `upper` from matter on a scan line, `lower` from the outer model
-    size_t refined = 0;    // squares worked out afresh
-    size_t box_tests = 0;  // pairs of boxes compared
+    Separation separation;  // `upper` from matter on a scan line, `lower` from the outer model
+    size_t refined = 0;     // squares worked out afresh
+    size_t box_tests = 0;   // pairs of boxes compared
     size_t shape_tests = 0; // exact distances of convex shapes
 };
 

@@ -44,7 +44,8 @@ ConvexShape convex_sphere(double radius);
 /// The shape rotated about its origin, then moved. It must stand at a single place.
 ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape);
 
-/// The shape moved over the hull of `places`; times are spread evenly, 0 at the first, 1 at the last.
+/// The shape moved over the hull of `places`; times are spread evenly, 0 at the first, 1 at the
+/// last.
 ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> places);
 
 /// A point of the shape that lies farthest along a direction, without the margin.

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "core/geom/mesh_bytes.h"
 #include "core/geom/mesh_check.h"
 #include "core/geom/mesh_text.h"
 #include "core/geom/polygon_soup.h"
+#include "core/geom/stl_bytes.h"
 
 namespace core {
 namespace {
@@ -55,46 +55,47 @@ Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view
                 fmt::format("'{}' is no mesh format that is read (stl, obj, ply, off)", extension));
 }
 
-/// The soup, known to hold all that the file states.
-Result<PolygonSoup> complete_soup(const std::string& bytes, MeshFormat format,
-                                  const MeshBytes& stated) {
-    FEELER_TRY(PolygonSoup soup, read_soup(bytes, format));
-    const size_t expected = stated.faces - stated.degenerate_faces;
-    if (soup.faces.size() != expected)
-        return fail(ErrorCode::unsupported, fmt::format("only {} of its {} faces could be read",
-                                                        soup.faces.size(), expected));
-    const bool is_stl = format == MeshFormat::stl_ascii || format == MeshFormat::stl_binary;
-    if (!is_stl && soup.vertices.size() != stated.vertices)
-        return fail(ErrorCode::unsupported, fmt::format("only {} of its {} vertices could be read",
-                                                        soup.vertices.size(), stated.vertices));
-    return soup;
+/// What OpenMesh is given to read, and how much it must find there.
+Result<MeshText> plain_form(std::string bytes, MeshFormat format) {
+    switch (format) {
+    case MeshFormat::stl_ascii:
+        return checked_ascii_stl(bytes);
+    case MeshFormat::obj:
+        return checked_obj(bytes);
+    case MeshFormat::off:
+        return checked_off(bytes);
+    case MeshFormat::ply:
+        return checked_ply(bytes);
+    case MeshFormat::stl_binary:
+        break;
+    }
+    FEELER_TRY(const StlCount count, checked_binary_stl(bytes));
+    return MeshText{std::move(bytes), 0, count.triangles, count.degenerate};
 }
 
-Result<PolygonSoup> checked_soup(std::string bytes, MeshFormat format,
-                                 std::vector<std::string>& repairs) {
-    MeshBytes stated;
-    if (format == MeshFormat::stl_binary) {
-        FEELER_TRY(stated, checked_binary_stl(bytes));
-    } else if (format == MeshFormat::ply) {
-        FEELER_TRY(stated, checked_ply(bytes));
-    } else {
-        FEELER_TRY(MeshText plain, format == MeshFormat::obj   ? checked_obj(bytes)
-                                   : format == MeshFormat::off ? checked_off(bytes)
-                                                               : checked_ascii_stl(bytes));
-        stated = {plain.vertices, plain.faces, plain.degenerate_faces};
-        bytes = std::move(plain.text);
-    }
-    if (stated.degenerate_faces > 0)
-        repairs.push_back(fmt::format("{} triangles that name a corner twice were left out",
-                                      stated.degenerate_faces));
-    return complete_soup(bytes, format, stated);
+/// The soup, known to hold all that the file states.
+Result<PolygonSoup> complete_soup(const MeshText& plain, MeshFormat format) {
+    FEELER_TRY(PolygonSoup soup, read_soup(plain.text, format));
+    const size_t faces = plain.faces - plain.degenerate_faces;
+    if (soup.faces.size() != faces)
+        return fail(ErrorCode::unsupported,
+                    fmt::format("only {} of its {} faces could be read", soup.faces.size(), faces));
+    const bool is_stl = format == MeshFormat::stl_ascii || format == MeshFormat::stl_binary;
+    if (!is_stl && soup.vertices.size() != plain.vertices)
+        return fail(ErrorCode::unsupported, fmt::format("only {} of its {} vertices could be read",
+                                                        soup.vertices.size(), plain.vertices));
+    return soup;
 }
 
 Result<MeshFile> read_solid(const std::filesystem::path& path) {
     FEELER_TRY(std::string bytes, read_bytes(path));
     FEELER_TRY(const MeshFormat format, format_of(path, bytes));
+    FEELER_TRY(const MeshText plain, plain_form(std::move(bytes), format));
+    FEELER_TRY(PolygonSoup soup, complete_soup(plain, format));
     MeshFile file;
-    FEELER_TRY(PolygonSoup soup, checked_soup(std::move(bytes), format, file.repairs));
+    if (plain.degenerate_faces > 0)
+        file.repairs.push_back(fmt::format("{} triangles that name a corner twice were left out",
+                                           plain.degenerate_faces));
     FEELER_TRY(Mesh triangles, triangulated(std::move(soup)));
     FEELER_TRY(file.mesh, checked_solid(std::move(triangles), file.repairs));
     return file;

@@ -26,4 +26,7 @@ Result<MeshText> checked_ascii_stl(std::string_view bytes);
 Result<MeshText> checked_obj(std::string_view bytes);
 Result<MeshText> checked_off(std::string_view bytes);
 
+/// The same for a PLY file of any of its three forms, up to its last face.
+Result<MeshText> checked_ply(std::string_view bytes);
+
 } // namespace core

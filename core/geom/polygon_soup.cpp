@@ -14,7 +14,7 @@ using namespace OpenMesh;
 
 /// Ends OpenMesh's reading at the first thing that is wrong; never leaves this file.
 struct ReadingStopped : std::exception {
-    explicit ReadingStopped(std::string why_) : why(std::move(why_)) {}
+    explicit ReadingStopped(std::string reason) : why(std::move(reason)) {}
     std::string why;
 };
 

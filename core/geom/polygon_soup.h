@@ -17,7 +17,7 @@ struct PolygonSoup {
 
 enum class MeshFormat : uint8_t { stl_ascii, stl_binary, obj, off, ply };
 
-/// Reads the faces of a file whose bytes were checked before (mesh_text.h, mesh_bytes.h), through
+/// Reads the faces of a file whose bytes were checked before (mesh_text.h, stl_bytes.h), through
 /// OpenMesh's readers.
 ///
 /// Result: single precision, as OpenMesh reads; triangles of an STL that name a corner twice are

@@ -17,7 +17,8 @@ double radius_at(const ProfileElement& e, double z) {
     return e.r0 + (e.r1 - e.r0) * (z - e.z0) / (e.z1 - e.z0);
 }
 
-/// The part of a cone between two heights, its side moved inwards by `by`; empty if nothing is left.
+/// The part of a cone between two heights, its side moved inwards by `by`; empty if nothing is
+/// left.
 std::optional<ProfileElement> inner_cone(const ProfileElement& e, double by, double z0, double z1) {
     if (!(z0 < z1)) return std::nullopt;
     const double narrower = by * widening(e);
@@ -91,8 +92,8 @@ bool is_convex(const RevolvedProfile& profile) {
 RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by) {
     RevolvedProfile inner;
     for (const ProfileElement& e : profile.elements) {
-        const auto kept = e.margin > 0.0 ? inner_round(e, by)
-                                         : inner_cone(e, by, e.z0 + by, e.z1 - by);
+        const auto kept =
+            e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, by, e.z0 + by, e.z1 - by);
         if (kept) inner.elements.push_back(*kept);
     }
     return inner;

@@ -82,10 +82,14 @@ Nearest nearest_on_tetrahedron(const Simplex& s) {
 
 Nearest nearest_of(const Simplex& s) {
     switch (s.count) {
-    case 1: return corner(s, 0);
-    case 2: return nearest_on_edge(s, 0, 1);
-    case 3: return nearest_on_face(s, 0, 1, 2);
-    default: return nearest_on_tetrahedron(s);
+    case 1:
+        return corner(s, 0);
+    case 2:
+        return nearest_on_edge(s, 0, 1);
+    case 3:
+        return nearest_on_face(s, 0, 1, 2);
+    default:
+        return nearest_on_tetrahedron(s);
     }
 }
 

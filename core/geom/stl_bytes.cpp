@@ -1,11 +1,11 @@
+#include "core/geom/stl_bytes.h"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>
-
-#include "core/geom/mesh_bytes.h"
 
 namespace core {
 namespace {
@@ -42,7 +42,7 @@ bool has_length_of_binary_stl(std::string_view bytes) {
     return bytes.size() >= header_length && bytes.size() == stated_length(bytes);
 }
 
-Result<MeshBytes> checked_binary_stl(std::string_view bytes) {
+Result<StlCount> checked_binary_stl(std::string_view bytes) {
     if (bytes.size() < header_length)
         return fail(ErrorCode::syntax,
                     fmt::format("a binary STL has a header of 84 bytes, the file "
@@ -55,14 +55,14 @@ Result<MeshBytes> checked_binary_stl(std::string_view bytes) {
                                 "has {}",
                                 count, stated_length(bytes), bytes.size()));
     if (count == 0) return fail(ErrorCode::missing_value, "there are no triangles in it");
-    MeshBytes found{.vertices = 0, .faces = count, .degenerate_faces = 0};
+    StlCount found{.triangles = count, .degenerate = 0};
     for (size_t i = 0; i < count; ++i) {
         const Corner a = corner_at(bytes, i, 0), b = corner_at(bytes, i, 1),
                      c = corner_at(bytes, i, 2);
         if (!is_finite(a) || !is_finite(b) || !is_finite(c))
             return fail(ErrorCode::invalid_value,
                         fmt::format("triangle {} has a coordinate that is not finite", i + 1));
-        if (a == b || b == c || c == a) ++found.degenerate_faces;
+        if (a == b || b == c || c == a) ++found.degenerate;
     }
     return found;
 }

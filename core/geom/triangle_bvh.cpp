@@ -43,10 +43,9 @@ struct Builder {
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const auto key = [&](uint32_t i) { return boxes[i].min[axis] + boxes[i].max[axis]; };
         const uint32_t middle = first + (last - first) / 2;
-        std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
-                         [&](uint32_t i, uint32_t j) {
-                             return key(i) != key(j) ? key(i) < key(j) : i < j;
-                         });
+        std::nth_element(
+            order.begin() + first, order.begin() + middle, order.begin() + last,
+            [&](uint32_t i, uint32_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
         return middle;
     }
 };
@@ -132,8 +131,8 @@ Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transfor
     std::vector<std::pair<double, ConvexShape>> queue;
     if (a.nodes.empty()) return {};
     for (const Triangle& t : b.triangles) {
-        const ConvexShape shape
-            = swept(convex(Triangle{a_from_b * t.a, a_from_b * t.b, a_from_b * t.c}), sweep_of_b);
+        const ConvexShape shape =
+            swept(convex(Triangle{a_from_b * t.a, a_from_b * t.b, a_from_b * t.c}), sweep_of_b);
         queue.emplace_back(distance(bounds(shape), a.nodes[0].box), shape);
     }
     std::stable_sort(queue.begin(), queue.end(),

@@ -12,7 +12,8 @@ namespace core {
 struct TriangleBvh {
     struct Node {
         Aabb box;
-        uint32_t first = 0; // leaf: first of `count` triangles; inner: left child, the right follows
+        uint32_t first =
+            0; // leaf: first of `count` triangles; inner: left child, the right follows
         uint32_t count = 0; // 0 for an inner node
 
         bool is_leaf() const { return count > 0; }

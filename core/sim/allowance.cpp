@@ -8,13 +8,12 @@ constexpr double holder_distance = 1.0;  // from the stock
 constexpr double fixture_distance = 2.0;
 
 /// The last rule that names the pair wins; a name stands for a body or a kind of body.
-std::optional<Allowance> ruled(const Setup& setup, const std::string& part,
-                               const std::string& body, const std::string& kind) {
+std::optional<Allowance> ruled(const Setup& setup, const std::string& part, const std::string& body,
+                               const std::string& kind) {
     std::optional<Allowance> found;
     for (const AllowanceRule& rule : setup.allowances) {
         const auto names = [&](size_t i, size_t j) {
-            return rule.between[i] == part
-                   && (rule.between[j] == body || rule.between[j] == kind);
+            return rule.between[i] == part && (rule.between[j] == body || rule.between[j] == kind);
         };
         if (names(0, 1) || names(1, 0)) found = Allowance{rule.distance, rule.contact};
     }

@@ -20,13 +20,12 @@ Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double sh
     return shrunk_lower > 0.0 ? Verdict::clear : Verdict::undecided;
 }
 
-double contact_depth(const Allowance& allowance) {
-    return std::max(allowance.contact, resolution);
-}
+double contact_depth(const Allowance& allowance) { return std::max(allowance.contact, resolution); }
 
 void merge(PairClearance& known, const PairClearance& later) {
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
+    known.at_end = later.lower;
     if (later.upper >= known.upper) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;

@@ -10,16 +10,18 @@
 
 namespace core {
 
-/// Machine coordinates of X, Y and Z (those of the gauge line, not the tip), mm. Empty: nobody knows.
+/// Machine coordinates of X, Y and Z (those of the gauge line, not the tip), mm. Empty: nobody
+/// knows.
 using AxisPosition = std::array<std::optional<double>, 3>;
 
 enum class MotionKind : uint8_t { rapid, feed, arc };
 
-/// A circular or helical path: the plane's first two axes turn about the centre, the third advances.
+/// A circular or helical path: the plane's first two axes turn about the centre, the third
+/// advances.
 struct ArcPath {
-    int normal = 2;             // axis along the arc's axis: 0 X, 1 Y, 2 Z
-    Vec3 centre = Vec3(0.0);    // machine coordinates; the component along `normal` is not used
-    double angle = 0.0;         // radians, positive counter-clockwise seen from +normal
+    int normal = 2;          // axis along the arc's axis: 0 X, 1 Y, 2 Z
+    Vec3 centre = Vec3(0.0); // machine coordinates; the component along `normal` is not used
+    double angle = 0.0;      // radians, positive counter-clockwise seen from +normal
 };
 
 /// One rapid, feed or arc move in machine coordinates.

@@ -8,21 +8,43 @@
 namespace core {
 namespace {
 
-/// The rules of this version, with their own severities.
-constexpr std::array<std::pair<const char*, Severity>, 14> rules = {{
+/// Every rule a set-up may name, with its own severity. `program` stands for what the interpreter
+/// remarks about a block.
+constexpr std::array<std::pair<const char*, Severity>, 35> rules = {{
     {"collision", Severity::error},
     {"near-miss", Severity::error},
     {"undecided", Severity::error},
-    {"rapid-in-stock", Severity::error},
-    {"rapid-near-clamp", Severity::error},
-    {"holder-into-wall", Severity::error},
-    {"spindle-off", Severity::error},
-    {"tool-change-unsafe", Severity::error},
-    {"over-travel", Severity::error},
     {"missing-length-offset", Severity::error},
     {"offset-not-tool", Severity::warning},
+    {"length-offset-cancelled", Severity::warning},
     {"tool-not-in-table", Severity::warning},
+    {"stick-out-short", Severity::error},
+    {"work-offset-unset", Severity::warning},
+    {"offset-implausible", Severity::warning},
+    {"home-through-part", Severity::error},
+    {"machine-move-with-state", Severity::warning},
+    {"rapid-in-stock", Severity::error},
+    {"rapid-near-clamp", Severity::error},
+    {"dog-leg-rapid", Severity::error},
+    {"low-retract", Severity::warning},
+    {"incremental-left-on", Severity::warning},
+    {"state-left-over", Severity::warning},
+    {"restart-in-the-middle", Severity::warning},
+    {"units-jump", Severity::warning},
+    {"missing-decimal-point", Severity::warning},
+    {"block-delete", Severity::warning},
+    {"arc-radius", Severity::error},
+    {"over-engagement", Severity::warning},
+    {"tool-change-unsafe", Severity::error},
+    {"singular-orientation", Severity::warning},
+    {"spindle-off", Severity::error},
+    {"no-feed", Severity::error},
+    {"over-travel", Severity::error},
+    {"rotary-with-tool-down", Severity::error},
     {"first-move", Severity::warning},
+    {"rest-material", Severity::note},
+    {"holder-into-wall", Severity::error},
+    {"air-cut", Severity::note},
     {"program", Severity::warning},
 }};
 
@@ -30,19 +52,27 @@ constexpr std::array<std::pair<const char*, Severity>, 14> rules = {{
 
 const char* name_of(Severity severity) {
     switch (severity) {
-    case Severity::off: return "off";
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    default: return "error";
+    case Severity::off:
+        return "off";
+    case Severity::note:
+        return "note";
+    case Severity::warning:
+        return "warning";
+    default:
+        return "error";
     }
 }
 
 const char* name_of(Verdict verdict) {
     switch (verdict) {
-    case Verdict::clear: return "clear";
-    case Verdict::undecided: return "undecided";
-    case Verdict::violation: return "violation";
-    default: return "collision";
+    case Verdict::clear:
+        return "clear";
+    case Verdict::undecided:
+        return "undecided";
+    case Verdict::violation:
+        return "violation";
+    default:
+        return "collision";
     }
 }
 

@@ -14,11 +14,14 @@ const char* name_of(Severity severity);
 
 /// Something a person should know about a block.
 struct Finding {
-    std::string rule;    // stable name, as in `near-miss`
+    std::string rule; // stable name, as in `near-miss`
     Severity severity = Severity::warning;
     std::optional<BlockIndex> block; // empty: the program as a whole
-    std::string message; // one or two sentences as a machinist would say them
-    std::string cure;    // what would make it go away; may be empty
+    std::string message;             // one or two sentences as a machinist would say them
+    std::string cure;                // what would make it go away; may be empty
+    std::string
+        subject{}; // the pair it is about, `holder / clamp-1`, so that findings can be grouped
+    double shortfall = 0.0; // how much is missing of what must be kept, mm
 };
 
 /// What the set-up says about rules by name, in place of their own severity.

@@ -67,8 +67,8 @@ std::string message_of(const PairClearance& pair, const std::string& rule, Block
 
 /// "The flutes run", "the holder runs".
 std::string in_the_plural(std::string message) {
-    for (const auto& [one, many] : {std::pair{"flutes runs", "flutes run"},
-                                    std::pair{"flutes passes", "flutes pass"}})
+    for (const auto& [one, many] :
+         {std::pair{"flutes runs", "flutes run"}, std::pair{"flutes passes", "flutes pass"}})
         if (const size_t at = message.find(one); at != std::string::npos)
             message.replace(at, std::string(one).size(), many);
     return message;
@@ -94,8 +94,12 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion mo
     finding.severity = severity_of(setup, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
+    finding.subject = fmt::format("{} / {}", name_of(pair.pair.part), body);
+    finding.shortfall =
+        pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
     if (!finding.cure.empty())
-        finding.cure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
+        finding.cure[0] =
+            static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
     return finding;
 }
 

@@ -22,9 +22,8 @@ enum class RapidStyle : uint8_t { straight, dogleg };
 
 /// A mill with three linear axes.
 struct Machine {
-    std::array<MachineAxis, 3> axes = {{{{1, 0, 0}, {}, {}, {}, {}},
-                                        {{0, 1, 0}, {}, {}, {}, {}},
-                                        {{0, 0, 1}, {}, {}, {}, {}}}};
+    std::array<MachineAxis, 3> axes = {
+        {{{1, 0, 0}, {}, {}, {}, {}}, {{0, 1, 0}, {}, {}, {}, {}}, {{0, 0, 1}, {}, {}, {}, {}}}};
     RapidStyle rapid = RapidStyle::straight;
 
     /// Where the gauge line stands in the machine frame at these axis values.

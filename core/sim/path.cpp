@@ -31,8 +31,8 @@ Vec3 axis_times(const Vec3& by, const Machine& machine, Path& path) {
 
 void add_straight(Path& path, const Machine& machine, const Vec3& from, const Vec3& to,
                   double duration) {
-    path.legs.push_back({{machine.place(from), machine.place(to)}, path.duration,
-                         path.duration + duration, 0.0});
+    path.legs.push_back(
+        {{machine.place(from), machine.place(to)}, path.duration, path.duration + duration, 0.0});
     path.duration += duration;
 }
 
@@ -57,7 +57,9 @@ void add_dogleg(Path& path, const Machine& machine, const Vec3& from, const Vec3
         Aabb box;
         box.extend(from);
         box.extend(to);
-        path.legs.push_back({.places = box_corners(machine, box), .end = total, .straight = false,
+        path.legs.push_back({.places = box_corners(machine, box),
+                             .end = total,
+                             .straight = false,
                              .certain = {machine.place(from), machine.place(to)}});
         path.duration = total;
         return;
@@ -104,7 +106,8 @@ void add_arc(Path& path, const Machine& machine, const Motion& motion, const Vec
              const Vec3& to, double max_error) {
     const ArcPath& arc = *motion.arc;
     const double radius = arc_radius(arc, from, to);
-    // The sagitta of a chord is r (1 - cos(step / 2)); a spiral's drift adds less than as much again.
+    // The sagitta of a chord is r (1 - cos(step / 2)); a spiral's drift adds less than as much
+    // again.
     const double widest = radius > max_error ? 2.0 * std::acos(1.0 - 0.5 * max_error / radius)
                                              : std::numbers::pi / 2.0;
     const double step = std::min(widest, std::numbers::pi / 2.0);
@@ -117,7 +120,9 @@ void add_arc(Path& path, const Machine& machine, const Motion& motion, const Vec
         const double share = static_cast<double>(i) / count;
         const Vec3 next = i == count ? to : on_arc(motion, from, to, share);
         path.legs.push_back({{machine.place(here), machine.place(next)},
-                             path.duration * (i - 1) / count, path.duration * share, max_error});
+                             path.duration * (i - 1) / count,
+                             path.duration * share,
+                             max_error});
         here = next;
     }
 }

@@ -15,16 +15,16 @@ struct Leg {
     std::vector<Vec3> places; // machine frame
     double begin = 0.0;       // seconds after the motion's start
     double end = 0.0;
-    double path_error = 0.0;  // the true path stays this near to the leg, mm
+    double path_error = 0.0; // the true path stays this near to the leg, mm
     bool straight = true;
-    bool start_known = true;  // false: the machine may come from anywhere within its limits
+    bool start_known = true; // false: the machine may come from anywhere within its limits
     std::vector<Vec3> certain = {};
 };
 
 /// A motion as legs, in order. Empty when an axis may stand anywhere.
 struct Path {
     std::vector<Leg> legs;
-    double duration = 0.0; // seconds
+    double duration = 0.0;      // seconds
     bool assumed_speed = false; // a rapid on an axis whose speed is not stated
 };
 

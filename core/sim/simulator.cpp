@@ -32,7 +32,7 @@ struct BlockRun {
         const Severity severity = severity_of(setup, rule);
         if (severity == Severity::off) return;
         result.findings.push_back(
-            {rule, severity, block.block, std::move(message), std::move(cure)});
+            {rule, severity, block.block, std::move(message), std::move(cure), {}, 0.0});
     }
 
     void add(Finding finding) {
@@ -59,9 +59,12 @@ struct BlockRun {
 
 BlockMotion label(const Motion& motion) {
     switch (motion.kind) {
-    case MotionKind::rapid: return BlockMotion::rapid;
-    case MotionKind::feed: return BlockMotion::feed;
-    default: return BlockMotion::arc;
+    case MotionKind::rapid:
+        return BlockMotion::rapid;
+    case MotionKind::feed:
+        return BlockMotion::feed;
+    default:
+        return BlockMotion::arc;
     }
 }
 
@@ -104,8 +107,9 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
 void BlockRun::carry_out(const Motion& motion) {
     result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
     const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
-    if (path.assumed_speed) state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
-                                                     "speed is not stated");
+    if (path.assumed_speed)
+        state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
+                                 "speed is not stated");
     check_limits(motion);
     if (!tool()) {
         if (state.tool || !state.tool_known) result.checked = false;
@@ -169,11 +173,16 @@ void BlockRun::conclude() {
 
 const char* name_of(BlockMotion motion) {
     switch (motion) {
-    case BlockMotion::none: return "none";
-    case BlockMotion::rapid: return "rapid";
-    case BlockMotion::feed: return "feed";
-    case BlockMotion::arc: return "arc";
-    default: return "cycle";
+    case BlockMotion::none:
+        return "none";
+    case BlockMotion::rapid:
+        return "rapid";
+    case BlockMotion::feed:
+        return "feed";
+    case BlockMotion::arc:
+        return "arc";
+    default:
+        return "cycle";
     }
 }
 

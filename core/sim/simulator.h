@@ -18,9 +18,9 @@ struct SimulatorState {
     bool tool_known = false;
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    double time = 0.0;              // seconds since the program's start
+    double time = 0.0; // seconds since the program's start
     Statistics statistics;
-    std::set<std::string> assumptions; // what had to be taken for granted on the way
+    std::set<std::string> assumptions;  // what had to be taken for granted on the way
     std::set<ToolNumber> unknown_tools; // called, but nothing is known about them; told once
     bool told_unknown_start = false;
 };

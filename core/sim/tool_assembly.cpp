@@ -28,13 +28,15 @@ Result<RevolvedProfile> coned(const ToolDescription& tool, double tip, double fr
     const double height = (r - tip) / steep;
     // A flank longer than the flutes ends with them, before it reaches the full diameter.
     if (height >= tool.flute_length)
-        return RevolvedProfile{{{0.0, tip, tool.flute_length, tip + tool.flute_length * steep, 0.0}}};
+        return RevolvedProfile{
+            {{0.0, tip, tool.flute_length, tip + tool.flute_length * steep, 0.0}}};
     return RevolvedProfile{{{0.0, tip, height, r, 0.0}, side(tool, height)}};
 }
 
 Result<RevolvedProfile> ball(const ToolDescription& tool) {
     const double r = 0.5 * tool.diameter;
-    if (tool.flute_length < r) return refuse(tool, "flute_length is shorter than the ball's radius");
+    if (tool.flute_length < r)
+        return refuse(tool, "flute_length is shorter than the ball's radius");
     RevolvedProfile profile{{{r, 0.0, r, 0.0, r}}};
     if (tool.flute_length > r) profile.elements.push_back(side(tool, r));
     return profile;
@@ -77,14 +79,18 @@ Result<RevolvedProfile> flutes(const ToolDescription& tool) {
     if (!is_size(tool.diameter)) return refuse(tool, "diameter must be above 0");
     if (!is_size(tool.flute_length)) return refuse(tool, "flute_length must be above 0");
     switch (tool.shape) {
-    case ToolShape::ball: return ball(tool);
-    case ToolShape::bull: return bull(tool);
-    case ToolShape::drill: return coned(tool, 0.0, 0.5 * tool.point_deg.value_or(118.0));
+    case ToolShape::ball:
+        return ball(tool);
+    case ToolShape::bull:
+        return bull(tool);
+    case ToolShape::drill:
+        return coned(tool, 0.0, 0.5 * tool.point_deg.value_or(118.0));
     case ToolShape::taper:
     case ToolShape::chamfer:
         if (!tool.angle_deg) return refuse(tool, "taper and chamfer tools need angle_deg");
         return coned(tool, 0.5 * tool.tip_diameter, *tool.angle_deg);
-    default: return RevolvedProfile{{side(tool, 0.0)}};
+    default:
+        return RevolvedProfile{{side(tool, 0.0)}};
     }
 }
 
@@ -109,9 +115,12 @@ Result<RevolvedProfile> stack(const ToolDescription& tool, const std::vector<Con
 
 const char* name_of(PartKind kind) {
     switch (kind) {
-    case PartKind::flutes: return "flutes";
-    case PartKind::shank: return "shank";
-    default: return "holder";
+    case PartKind::flutes:
+        return "flutes";
+    case PartKind::shank:
+        return "shank";
+    default:
+        return "holder";
     }
 }
 

@@ -27,11 +27,11 @@ struct ToolDescription {
     ToolShape shape = ToolShape::flat;
     double diameter = 0.0;
     double flute_length = 0.0;
-    std::optional<double> corner_radius;         // bull
-    std::optional<double> point_deg;             // drill: full angle of the point, 118 if absent
-    std::optional<double> angle_deg;             // taper, chamfer: flank from the axis
-    double tip_diameter = 0.0;                   // taper, chamfer
-    std::vector<std::array<double, 2>> outline;  // profile: r, z from the tip up
+    std::optional<double> corner_radius;        // bull
+    std::optional<double> point_deg;            // drill: full angle of the point, 118 if absent
+    std::optional<double> angle_deg;            // taper, chamfer: flank from the axis
+    double tip_diameter = 0.0;                  // taper, chamfer
+    std::vector<std::array<double, 2>> outline; // profile: r, z from the tip up
     std::vector<ConeStep> shank, holder;
     SpindleDirection cuts = SpindleDirection::clockwise;
     bool cuts_at_centre = true;
@@ -56,7 +56,8 @@ struct ToolAssembly {
 
 /// The solid parts of a tool.
 ///
-/// Errors: invalid_value or missing_value, naming the tool and the key, when the sizes make no tool.
+/// Errors: invalid_value or missing_value, naming the tool and the key, when the sizes make no
+/// tool.
 Result<ToolAssembly> assemble(const ToolDescription& description);
 
 } // namespace core

@@ -80,6 +80,16 @@ TEST(SphereTree, HoldsEveryPointOnceInsideEveryNodeAboveIt) {
     EXPECT_EQ(seen, std::vector<int>(points.size(), 1));
 }
 
+TEST(SphereTree, SplitsEqualCoordinatesByIndex) {
+    const SphereTree tree = tree_of(std::vector<Vec3>(1000, Vec3(1.0)));
+    uint32_t next = 0; // depth first, the leaves come in the order of the points
+    for (const SphereTree::Node& node : tree.nodes)
+        if (node.is_leaf()) {
+            EXPECT_EQ(node.point, next++);
+        }
+    EXPECT_EQ(next, 1000u);
+}
+
 TEST(ClosestPair, AgreesWithBruteForceOnRandomClouds) {
     std::mt19937 rng(12345);
     int far = 0;
@@ -112,6 +122,20 @@ TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
         expect_least(plate, plate, translation({0.0, 0.0, lift}));
     expect_least(plate, plate, {rotation_xyz_deg({0.0, 0.0, 90.0}), Vec3(3.0, -2.0, 4.0)});
     expect_least(plate, plate, {rotation_xyz_deg({30.0, 0.0, 45.0}), Vec3(5.0, 5.0, 14.0)});
+}
+
+TEST(ClosestPair, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
+    std::mt19937 rng(11);
+    for (int i = 0; i < 400; ++i) {
+        // Two blocks turned alike: every column is equally near, but for the rounding of its
+        // points. Spheres of a column touch its end points, so their gaps are off by the last bits
+        // too.
+        const Transform turned = random_pose(rng, 40.0);
+        std::vector<Vec3> a = lattice(5, 5, 8), b = a;
+        for (Vec3& p : a) p = turned * p;
+        for (Vec3& p : b) p = turned * (p + Vec3(0.0, 0.0, 8.0 + i % 7));
+        expect_least(a, b, {});
+    }
 }
 
 TEST(ClosestPair, TakesDuplicatesAndSinglePoints) {
@@ -171,6 +195,17 @@ TEST(PaperSpheres, NeedMoreSphereTestsThanPointTests) {
         EXPECT_GT(found.sphere_tests, found.point_tests);
         EXPECT_GT(found.point_tests, 0u);
     }
+}
+
+TEST(PaperSpheres, TakeTheTestsThatTheOrderOfTheSearchImplies) {
+    // Other orders of splitting and visiting find the same distance with other counts.
+    const SphereTree ball = paper_sphere(0.5);
+    const auto near = closest_pair(ball, ball, translation({50.5, 0.0, 0.0}));
+    EXPECT_EQ(near.sphere_tests, 6629u);
+    EXPECT_EQ(near.point_tests, 4u);
+    const auto unequal = closest_pair(ball, paper_sphere(2.0), translation({70.0, 10.0, 5.0}));
+    EXPECT_EQ(unequal.sphere_tests, 13159u);
+    EXPECT_EQ(unequal.point_tests, 20u);
 }
 
 } // namespace

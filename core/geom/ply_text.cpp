@@ -1,11 +1,13 @@
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "core/geom/mesh_bytes.h"
+#include "core/geom/mesh_text.h"
 #include "core/geom/mesh_words.h"
 
 namespace core {
@@ -47,19 +49,26 @@ class PlyReader {
 public:
     explicit PlyReader(std::string_view bytes) : rest_(bytes) {}
 
-    Result<MeshBytes> read() {
+    Result<MeshText> read() {
         FEELER_TRY([[maybe_unused]] const bool header, read_header());
+        std::string points, outlines;
         for (const Element& element : elements_) {
             if (element.properties.empty()) continue;
+            const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
             for (size_t i = 0; i < element.count; ++i) {
-                FEELER_TRY([[maybe_unused]] const bool entry, read_entry(element, i));
+                FEELER_TRY(const Entry entry, read_entry(element, i));
+                Result<bool> added = true;
+                if (is_vertex) added = add_point(entry, i, points);
+                if (is_face) added = add_outline(entry, i, outlines);
+                if (!added) return tl::unexpected(added.error());
             }
-            if (element.name == "vertex") found_.vertices = element.count;
-            if (element.name == "face") found_.faces = element.count;
-            if (element.name == "face") break; // what follows the faces is no part of the surface
+            if (is_vertex) out_.vertices += element.count;
+            if (is_face) out_.faces = element.count;
+            if (is_face) break; // what follows the faces is no part of the surface
         }
-        if (found_.faces == 0) return fail(ErrorCode::missing_value, "there are no faces in it");
-        return found_;
+        if (out_.faces == 0) return fail(ErrorCode::missing_value, "there are no faces in it");
+        out_.text = plain_header() + points + outlines;
+        return std::move(out_);
     }
 
 private:
@@ -121,32 +130,68 @@ private:
         return true;
     }
 
-    Result<bool> read_entry(const Element& element, size_t i) {
-        const auto place = [&] { return fmt::format("{} {}", element.name, i + 1); };
+    /// What counts of one line of an element.
+    struct Entry {
+        std::array<double, 3> point = {NAN, NAN, NAN};
+        std::vector<double> outline;
+    };
+
+    Result<Entry> read_entry(const Element& element, size_t i) {
+        Entry entry;
         for (const Property& property : element.properties) {
             double count = 1.0;
-            if (property.is_list && !read_scalar(property.count, count))
-                return fail(ErrorCode::syntax, fmt::format("{} is not there", place()));
-            const bool outline =
-                element.name == "face"
-                && (property.name == "vertex_indices" || property.name == "vertex_index");
-            if (outline && !(count >= 3.0))
-                return fail(ErrorCode::invalid_value,
-                            fmt::format("{} has {} corners", place(), count));
-            for (double k = 0.0; k < count; k += 1.0) {
+            bool complete = !property.is_list || read_scalar(property.count, count);
+            for (double k = 0.0; complete && k < count; k += 1.0) {
                 double value = 0.0;
-                if (!read_scalar(property.value, value))
-                    return fail(ErrorCode::syntax, fmt::format("{} is not there", place()));
-                if (!std::isfinite(value))
-                    return fail(ErrorCode::invalid_value,
-                                fmt::format("{} holds a number that is not finite", place()));
-                if (outline && !(value >= 0.0 && value < static_cast<double>(found_.vertices)))
-                    return fail(ErrorCode::invalid_value,
-                                fmt::format("{} names vertex {}, but there are {}, counted from 0",
-                                            place(), value, found_.vertices));
+                complete = read_scalar(property.value, value);
+                if (property.name == "x") entry.point[0] = value;
+                if (property.name == "y") entry.point[1] = value;
+                if (property.name == "z") entry.point[2] = value;
+                if (complete
+                    && (property.name == "vertex_indices" || property.name == "vertex_index"))
+                    entry.outline.push_back(value);
             }
+            if (!complete)
+                return fail(ErrorCode::syntax,
+                            fmt::format("{} {} is not there, or '{}' of it is no "
+                                        "number",
+                                        element.name, i + 1, property.name));
         }
+        return entry;
+    }
+
+    static Result<bool> add_point(const Entry& entry, size_t i, std::string& points) {
+        for (const double x : entry.point) {
+            if (!(std::abs(x) <= double{std::numeric_limits<float>::max()}))
+                return fail(ErrorCode::invalid_value,
+                            fmt::format("vertex {} has a coordinate that is not finite", i + 1));
+            points += fmt::format("{} ", static_cast<float>(x));
+        }
+        points += '\n';
         return true;
+    }
+
+    Result<bool> add_outline(const Entry& entry, size_t i, std::string& outlines) const {
+        if (entry.outline.size() < 3)
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("face {} has {} corners", i + 1, entry.outline.size()));
+        outlines += fmt::format("{}", entry.outline.size());
+        for (const double corner : entry.outline) {
+            if (!(corner >= 0.0 && corner < static_cast<double>(out_.vertices)))
+                return fail(ErrorCode::invalid_value,
+                            fmt::format("face {} names vertex {}, but there are {}, counted from 0",
+                                        i + 1, corner, out_.vertices));
+            outlines += fmt::format(" {}", static_cast<uint32_t>(corner));
+        }
+        outlines += '\n';
+        return true;
+    }
+
+    std::string plain_header() const {
+        return fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face {}\n"
+                           "property list int int vertex_indices\nend_header\n",
+                           out_.vertices, out_.faces);
     }
 
     bool read_scalar(const Scalar& scalar, double& value) {
@@ -188,11 +233,11 @@ private:
     std::string_view rest_;
     Form form_ = Form::ascii;
     std::vector<Element> elements_;
-    MeshBytes found_;
+    MeshText out_;
 };
 
 } // namespace
 
-Result<MeshBytes> checked_ply(std::string_view bytes) { return PlyReader(bytes).read(); }
+Result<MeshText> checked_ply(std::string_view bytes) { return PlyReader(bytes).read(); }
 
 } // namespace core

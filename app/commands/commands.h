@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace app {
+
+/// What the program returns to the shell.
+enum class ExitCode : int {
+    clear = 0,    // no finding of severity error
+    findings = 1, // at least one
+    failed = 2,   // it could not be done to its end
+};
+
+/// Each adds a subcommand that sets `exit_code` when it runs.
+void add_check(CLI::App& cli, ExitCode& exit_code);
+void add_trace(CLI::App& cli, ExitCode& exit_code);
+void add_distance(CLI::App& cli, ExitCode& exit_code);
+
+} // namespace app

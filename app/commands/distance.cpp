@@ -1,0 +1,86 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/commands/body_argument.h"
+#include "app/commands/commands.h"
+#include "app/commands/output.h"
+#include "app/report/distance_report.h"
+#include "app/session/body_pair.h"
+
+namespace app {
+namespace {
+
+struct Options {
+    std::string a, b, output;
+    std::string format = "text";
+    std::string engine = "paper";
+    double mesh_size = 0.5;
+    std::vector<double> move = {0, 0, 0}, rotate = {0, 0, 0}, sweep = {0, 0, 0};
+};
+
+core::Vec3 vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+core::Result<std::string> answer(const Options& options) {
+    FEELER_TRY(const NamedBody a, body_argument(options.a));
+    FEELER_TRY(const NamedBody b, body_argument(options.b));
+    const core::Transform a_from_b{core::rotation_xyz_deg(vector(options.rotate)),
+                                   vector(options.move)};
+    FEELER_TRY(const BodyPairDistance found,
+               measure(a.body, b.body, a_from_b, vector(options.sweep), options.mesh_size));
+    for (const NamedBody* body : {&a, &b})
+        for (const std::string& repair : body->repairs)
+            fmt::print(stderr, "{}: {}\n", body->name, repair);
+    return options.format == "json" ? json_distance(found) : text_distance(found, a.name, b.name);
+}
+
+ExitCode distance(const Options& options) {
+    const auto text = answer(options);
+    if (!text) {
+        print_error(text.error());
+        return ExitCode::failed;
+    }
+    const auto written = write_output(options.output, *text);
+    if (written) return ExitCode::clear;
+    print_error(written.error());
+    return ExitCode::failed;
+}
+
+void add_vector(CLI::App& command, const char* name, std::vector<double>& value, const char* help) {
+    command.add_option(name, value, help)
+        ->delimiter(',')
+        ->expected(3)
+        ->check([](const std::string& text) {
+            double number = 0.0;
+            const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+            return finite ? std::string() : text + " is no finite number";
+        });
+}
+
+} // namespace
+
+void add_distance(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
+    const char* body = "A mesh file, or sphere:R, box:X,Y,Z, cylinder:R,H centred on the origin";
+    command.add_option("a", options->a, body)->required();
+    command.add_option("b", options->b, body)->required();
+    command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    add_vector(command, "--move", options->move, "X,Y,Z: moves B, mm");
+    add_vector(command, "--rotate", options->rotate,
+               "RX,RY,RZ: turns B about its origin before it is moved, degrees, fixed axes");
+    add_vector(command, "--sweep", options->sweep,
+               "X,Y,Z: moves B on by this, the least distance on the way counts, mm");
+    command.add_option("--engine", options->engine, "paper: the search of the paper")
+        ->check(CLI::IsMember({"paper"}))
+        ->capture_default_str();
+    command.add_option("--format", options->format, "text or json")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
+    command.add_option("-o,--output", options->output, "Write the answer to this file");
+    command.callback([options, &exit_code] { exit_code = distance(*options); });
+}
+
+} // namespace app

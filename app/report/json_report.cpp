@@ -1,0 +1,138 @@
+#include "app/report/json_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/version.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json array_of(const core::Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+
+Json bounds_of(const core::PairClearance& pair) {
+    Json clearance;
+    clearance["lower"] = pair.lower;
+    clearance["upper"] = pair.found() ? Json(pair.upper) : Json(nullptr);
+    return clearance;
+}
+
+Json names_of(const CheckRun& run, const core::PairClearance& pair) {
+    return Json::array({core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair)});
+}
+
+void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, double duration) {
+    json["clearance"] = bounds_of(pair);
+    json["allowance"] = pair.allowance.distance;
+    json["pair"] = names_of(run, pair);
+    const bool found = pair.found();
+    json["at"] = found ? Json(duration > 0.0 ? pair.time / duration : 0.0) : Json(nullptr);
+    json["witness"] =
+        found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
+}
+
+/// A motion of which no pair came within the limit, or of which nothing can be said.
+void add_no_pair(Json& json, const CheckRun& run, bool checked) {
+    json["clearance"] = {{"lower", checked ? run.setup.search_limit : 0.0}, {"upper", nullptr}};
+    for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
+}
+
+Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
+    const core::BlockResult& result = block.result;
+    Json json;
+    json["block"] = core::value_of(block.block);
+    json["line"] = block.line;
+    json["calls"] = Json::array();
+    json["text"] = block.text;
+    json["motion"] = core::name_of(result.motion);
+    json["tool"] = result.tool ? Json(core::value_of(*result.tool)) : Json(nullptr);
+    json["time"] = result.time;
+    json["duration"] = result.duration;
+    json["removed"] = result.removed;
+    if (result.motion != core::BlockMotion::none) {
+        if (result.deciding)
+            add_pair(json, run, result.pairs[*result.deciding], result.duration);
+        else
+            add_no_pair(json, run, result.checked);
+    }
+    json["verdict"] = core::name_of(result.verdict);
+    if (!pairs) return json;
+    json["pairs"] = Json::array();
+    for (const core::PairClearance& pair : result.pairs) {
+        Json entry;
+        add_pair(entry, run, pair, result.duration);
+        entry["verdict"] = core::name_of(pair.verdict);
+        json["pairs"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+Json finding_json(const CheckRun& run, const core::Finding& finding) {
+    Json json;
+    json["rule"] = finding.rule;
+    json["severity"] = core::name_of(finding.severity);
+    json["block"] = nullptr;
+    json["line"] = nullptr;
+    if (finding.block) {
+        json["block"] = core::value_of(*finding.block);
+        json["line"] = run.blocks[core::value_of(*finding.block)].line;
+    }
+    json["message"] = finding.message;
+    json["cure"] = finding.cure;
+    return json;
+}
+
+Json error_json(const core::Error& error) {
+    Json json;
+    json["file"] = error.file;
+    json["line"] = error.where.line;
+    json["column"] = error.where.column;
+    json["message"] = error.message;
+    return json;
+}
+
+Json statistics_json(const CheckRun& run) {
+    Json json;
+    json["points"] = run.points;
+    json["lines"] = run.lines;
+    json["sphere_tests"] = 0; // this engine compares boxes and exact shapes instead
+    json["point_tests"] = 0;
+    json["box_tests"] = run.statistics.box_tests;
+    json["shape_tests"] = run.statistics.shape_tests;
+    json["refined"] = run.statistics.refined;
+    json["sweeps"] = run.statistics.sweeps;
+    json["removed"] = run.removed;
+    json["duration"] = run.duration;
+    json["seconds"] = {
+        {"read", run.times.read}, {"model", run.times.model}, {"check", run.times.check}};
+    return json;
+}
+
+} // namespace
+
+std::string json_report(const CheckRun& run, bool pairs) {
+    Json json;
+    json["feeler"] = version;
+    json["schema"] = 1;
+    json["program"] = {{"file", run.program_file},
+                       {"sha256", run.sha256},
+                       {"dialect", gcode::dialect(run.dialect).name},
+                       {"blocks", run.blocks.size()}};
+    json["allowance"] = run.setup.allowance ? Json(*run.setup.allowance) : Json(nullptr);
+    json["mesh_size"] = run.setup.mesh_size;
+    json["assumptions"] = run.assumptions;
+    json["verdict"] = core::name_of(run.verdict);
+    if (run.stopped) json["error"] = error_json(*run.stopped);
+    json["blocks"] = Json::array();
+    for (const CheckedBlock& block : run.blocks)
+        json["blocks"].push_back(block_json(run, block, pairs));
+    json["findings"] = Json::array();
+    for (const core::Finding& finding : run.findings)
+        json["findings"].push_back(finding_json(run, finding));
+    json["statistics"] = statistics_json(run);
+    // Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace app

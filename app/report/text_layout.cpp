@@ -1,0 +1,80 @@
+#include "app/report/text_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace app {
+
+std::string trimmed(std::string_view text) {
+    std::string result;
+    for (const char c : text) result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    const size_t first = result.find_first_not_of(' ');
+    if (first == std::string::npos) return {};
+    return result.substr(first, result.find_last_not_of(' ') - first + 1);
+}
+
+std::string clipped(const std::string& text, size_t width) {
+    if (text.size() <= width) return text;
+    return text.substr(0, width - 3) + "...";
+}
+
+std::string wrapped(const std::string& text, size_t indent, size_t hang) {
+    constexpr size_t width = 80;
+    std::istringstream words(text);
+    std::string result, line(indent, ' '), word;
+    bool line_is_empty = true;
+    while (words >> word) {
+        if (!line_is_empty && line.size() + 1 + word.size() > width) {
+            result += line + "\n";
+            line = std::string(indent + hang, ' ');
+            line_is_empty = true;
+        }
+        if (!line_is_empty) line += ' ';
+        line += word;
+        line_is_empty = false;
+    }
+    return result + line + "\n";
+}
+
+std::string line_ranges(std::vector<uint32_t> lines) {
+    std::sort(lines.begin(), lines.end());
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    std::string text;
+    for (size_t i = 0; i < lines.size();) {
+        size_t last = i;
+        while (last + 1 < lines.size() && lines[last + 1] == lines[last] + 1) ++last;
+        if (!text.empty()) text += ", ";
+        text +=
+            last == i ? fmt::format("{}", lines[i]) : fmt::format("{}-{}", lines[i], lines[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+std::string counted(size_t count, const std::string& noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string duration_text(double seconds) {
+    const auto whole = static_cast<long long>(std::llround(seconds));
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string verdict_text(core::Verdict verdict) {
+    switch (verdict) {
+    case core::Verdict::clear:
+        return "CLEAR";
+    case core::Verdict::undecided:
+        return "UNDECIDED, not proven clear";
+    case core::Verdict::violation:
+        return "VIOLATION, an allowance is not kept";
+    default:
+        return "COLLISION";
+    }
+}
+
+} // namespace app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/sim/verdict.h"
+
+namespace app {
+
+/// Without white space at both ends and with no control characters.
+std::string trimmed(std::string_view text);
+
+/// At most `width` characters, `...` where something is missing.
+std::string clipped(const std::string& text, size_t width);
+
+/// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.
+std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
+
+/// "4, 7-9, 12".
+std::string line_ranges(std::vector<uint32_t> lines);
+
+/// "1 error", "2 errors".
+std::string counted(size_t count, const std::string& noun);
+
+/// "4 min 05 s".
+std::string duration_text(double seconds);
+
+/// The verdict on a program in capitals, with what it means.
+std::string verdict_text(core::Verdict verdict);
+
+} // namespace app

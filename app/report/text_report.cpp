@@ -1,0 +1,148 @@
+#include "app/report/text_report.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "app/report/text_layout.h"
+
+namespace app {
+namespace {
+
+/// Findings that say the same of several blocks: the same rule about the same pair.
+struct FindingGroup {
+    const core::Finding* worst = nullptr;
+    std::vector<uint32_t> lines;
+};
+
+std::vector<FindingGroup> grouped(const CheckRun& run) {
+    std::vector<FindingGroup> groups;
+    std::map<std::pair<std::string, std::string>, size_t> known;
+    for (const core::Finding& finding : run.findings) {
+        const std::string about = finding.subject.empty() ? finding.message : finding.subject;
+        const auto [at, is_new] = known.try_emplace({finding.rule, about}, groups.size());
+        if (is_new) groups.push_back({});
+        FindingGroup& group = groups[at->second];
+        if (!group.worst || finding.shortfall > group.worst->shortfall) group.worst = &finding;
+        if (finding.block) group.lines.push_back(run.blocks[core::value_of(*finding.block)].line);
+    }
+    std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
+        return a.worst->severity > b.worst->severity;
+    });
+    return groups;
+}
+
+std::string findings_text(const CheckRun& run) {
+    std::string text;
+    for (const FindingGroup& group : grouped(run)) {
+        const core::Finding& worst = *group.worst;
+        text += fmt::format("{:<8} {}", core::name_of(worst.severity), worst.rule);
+        if (worst.block) {
+            const CheckedBlock& block = run.blocks[core::value_of(*worst.block)];
+            text += fmt::format(", line {}: {}", block.line, clipped(trimmed(block.text), 40));
+        }
+        text += "\n" + wrapped(worst.message, 9);
+        if (!worst.cure.empty()) text += wrapped("Cure: " + worst.cure, 9);
+        if (group.lines.size() > 1)
+            text += wrapped(fmt::format("The worst of {} blocks, lines {}.", group.lines.size(),
+                                        line_ranges(group.lines)),
+                            9);
+        text += "\n";
+    }
+    return text;
+}
+
+std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
+    if (!result.checked) return fmt::format("{:>17}", "not known");
+    if (!result.deciding)
+        return fmt::format("{:>17}", fmt::format("> {:.0f}", run.setup.search_limit));
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    if (!pair.found()) return fmt::format("{:>17}", fmt::format(">= {:.3f}", pair.lower));
+    if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>17.3f}", pair.upper);
+    return fmt::format("{:>8.3f}-{:<8.3f}", pair.lower, pair.upper);
+}
+
+std::string blocks_text(const CheckRun& run) {
+    std::string text = "  line motion tool    clearance mm  near what            verdict   block\n";
+    for (const CheckedBlock& block : run.blocks) {
+        const core::BlockResult& result = block.result;
+        if (result.motion == core::BlockMotion::none) continue;
+        std::string pair;
+        if (result.deciding) {
+            const core::PairClearance& near = result.pairs[*result.deciding];
+            pair = fmt::format("{} / {}", core::name_of(near.pair.part),
+                               core::body_name(run.setup, near.pair));
+        }
+        text += fmt::format("{:>6} {:<6} {:>4} {} {:<20} {:<9} {}\n", block.line,
+                            core::name_of(result.motion),
+                            result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
+                            clearance_text(run, result), clipped(pair, 20),
+                            core::name_of(result.verdict), clipped(trimmed(block.text), 30));
+    }
+    return text + "\n";
+}
+
+const CheckedBlock* nearest_block(const CheckRun& run) {
+    const CheckedBlock* nearest = nullptr;
+    const auto margin = [](const CheckedBlock& block) {
+        return block.result.pairs[*block.result.deciding].margin();
+    };
+    for (const CheckedBlock& block : run.blocks)
+        if (block.result.deciding && (!nearest || margin(block) < margin(*nearest)))
+            nearest = &block;
+    return nearest;
+}
+
+std::string counts_text(const CheckRun& run) {
+    std::map<core::Severity, size_t> counts;
+    for (const core::Finding& finding : run.findings) ++counts[finding.severity];
+    return fmt::format("{}, {}, {}", counted(counts[core::Severity::error], "error"),
+                       counted(counts[core::Severity::warning], "warning"),
+                       counted(counts[core::Severity::note], "note"));
+}
+
+std::string summary_text(const CheckRun& run) {
+    size_t moving = 0;
+    for (const CheckedBlock& block : run.blocks)
+        moving += block.result.motion != core::BlockMotion::none;
+    std::string text =
+        fmt::format("{}: {}\n", trimmed(run.program_file),
+                    run.stopped ? "STOPPED, not checked to its end" : verdict_text(run.verdict));
+    text += fmt::format("  findings   {}\n", counts_text(run));
+    text += fmt::format("  blocks     {}, {} of them move; dialect {}\n", run.blocks.size(), moving,
+                        gcode::dialect(run.dialect).name);
+    if (const CheckedBlock* block = nearest_block(run)) {
+        const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
+        text +=
+            fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n", block->line,
+                        core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
+                        trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+    }
+    text += fmt::format("  removed    {:.1f} mm3 in {} of machine time\n", run.removed,
+                        duration_text(run.duration));
+    text +=
+        fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
+                    run.setup.mesh_size, run.lines, run.points,
+                    run.times.read + run.times.model + run.times.check);
+    text += "  assuming\n";
+    for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);
+    return text;
+}
+
+} // namespace
+
+std::string text_report(const CheckRun& run, const TextOptions& options) {
+    std::string text = findings_text(run);
+    if (options.blocks) text += blocks_text(run);
+    return text + summary_text(run);
+}
+
+std::string error_text(const core::Error& error) {
+    std::string text = error.file;
+    if (error.where.line > 0) text += fmt::format(":{}", error.where.line);
+    if (error.where.column > 0) text += fmt::format(":{}", error.where.column);
+    return text.empty() ? error.message : text + ": " + error.message;
+}
+
+} // namespace app

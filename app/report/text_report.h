@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "app/session/check_run.h"
+
+namespace app {
+
+/// What a text report holds beside findings and summary.
+struct TextOptions {
+    bool blocks = false; // the table of all blocks that move
+};
+
+/// The report of a check for a person at an 80-column terminal: findings first.
+std::string text_report(const CheckRun& run, const TextOptions& options);
+
+/// An error as `file:line:column: message`.
+std::string error_text(const core::Error& error);
+
+} // namespace app

@@ -1,0 +1,173 @@
+#include "app/session/check_run.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "app/session/digest.h"
+#include "gcode/lowering.h"
+
+namespace app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+core::Error named(core::Error error, const std::string& file) {
+    if (error.file.empty()) error.file = file;
+    return error;
+}
+
+/// The dialect by the command line, else the set-up, else what the program looks like.
+core::Result<gcode::DialectId> choose_dialect(const CheckJob& job, const SetupFile& setup,
+                                              const gcode::Program& program, CheckRun& run) {
+    gcode::DialectId chosen{};
+    if (job.dialect || setup.dialect) {
+        chosen = job.dialect ? *job.dialect : *setup.dialect;
+    } else {
+        const gcode::Recognition seen = gcode::recognise(program);
+        chosen = seen.dialect;
+        run.assumptions.push_back(
+            fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
+    }
+    if (gcode::dialect(chosen).supported) return chosen;
+    return core::fail(core::ErrorCode::unsupported,
+                      fmt::format("the dialect {} is not supported by this version",
+                                  gcode::dialect(chosen).name));
+}
+
+/// What every check of this version takes for granted.
+void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
+    run.assumptions.push_back(
+        fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
+                    core::chord_error(setup.mesh_size)));
+    run.assumptions.push_back("feeds and rapids run at full speed: accelerations are not counted");
+    run.assumptions.push_back(fmt::format(
+        "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
+    if (setup.stock.tolerance == 0.0)
+        run.assumptions.push_back("the raw stock is exactly as large as the set-up says");
+    run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
+                                  ? "rapids run straight"
+                                  : "rapids run as dog-legs, each axis at its own speed");
+}
+
+void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
+    if (program_calls_tools || setup.tools.size() != 1) return;
+    setup.tool_at_start = setup.tools.begin()->first;
+    run.assumptions.push_back(fmt::format("the program calls no tool: tool {} is in the spindle",
+                                          core::value_of(*setup.tool_at_start)));
+}
+
+/// Whether any block up to the end or the first error changes the tool.
+bool calls_tools(const gcode::Program& program, const gcode::Environment& environment) {
+    gcode::InterpreterState state = gcode::initial_state(environment);
+    while (true) {
+        const auto block = gcode::execute_next(program, environment, state);
+        if (!block || !*block) return false;
+        for (const gcode::CanonicalCommand& command : (*block)->commands)
+            if (std::holds_alternative<gcode::ChangeTool>(command)) return true;
+    }
+}
+
+core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
+    core::Finding finding;
+    finding.rule = "program";
+    finding.severity =
+        warning.severity == gcode::Severity::note ? core::Severity::note : core::Severity::warning;
+    if (const auto set = setup.rules.find("program"); set != setup.rules.end())
+        finding.severity = set->second;
+    finding.message = warning.message;
+    return finding;
+}
+
+/// A run while it goes on.
+struct Runner {
+    const gcode::Program& program;
+    const gcode::Environment& environment;
+    CheckRun& run;
+    gcode::InterpreterState interpreter = gcode::initial_state(environment);
+    gcode::Lowering lowering = gcode::initial_lowering(environment);
+
+    void block(const gcode::BlockResult& block, core::SimulatorState& state) {
+        const std::vector<core::Event> events = gcode::lower(block, lowering);
+        CheckedBlock checked{block.block, block.line, std::string(block.text), {}};
+        checked.result = core::run_block(run.setup, {block.block, block.is_cycle, events}, state);
+        for (const gcode::Warning& warning : block.warnings) {
+            core::Finding finding = remark(run.setup, warning);
+            finding.block = block.block;
+            if (finding.severity != core::Severity::off) run.findings.push_back(finding);
+        }
+        for (const core::Finding& finding : checked.result.findings)
+            run.findings.push_back(finding);
+        run.verdict = std::max(run.verdict, checked.result.verdict);
+        run.removed += checked.result.removed;
+        run.blocks.push_back(std::move(checked));
+    }
+
+    void to_the_end(core::SimulatorState& state) {
+        while (true) {
+            const auto next = gcode::execute_next(program, environment, interpreter);
+            if (!next) {
+                run.stopped = named(next.error(), program.file);
+                return;
+            }
+            if (!*next) break;
+            block(**next, state);
+        }
+        if (const auto warning = gcode::ending_warning(environment, interpreter))
+            run.findings.push_back(remark(run.setup, *warning));
+    }
+};
+
+void conclude(CheckRun& run, const core::SimulatorState& state) {
+    run.statistics = state.statistics;
+    run.duration = state.time;
+    run.points = core::point_count(state.stock.lines);
+    run.lines = core::line_count(state.stock.lines);
+    for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
+}
+
+} // namespace
+
+bool CheckRun::has_errors() const {
+    return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
+        return finding.severity == core::Severity::error;
+    });
+}
+
+core::Result<CheckRun> run_check(const CheckJob& job) {
+    const Clock::time_point begin = Clock::now();
+    CheckRun run;
+    run.program_file = job.program;
+    const auto program = gcode::read_program(job.program);
+    if (!program) return tl::unexpected(named(program.error(), job.program));
+    run.sha256 = sha256_of_file(job.program);
+    FEELER_TRY(SetupFile file, read_setup(job.setup));
+    run.assumptions = file.assumptions;
+    run.setup = std::move(file.setup);
+    if (job.allowance) run.setup.allowance = job.allowance;
+    if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    const auto dialect = choose_dialect(job, file, *program, run);
+    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    run.dialect = file.environment.dialect = *dialect;
+    take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
+    add_standing_assumptions(run.setup, run);
+    run.times.read = seconds_since(begin);
+
+    const Clock::time_point modelling = Clock::now();
+    auto state = core::start_of_run(run.setup);
+    if (!state) return tl::unexpected(named(state.error(), job.setup));
+    run.times.model = seconds_since(modelling);
+
+    const Clock::time_point checking = Clock::now();
+    Runner{*program, file.environment, run}.to_the_end(*state);
+    run.times.check = seconds_since(checking);
+    conclude(run, *state);
+    return run;
+}
+
+} // namespace app

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/setup/setup_file.h"
+#include "core/sim/simulator.h"
+#include "gcode/interpreter.h"
+
+namespace app {
+
+/// One block as executed, and what it did.
+struct CheckedBlock {
+    core::BlockIndex block{};
+    uint32_t line = 0;
+    std::string text;
+    core::BlockResult result;
+};
+
+/// Seconds of wall time that the parts of a check took.
+struct CheckTimes {
+    double read = 0.0;  // program and set-up
+    double model = 0.0; // scan lines of the stock
+    double check = 0.0; // interpreting, cutting, measuring
+};
+
+/// A program that was run against a set-up, to its end or to its first error.
+struct CheckRun {
+    std::string program_file;
+    std::string sha256;
+    gcode::DialectId dialect{};
+    core::Setup setup;
+    std::vector<std::string> assumptions;
+    std::vector<CheckedBlock> blocks;
+    std::vector<core::Finding> findings; // in the order of the blocks
+    core::Verdict verdict = core::Verdict::clear;
+    std::optional<core::Error> stopped; // why the program could not be run to its end
+    core::Statistics statistics;
+    size_t points = 0;     // of the stock's model at the end
+    size_t lines = 0;      // scan lines
+    double duration = 0.0; // of the program, seconds
+    double removed = 0.0;  // mm3
+    CheckTimes times;
+
+    bool has_errors() const;
+};
+
+/// What a user asks to be checked.
+struct CheckJob {
+    std::string program;
+    std::string setup;
+    std::optional<double> allowance; // replaces the set-up's
+    std::optional<double> mesh_size;
+    std::optional<gcode::DialectId> dialect;
+};
+
+/// Runs a program against its set-up.
+///
+/// Errors: files that cannot be read or make no sense. An error inside the program ends the run
+///         instead: everything before it is in the result.
+core::Result<CheckRun> run_check(const CheckJob& job);
+
+} // namespace app

@@ -1,0 +1,187 @@
+#include "app/setup/body_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/geom/mesh_file.h"
+
+namespace app {
+namespace {
+
+/// A body as written, in its own frame: a mesh, or a cylinder that stands on the origin.
+struct CylinderKey {
+    double radius = 0.0;
+    double height = 0.0;
+    int axis = 2;
+};
+
+/// Where a body stands: its `at`, `rotate_deg` and `frame`.
+struct Placement {
+    core::Transform machine_from_frame;
+    core::Transform frame_from_body;
+
+    core::Transform machine_from_body() const { return machine_from_frame * frame_from_body; }
+};
+
+Placement read_placement(TableReader& table, const BodyContext& context) {
+    Placement placement;
+    placement.frame_from_body = {
+        core::rotation_xyz_deg(table.vector("rotate_deg").value_or(core::Vec3(0.0))),
+        table.vector("at").value_or(core::Vec3(0.0))};
+    const std::string frame = table.string("frame").value_or("G54");
+    if (const auto found = context.frames.find(frame)) {
+        placement.machine_from_frame = *found;
+        return placement;
+    }
+    std::vector<std::string> known;
+    for (const auto& [name, transform] : context.frames.machine_from) known.push_back(name);
+    table.refuse("frame",
+                 fmt::format("\"{}\" is not known; frames here: {}", frame, fmt::join(known, " ")));
+    return placement;
+}
+
+/// Exactly one of the shapes must be given.
+std::optional<std::string> only_shape(TableReader& table) {
+    std::vector<std::string> given;
+    for (const char* key : {"box", "cylinder", "mesh", "model"})
+        if (table.has(key)) given.emplace_back(key);
+    if (given.size() == 1) return given[0];
+    table.need(given.empty() ? "one of box, cylinder, mesh"
+                             : "a single shape: box, cylinder and mesh exclude each other;");
+    return std::nullopt;
+}
+
+core::Aabb read_box(TableReader& table) {
+    const auto corners = table.rows("box", 3);
+    core::Aabb box;
+    for (const std::vector<double>& c : corners) box.extend(core::Vec3(c[0], c[1], c[2]));
+    const core::Vec3 size = box.size();
+    if (corners.size() != 2 || !(std::min({size.x, size.y, size.z}) > 0.0))
+        table.refuse("box", "must be two opposite corners, as in [[0, 0, -30], [100, 100, 0]]");
+    return box;
+}
+
+CylinderKey read_cylinder(TableReader& table) {
+    CylinderKey cylinder;
+    if (auto inner = table.table("cylinder", table.name() + " cylinder")) {
+        cylinder.radius = inner->number_or("radius", 0.0);
+        cylinder.height = inner->number_or("height", 0.0);
+        const std::string axis = inner->word("axis", {"X", "Y", "Z"}).value_or("Z");
+        cylinder.axis = axis[0] - 'X';
+        inner->finish();
+        if (!(cylinder.radius > 0.0 && cylinder.height > 0.0))
+            table.refuse("cylinder", "needs a radius and a height above 0");
+    }
+    return cylinder;
+}
+
+core::Mesh mesh_of(const core::Aabb& box) {
+    core::Mesh mesh;
+    for (unsigned i = 0; i < 8; ++i)
+        mesh.vertices.emplace_back(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
+                                   i & 4U ? box.max.z : box.min.z);
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
+/// The mesh a body names, in the body's frame. Relative paths are relative to the set-up.
+core::Mesh read_mesh_key(TableReader& table, BodyContext& context) {
+    const std::string name = table.string("mesh").value_or("");
+    if (name.empty()) {
+        table.refuse("mesh", "must name a file");
+        return {};
+    }
+    auto read = core::read_mesh(context.folder / name);
+    if (!read) {
+        table.refuse("mesh", fmt::format("= \"{}\": {}", name, read.error().message));
+        return {};
+    }
+    for (const std::string& repair : read->repairs)
+        context.file.assumptions.push_back(fmt::format("{}: {}", name, repair));
+    return std::move(read->mesh);
+}
+
+core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
+    for (core::Vec3& v : mesh.vertices) v = by * v;
+    return mesh;
+}
+
+/// Box or mesh, moved, as a mesh.
+core::Mesh read_polyhedron(TableReader& table, BodyContext& context, const std::string& shape,
+                           const core::Transform& target_from_body) {
+    core::Mesh mesh = shape == "box" ? mesh_of(read_box(table)) : read_mesh_key(table, context);
+    return moved(std::move(mesh), target_from_body);
+}
+
+core::Solid stock_solid(TableReader& table, BodyContext& context, const std::string& shape,
+                        const core::Transform& frame_from_body) {
+    const bool rotated = frame_from_body.rotation != core::Mat3(1.0);
+    if (shape == "cylinder") {
+        if (rotated) table.refuse("rotate_deg", "turns no cylinder: say its axis instead");
+        const CylinderKey c = read_cylinder(table);
+        return {core::SolidCylinder{frame_from_body.translation, c.radius, c.height, c.axis}, 0.0};
+    }
+    if (shape == "box" && !rotated) {
+        const core::Aabb box = read_box(table);
+        const core::Vec3 at = frame_from_body.translation;
+        return {core::SolidBox{{box.min + at, box.max + at}}, 0.0};
+    }
+    return {core::solid_mesh(read_polyhedron(table, context, shape, frame_from_body)), 0.0};
+}
+
+/// A cylinder along one of its body's axes, standing on the body's origin.
+core::ConvexShape standing(const CylinderKey& cylinder) {
+    const core::ConvexShape upright = core::convex(
+        core::ProfileElement{0.0, cylinder.radius, cylinder.height, cylinder.radius, 0.0});
+    if (cylinder.axis == 2) return upright;
+    const core::Vec3 turn = cylinder.axis == 0 ? core::Vec3(0, 90, 0) : core::Vec3(-90, 0, 0);
+    return core::posed(upright, {core::rotation_xyz_deg(turn), core::Vec3(0.0)});
+}
+
+} // namespace
+
+void read_stock(TableReader& table, BodyContext& context) {
+    const Placement placement = read_placement(table, context);
+    const auto shape = only_shape(table);
+    if (!shape) return;
+    if (*shape == "model")
+        return table.refuse("model", "is not supported by this version; give a box, cylinder or "
+                                     "mesh");
+    core::Setup& setup = context.file.setup;
+    setup.stock_origin = placement.machine_from_frame.translation;
+    setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
+    setup.stock.tolerance = table.number_or("tolerance", 0.0);
+    if (setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
+    context.frames.machine_from["stock"] = placement.machine_from_body();
+    table.finish();
+}
+
+void read_fixture(TableReader& table, BodyContext& context) {
+    core::Setup& setup = context.file.setup;
+    core::Fixture fixture;
+    fixture.name = table.string("name").value_or("");
+    if (fixture.name.empty()) return table.need("name");
+    for (const char* reserved :
+         {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
+        if (fixture.name == reserved) table.refuse("name", "is a word with a meaning of its own");
+    for (const core::Fixture& other : setup.fixtures)
+        if (other.name == fixture.name)
+            table.refuse("name", fmt::format("\"{}\" is there twice", fixture.name));
+    fixture.expendable = table.boolean("expendable").value_or(false);
+    const Placement placement = read_placement(table, context);
+    const auto shape = only_shape(table);
+    if (!shape) return;
+    if (*shape == "model") return table.refuse("model", "is for a stock only");
+    const core::Transform stock_from_body =
+        core::translation(-setup.stock_origin) * placement.machine_from_body();
+    if (*shape == "cylinder")
+        fixture.body = core::posed(standing(read_cylinder(table)), stock_from_body);
+    else
+        fixture.body = core::solid_mesh(read_polyhedron(table, context, *shape, stock_from_body));
+    context.frames.machine_from[fixture.name] = placement.machine_from_body();
+    table.finish();
+    setup.fixtures.push_back(std::move(fixture));
+}
+
+} // namespace app

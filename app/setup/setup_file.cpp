@@ -1,0 +1,217 @@
+#include "app/setup/setup_file.h"
+
+#include <fmt/format.h>
+
+#include "app/setup/body_table.h"
+#include "app/setup/machine_table.h"
+#include "app/setup/table_reader.h"
+#include "app/setup/tool_table.h"
+
+namespace app {
+namespace {
+
+constexpr const char* axis_keys[] = {"X", "Y", "Z"};
+constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
+                                        "G59", "G59.1", "G59.2", "G59.3"};
+
+core::Result<toml::table> parse(const std::string& path) {
+    std::error_code failure;
+    if (std::filesystem::is_directory(path, failure))
+        return core::fail(core::ErrorCode::io, "is a folder, not a set-up file");
+    if (!std::filesystem::exists(path, failure))
+        return core::fail(core::ErrorCode::io, "there is no such set-up file");
+    try {
+        return toml::parse_file(path);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position at = error.source().begin;
+        std::string why(error.description());
+        if (why.find("'allowance'") != std::string::npos)
+            why += "; write the general allowance as an [[allowance]] with a distance and no "
+                   "between when there are others";
+        return core::fail(core::ErrorCode::syntax, why, {at.line, at.column, 0});
+    }
+}
+
+void read_program(TableReader& table, SetupFile& file) {
+    if (const auto name =
+            table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}))
+        file.dialect = gcode::dialect_named(*name);
+    file.environment.block_delete = table.boolean("block_delete").value_or(false);
+    if (auto start = table.table("start", "[program] start")) {
+        for (size_t i = 0; i < 3; ++i) file.environment.start[i] = start->number(axis_keys[i]);
+        start->finish();
+    }
+    table.finish();
+}
+
+void read_offsets(TableReader& table, SetupFile& file) {
+    for (size_t i = 0; i < std::size(offset_names); ++i) {
+        auto offset = table.table(offset_names[i], fmt::format("[offsets] {}", offset_names[i]));
+        if (!offset) continue;
+        for (int axis = 0; axis < 3; ++axis)
+            file.environment.work_offsets[i][axis] = offset->number_or(axis_keys[axis], 0.0);
+        offset->finish();
+        file.offsets_set.insert(static_cast<int>(i));
+    }
+    table.finish();
+}
+
+/// One `[[allowance]]`; without `between` it is the general one, as `allowance = MM`. (TOML does
+/// not let a number and a list share a name.)
+void read_allowance(TableReader& table, core::Setup& setup) {
+    core::AllowanceRule rule;
+    const auto distance = table.number("distance");
+    if (!distance) return table.need("distance");
+    rule.distance = *distance;
+    rule.contact = table.number_or("contact", 0.0);
+    if (rule.distance < 0.0) table.refuse("distance", "must not be negative");
+    if (rule.contact < 0.0) table.refuse("contact", "must not be negative");
+    if (const auto names = table.strings("between", 2)) {
+        rule.between = {(*names)[0], (*names)[1]};
+        setup.allowances.push_back(rule);
+    } else {
+        setup.allowance = rule.distance;
+    }
+    table.finish();
+}
+
+void read_allowances(TableReader& root, core::Setup& setup) {
+    if (root.is_list("allowance")) {
+        for (TableReader& table : root.tables("allowance", "[[allowance]]"))
+            read_allowance(table, setup);
+        return;
+    }
+    setup.allowance = root.number("allowance");
+    if (setup.allowance && *setup.allowance < 0.0) root.refuse("allowance", "must not be negative");
+}
+
+/// A name that no body has would make a rule that never counts.
+void check_allowance_names(TableReader& table, const core::Setup& setup) {
+    for (const core::AllowanceRule& rule : setup.allowances) {
+        for (const std::string& name : rule.between) {
+            bool known = false;
+            for (const char* word :
+                 {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
+                known = known || name == word;
+            for (const core::Fixture& fixture : setup.fixtures)
+                known = known || name == fixture.name;
+            if (!known)
+                table.refuse("allowance", fmt::format("between: there is no body \"{}\"", name));
+        }
+    }
+}
+
+void read_rules(TableReader& table, SetupFile& file) {
+    if (table.boolean("allow_comments").value_or(false))
+        file.assumptions.push_back("allow_comments: comments that allow a rule do not count yet");
+    for (const std::string& rule : table.keys()) {
+        if (rule == "allow_comments") continue;
+        const auto word = table.word(rule.c_str(), {"off", "note", "warning", "error"});
+        if (!word) continue;
+        if (!core::default_severity(rule)) {
+            table.refuse(rule.c_str(), "is not the name of a rule");
+            continue;
+        }
+        const core::Severity severity = *word == "off"       ? core::Severity::off
+                                        : *word == "note"    ? core::Severity::note
+                                        : *word == "warning" ? core::Severity::warning
+                                                             : core::Severity::error;
+        if (rule == "collision" && severity != core::Severity::error)
+            table.refuse("collision", "is always an error");
+        file.setup.rules[rule] = severity;
+    }
+}
+
+/// The machine from its own file, whose mistakes carry its own name.
+void read_machine_file(const std::string& path, core::Machine& machine,
+                       std::optional<core::Error>& error) {
+    const auto parsed = parse(path);
+    if (!parsed) {
+        error = parsed.error();
+    } else {
+        TableReader table(*parsed, "machine", error);
+        read_machine(table, machine);
+    }
+    if (error && error->file.empty()) error->file = path;
+}
+
+void read_machine_table(TableReader& table, BodyContext& context,
+                        std::optional<core::Error>& error) {
+    core::Machine& machine = context.file.setup.machine;
+    if (const auto name = table.string("file"))
+        read_machine_file((context.folder / *name).string(), machine, error);
+    read_machine(table, machine);
+    const core::AxisPosition home = machine.home();
+    if (home[0] && home[1] && home[2])
+        context.file.environment.home = core::Vec3(*home[0], *home[1], *home[2]);
+}
+
+void place_offsets(BodyContext& context) {
+    context.frames.machine_from["machine"] = {};
+    for (size_t i = 0; i < std::size(offset_names); ++i) {
+        const core::Vec3 origin = context.file.environment.work_offsets[i];
+        context.frames.machine_from[offset_names[i]] =
+            core::translation(context.file.setup.machine.place(origin));
+    }
+}
+
+/// Where the machine stands at the first block: as stated, else at home, axis by axis.
+void settle_start(SetupFile& file) {
+    const core::AxisPosition home = file.setup.machine.home();
+    for (size_t i = 0; i < 3; ++i)
+        if (!file.environment.start[i]) file.environment.start[i] = home[i];
+}
+
+void read_bodies(TableReader& root, BodyContext& context) {
+    if (auto stock = root.table("stock", "[stock]"))
+        read_stock(*stock, context);
+    else
+        root.need("[stock]");
+    for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
+        read_fixture(fixture, context);
+    if (root.has("part")) {
+        root.table("part", "[part]");
+        context.file.assumptions.push_back("[part] is not compared with the result yet");
+    }
+}
+
+void read_root(TableReader& root, BodyContext& context, std::optional<core::Error>& error) {
+    SetupFile& file = context.file;
+    core::Setup& setup = file.setup;
+    setup.mesh_size = root.number_or("mesh_size", 0.5);
+    if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
+    if (auto table = root.table("program", "[program]")) read_program(*table, file);
+    if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
+    if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
+    place_offsets(context);
+    for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, file);
+    for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
+        read_length_offset(table, file);
+    read_bodies(root, context);
+    read_allowances(root, setup);
+    check_allowance_names(root, setup);
+    if (auto table = root.table("rules", "[rules]")) read_rules(*table, file);
+    root.finish();
+}
+
+} // namespace
+
+core::Result<SetupFile> read_setup(const std::string& path) {
+    SetupFile file;
+    file.path = path;
+    std::optional<core::Error> error;
+    const auto parsed = parse(path);
+    if (parsed) {
+        BodyContext context{std::filesystem::path(path).parent_path(), {}, file};
+        TableReader root(*parsed, "set-up", error);
+        read_root(root, context, error);
+        settle_start(file);
+    } else {
+        error = parsed.error();
+    }
+    if (!error) return file;
+    if (error->file.empty()) error->file = path;
+    return tl::unexpected(*error);
+}
+
+} // namespace app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/sim/setup.h"
+#include "gcode/environment.h"
+
+namespace app {
+
+/// A set-up file, read and put in its place.
+struct SetupFile {
+    std::string path; // as the user gave it
+    core::Setup setup;
+    gcode::Environment environment;
+    std::optional<gcode::DialectId> dialect; // empty: recognise it
+    std::set<int> offsets_set;               // the work offsets that the file states, 0 is G54
+    std::vector<std::string> assumptions;    // what the file leaves open or what had to be repaired
+};
+
+/// Reads a set-up (TOML) and every file it names; relative paths are relative to the file.
+///
+/// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value, a mesh that
+///         is no solid, a tool that cannot be.
+core::Result<SetupFile> read_setup(const std::string& path);
+
+} // namespace app

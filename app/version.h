@@ -1,0 +1,7 @@
+#pragma once
+
+namespace app {
+
+constexpr const char* version = FEELER_VERSION;
+
+} // namespace app

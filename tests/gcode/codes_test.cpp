@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gcode/codes.h"
+#include "tests/gcode/programs.h"
+
+namespace gcode {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Codes, AreFoundByTheirTenths) {
+    const Code* code = find_code('G', 59.3, DialectId::linuxcnc);
+    ASSERT_NE(code, nullptr);
+    EXPECT_EQ(code->tenths, 593);
+    EXPECT_EQ(code->group, ModalGroup::work_offset);
+    EXPECT_EQ(find_code('M', 593, DialectId::linuxcnc), nullptr);
+    EXPECT_EQ(find_code('G', 59.35, DialectId::linuxcnc), nullptr);
+    EXPECT_EQ(find_code('G', -1, DialectId::linuxcnc), nullptr);
+    EXPECT_EQ(find_code('G', 1e300, DialectId::linuxcnc), nullptr);
+}
+
+TEST(Codes, BelongToDialects) {
+    EXPECT_EQ(find_code('G', 59.3, DialectId::fanuc), nullptr);
+    EXPECT_NE(find_code('G', 187, DialectId::haas), nullptr);
+    EXPECT_EQ(find_code('G', 187, DialectId::fanuc), nullptr);
+    EXPECT_EQ(find_code('G', 81, DialectId::grbl), nullptr);
+}
+
+TEST(Codes, AnUnknownGCodeIsAnErrorWithItsPlace) {
+    const Ran ran = run_text("G0 X1\nG1 G123 X2 F100\n");
+    ASSERT_TRUE(ran.run.error);
+    EXPECT_EQ(ran.run.error->code, core::ErrorCode::unsupported);
+    EXPECT_EQ(ran.run.error->file, "test.ngc");
+    EXPECT_EQ(ran.run.error->where.line, 2u);
+    EXPECT_EQ(ran.run.error->where.column, 4u);
+    EXPECT_EQ(ran.run.error->where.length, 4u);
+    EXPECT_EQ(ran.run.error->message, "G123: there is no such code in the dialect fanuc");
+    EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
+}
+
+TEST(Codes, AnUnknownMCodeIsAWarningAndTheProgramGoesOn) {
+    const Ran ran = run_text("M31 P5\nG0 X1\nM30\n");
+    EXPECT_FALSE(ran.run.error);
+    EXPECT_THAT(warnings_of(ran.run), HasSubstr("M31: unknown here"));
+    EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
+}
+
+TEST(Codes, TwoOfOneModalGroupAreAnError) {
+    EXPECT_EQ(error_of("G17\nG90 G0 G1 X1"),
+              "2:8: G0 and G1 are of one modal group: a block takes one of them");
+    EXPECT_EQ(error_of("M3 M5"),
+              "1:4: M3 and M5 are of one modal group: a block takes one of them");
+    EXPECT_EQ(error_of("G54 G55"),
+              "1:5: G54 and G55 are of one modal group: a block takes one of them");
+    EXPECT_THAT(error_of("G17 G17", DialectId::linuxcnc), HasSubstr("1:5: "));
+    EXPECT_EQ(error_of("G98 G98", DialectId::fanuc), "");
+}
+
+TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
+    EXPECT_THAT(error_of("G0 G81 X1 Z-1 R1 F1", DialectId::linuxcnc), HasSubstr("1:4: G0 and G81"));
+    EXPECT_EQ(error_of("G0 G80 X1", DialectId::linuxcnc), "");
+    EXPECT_EQ(error_of("G0 G80 G40 G49 X1", DialectId::fanuc), "");
+}
+
+TEST(Codes, RefusedOnesSayWhy) {
+    EXPECT_EQ(error_of("G41 D1"), "1:1: G41: cutter radius compensation is not supported yet");
+    EXPECT_EQ(error_of("G0 X1\n G42 D1"),
+              "2:2: G42: cutter radius compensation is not supported yet");
+    for (const std::string_view text : {"G68 X0 Y0 R45", "M98 P100", "G65 P9000", "G96 S100",
+                                        "G84 Z-1 R1 F1", "G54.1 P1", "G31 X1"})
+        EXPECT_THAT(error_of(text), HasSubstr("not supported yet")) << text;
+}
+
+TEST(Codes, CancellationsAreAccepted) {
+    EXPECT_EQ(error_of("G15 G40 G49 G50 G67 G69 G80 G97"), "");
+    EXPECT_EQ(error_of("G40 G49 G61 G8 M48", DialectId::linuxcnc), "");
+    EXPECT_EQ(error_of("G61.1\nG64 P0.1 Q0.1\nM49", DialectId::linuxcnc), "");
+    EXPECT_EQ(error_of("G187 P1\nG103 P1", DialectId::haas), "");
+    EXPECT_EQ(error_of("G9 G1 X1 F1"), "");
+}
+
+TEST(Codes, AWordThatNothingUsesIsAnErrorOrAWarning) {
+    EXPECT_EQ(error_of("G0 X0 K2", DialectId::linuxcnc), "1:7: K2: nothing in this block uses it");
+    EXPECT_EQ(error_of("G0 X0 K2", DialectId::fanuc), "");
+    EXPECT_THAT(warnings_of("G0 X0 K2"), HasSubstr("K2: nothing in this block uses it"));
+}
+
+TEST(Codes, OtherAxesAreRefusedUnlessTheyStay) {
+    EXPECT_EQ(error_of("G0 X1 B0\nG91 B0"), "");
+    EXPECT_EQ(error_of("G0 X1\nG0 B90"), "2:4: B90: rotary axes are not supported yet");
+    EXPECT_EQ(error_of("G91 G1 C1 F5"), "1:8: C1: rotary axes are not supported yet");
+    EXPECT_EQ(error_of("G0 U1"), "1:4: U1: the axes U, V and W are not supported yet");
+}
+
+} // namespace
+} // namespace gcode

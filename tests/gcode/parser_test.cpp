@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gcode/parser.h"
+
+namespace gcode {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+Block parsed(std::string_view text) {
+    auto block = parse_line(text, 7);
+    EXPECT_TRUE(block) << text << ": " << (block ? "" : block.error().message);
+    return block ? *std::move(block) : Block{};
+}
+
+/// "column: message"
+std::string refused(std::string_view text) {
+    const auto block = parse_line(text, 7);
+    if (block) return "accepted";
+    EXPECT_EQ(block.error().where.line, 7u);
+    return std::to_string(block.error().where.column) + ": " + block.error().message;
+}
+
+TEST(Parser, ReadsWordsWithTheirPlaces) {
+    const Block block = parsed("N10 g1X-2.5 Y+3");
+    ASSERT_EQ(block.words.size(), 4u);
+    EXPECT_EQ(block.words[0], (Word{.letter = 'N', .value = 10.0}));
+    EXPECT_EQ(block.words[1], (Word{.letter = 'G', .value = 1.0}));
+    EXPECT_EQ(block.words[2], (Word{.letter = 'X', .value = -2.5, .has_point = true}));
+    EXPECT_EQ(block.words[3], (Word{.letter = 'Y', .value = 3.0}));
+    EXPECT_EQ(block.words[2].span.line, 7u);
+    EXPECT_EQ(block.words[2].span.column, 7u);
+    EXPECT_EQ(block.words[2].span.length, 5u);
+}
+
+TEST(Parser, AllowsBlanksInsideNumbers) {
+    // As LinuxCNC: G0 X 1 2 . 5 Y+.5 Z5.
+    const Block block = parsed("G0 X 1 2 . 5 Y+.5\tZ5.");
+    ASSERT_EQ(block.words.size(), 4u);
+    EXPECT_EQ(block.words[1].value, 12.5);
+    EXPECT_EQ(block.words[2].value, 0.5);
+    EXPECT_EQ(block.words[3].value, 5.0);
+    EXPECT_TRUE(block.words[3].has_point);
+}
+
+TEST(Parser, ReadsCommentsOfBothKinds) {
+    const Block block = parsed("G0 (first \xC3\xA9) X1 (a (nested) one) ; rest (of it");
+    ASSERT_EQ(block.comments.size(), 3u);
+    EXPECT_EQ(block.comments[0].text, "first \xC3\xA9");
+    EXPECT_EQ(block.comments[1].text, "a (nested) one");
+    EXPECT_EQ(block.comments[2].text, " rest (of it");
+    EXPECT_EQ(block.words.size(), 2u);
+}
+
+TEST(Parser, ReadsProgramAndFractionalBlockNumbers) {
+    EXPECT_EQ(parsed("O1000 (SLOT)").words[0].value, 1000.0);
+    EXPECT_EQ(parsed("N10.5 G0").words[0].value, 10.5);
+}
+
+TEST(Parser, ReadsBlockDeleteWithItsSwitch) {
+    EXPECT_FALSE(parsed("G0").block_delete);
+    EXPECT_EQ(parsed("/G0 X1").block_delete, 1);
+    EXPECT_EQ(parsed(" /3 G0").block_delete, 3);
+    EXPECT_EQ(parsed("N10 /9 G0").block_delete, 9);
+    EXPECT_EQ(refused("G0 / X1"), "4: '/' belongs at the start of the block");
+}
+
+TEST(Parser, TakesATapeMarkAndIgnoresTheRestOfItsLine) {
+    EXPECT_TRUE(parsed("%").tape_mark);
+    EXPECT_TRUE(parsed("%1234_NAME").tape_mark);
+    EXPECT_EQ(refused("G0 %"), "4: '%' belongs at the start of a line");
+}
+
+TEST(Parser, NamesALetterWithoutNumber) {
+    EXPECT_EQ(refused("G0 X Y1"), "4: 'X' has no number behind it");
+    EXPECT_EQ(refused("G0 X."), "4: 'X' has no number behind it");
+    EXPECT_EQ(refused("G0 X-"), "4: 'X' has no number behind it");
+}
+
+TEST(Parser, NamesANumberWithoutLetter) {
+    EXPECT_EQ(refused("G0 X1-2"), "6: '-2' has no letter before it");
+    EXPECT_EQ(refused("12 G0"), "1: '12' has no letter before it");
+    EXPECT_EQ(refused("G0 X1.2.3"), "8: '.3' has no letter before it");
+    EXPECT_EQ(refused("G0 X1+"), "6: '+' has no letter before it");
+}
+
+TEST(Parser, RefusesExponents) {
+    EXPECT_THAT(refused("X1e3"), AllOf(HasSubstr("3: 'e3'"), HasSubstr("1E3")));
+}
+
+TEST(Parser, NamesARepeatedWord) {
+    EXPECT_EQ(refused("G0 X1 Y2 X3"), "10: 'X3': a block takes one X word, this is the second");
+    EXPECT_EQ(parsed("G0 G17 M3 M8").words.size(), 4u);
+}
+
+TEST(Parser, NamesAnOpenComment) {
+    EXPECT_THAT(refused("G0 X1 (to the end"),
+                AllOf(HasSubstr("7: "), HasSubstr("(to the end"), HasSubstr("not closed")));
+    EXPECT_EQ(refused("G0 )"), "4: ')' has no meaning here");
+}
+
+TEST(Parser, NamesAnUnknownCharacter) {
+    EXPECT_EQ(refused("G0 X1 !"), "7: '!' has no meaning here");
+    EXPECT_EQ(refused("G0 \xC3\xA9"), "4: the byte 0xC3 has no meaning outside of a comment");
+}
+
+TEST(Parser, RefusesWhatALaterVersionReads) {
+    for (const std::string_view text :
+         {"#1=2", "G0 X#1", "G0 X[1+2]", "O<part> sub", "G0 X-[3]", "G1 X10 ,R2", "@5 ^30"})
+        EXPECT_THAT(refused(text), HasSubstr("not supported by this version")) << text;
+    EXPECT_EQ(refused("o100 Sub"), "1: 'O100 sub': O words are not supported by this version");
+    EXPECT_EQ(refused("N5 O 100 e n d i f"),
+              "4: 'O100 endif': O words are not supported by this version");
+    EXPECT_THAT(refused("GOTO 10"), AllOf(HasSubstr("1: 'GOTO'"), HasSubstr("not supported")));
+    EXPECT_THAT(refused("IF [#1 EQ 2] GOTO 5"), HasSubstr("1: 'IF'"));
+}
+
+TEST(Parser, RefusesMoreDigitsThanANumberHas) {
+    EXPECT_THAT(refused("X" + std::string(100, '1')), HasSubstr("too many digits"));
+}
+
+} // namespace
+} // namespace gcode
