@@ -33,11 +33,11 @@ public:
     }
 
 private:
-    double box_bound(const Aabb& box) {
+    double box_bound(const Aabb& box, double limit) {
         double bound = infinity;
         ++result_.box_tests;
         for (const ShapeOutline& mine : outlines_)
-            bound = std::min(bound, distance_bound(mine, box));
+            bound = std::min(bound, distance_bound(mine, box, limit));
         return bound;
     }
 
@@ -46,7 +46,7 @@ private:
         Separation best;
         double lower = infinity;
         for (size_t i = 0; i < shapes_.size(); ++i) {
-            if (const double bound = distance_bound(outlines_[i], box); bound >= limit) {
+            if (const double bound = distance_bound(outlines_[i], box, limit); bound >= limit) {
                 lower = std::min(lower, bound);
                 continue;
             }
@@ -65,7 +65,7 @@ private:
         std::vector<NearTile> near;
         for (size_t tile = 0; tile < tiles.boxes.size(); ++tile) {
             if (tiles.boxes[tile].empty()) continue;
-            const double bound = box_bound(tiles.boxes[tile]);
+            const double bound = box_bound(tiles.boxes[tile], limit);
             if (bound < limit) near.push_back({bound, tile});
         }
         std::sort(near.begin(), near.end(), [](const NearTile& a, const NearTile& b) {
@@ -98,7 +98,7 @@ private:
 
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
-        if (box_bound({a, b}) >= line_limit()) return;
+        if (box_bound({glm::min(a, b), glm::max(a, b)}, line_limit()) >= line_limit()) return;
         const Separation found =
             nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, line_limit());
         if (found.upper < upper_.upper) upper_ = found;
@@ -133,7 +133,7 @@ private:
         for (const Interval& heights : column) {
             const Aabb box{{square.x0, square.y0, heights.lower},
                            {square.x1, square.y1, heights.upper}};
-            const double here = box_bound(box);
+            const double here = box_bound(box, limit);
             if (here >= limit) {
                 bound = std::min(bound, here);
                 continue;
