@@ -71,6 +71,29 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
     return cycle;
 }
 
+/// Whether the cycle can be carried out between its levels, and ends.
+core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
+                                double bottom) {
+    const core::SourceSpan where = moving_word(execution).span;
+    if (r < bottom)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
+                                      "{:.4f} mm",
+                                      cycle.code / 10, r, bottom),
+                          where);
+    if (cycle.peck && (r - bottom) / *cycle.peck > most_commands / 4)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
+            where);
+    if (execution.modal().feed_mode == FeedMode::inverse_time)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
+            where);
+    return {};
+}
+
 core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -83,24 +106,10 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
                           where);
     const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
     const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
-    if (r < bottom)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
-                                      "{:.4f} mm",
-                                      cycle.code / 10, r, bottom),
-                          where);
-    if (cycle.peck && (r - bottom) / *cycle.peck > most_commands / 4)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
-            where);
+    if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
+        return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;
     if (modal.retract == RetractMode::r_level || (clear && *clear < r)) clear = r;
-    if (modal.feed_mode == FeedMode::inverse_time)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
-            where);
     FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
     return Drilling{execution,
                     cycle,

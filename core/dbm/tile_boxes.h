@@ -1,16 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/dbm/dbm.h"
 
 namespace core {
 
-/// The box of the matter in each tile of a family of lines or columns; empty where there is none.
+/// A box round the matter in each tile of a family of lines or columns. Cuts only ever take away,
+/// so a box is fitted again only after some of them; until then it is larger than it need be.
 struct TileBoxes {
+    static constexpr uint8_t cuts_before_refit = 8;
+
     int u_tiles = 0;
     int v_tiles = 0;
-    std::vector<Aabb> boxes; // u fastest
+    std::vector<Aabb> boxes;   // u fastest
+    std::vector<uint8_t> cuts; // since the box was fitted
 
     size_t index(int u, int v) const {
         return static_cast<size_t>(v / ScanLines::tile_side) * static_cast<size_t>(u_tiles)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/distance/shape_outline.h"
+
 namespace core {
 namespace {
 
@@ -18,7 +20,7 @@ class StockSearch {
 public:
     StockSearch(std::span<const ConvexShape> shapes, const CutModel& stock, const StockGoal& goal)
         : shapes_(shapes), stock_(stock), goal_(goal) {
-        for (const ConvexShape& shape : shapes) boxes_.push_back(bounds(shape));
+        for (const ConvexShape& shape : shapes) outlines_.push_back(outline(shape));
     }
 
     StockSeparation run() {
@@ -31,21 +33,26 @@ public:
     }
 
 private:
-    double box_bound(const Aabb& box) {
+    double box_bound(const Aabb& box, double limit) {
         double bound = infinity;
         ++result_.box_tests;
-        for (const Aabb& mine : boxes_) bound = std::min(bound, distance(mine, box));
+        for (const ShapeOutline& mine : outlines_)
+            bound = std::min(bound, distance_bound(mine, box, limit));
         return bound;
     }
 
     /// Distance of the nearest shape to a convex body, tight only where it is below `limit`.
-    Separation nearest(const ConvexShape& body, double limit) {
+    Separation nearest(const ConvexShape& body, const Aabb& box, double limit) {
         Separation best;
         double lower = infinity;
-        for (const ConvexShape& shape : shapes_) {
+        for (size_t i = 0; i < shapes_.size(); ++i) {
+            if (const double bound = distance_bound(outlines_[i], box, limit); bound >= limit) {
+                lower = std::min(lower, bound);
+                continue;
+            }
             ++result_.shape_tests;
             const Separation found =
-                core::separation(shape, body, {.tolerance = same, .limit = limit});
+                core::separation(shapes_[i], body, {.tolerance = same, .limit = limit});
             lower = std::min(lower, found.lower);
             if (found.upper < best.upper) best = found;
         }
@@ -58,7 +65,7 @@ private:
         std::vector<NearTile> near;
         for (size_t tile = 0; tile < tiles.boxes.size(); ++tile) {
             if (tiles.boxes[tile].empty()) continue;
-            const double bound = box_bound(tiles.boxes[tile]);
+            const double bound = box_bound(tiles.boxes[tile], limit);
             if (bound < limit) near.push_back({bound, tile});
         }
         std::sort(near.begin(), near.end(), [](const NearTile& a, const NearTile& b) {
@@ -74,7 +81,8 @@ private:
         const TileBoxes& tiles = stock_.line_boxes[family];
         for (const NearTile& near : near_tiles(tiles, line_limit())) {
             if (near.bound >= line_limit()) break;
-            if (nearest(convex(tiles.boxes[near.tile]), line_limit()).lower >= line_limit())
+            if (nearest(convex(tiles.boxes[near.tile]), tiles.boxes[near.tile], line_limit()).lower
+                >= line_limit())
                 continue;
             const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
             for (int v = range.v_first; v < range.v_last; ++v)
@@ -90,8 +98,9 @@ private:
 
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
-        if (box_bound({a, b}) >= line_limit()) return;
-        const Separation found = nearest(convex_segment(a, b), line_limit());
+        if (box_bound({glm::min(a, b), glm::max(a, b)}, line_limit()) >= line_limit()) return;
+        const Separation found =
+            nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, line_limit());
         if (found.upper < upper_.upper) upper_ = found;
     }
 
@@ -100,7 +109,7 @@ private:
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
             if (near.bound >= lower_ - same) break;
             const Aabb& box = stock_.column_boxes.boxes[near.tile];
-            if (nearest(convex(box), lower_).lower >= lower_ - same) continue;
+            if (nearest(convex(box), box, lower_).lower >= lower_ - same) continue;
             for_columns(near.tile, [&](int i, int j, const Square& square) {
                 const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
                 lower_ = std::min(lower_, bound);
@@ -124,12 +133,12 @@ private:
         for (const Interval& heights : column) {
             const Aabb box{{square.x0, square.y0, heights.lower},
                            {square.x1, square.y1, heights.upper}};
-            const double here = box_bound(box);
+            const double here = box_bound(box, limit);
             if (here >= limit) {
                 bound = std::min(bound, here);
                 continue;
             }
-            bound = std::min(bound, nearest(convex(box), limit).lower);
+            bound = std::min(bound, nearest(convex(box), box, limit).lower);
         }
         return bound;
     }
@@ -172,7 +181,7 @@ private:
     std::span<const ConvexShape> shapes_;
     const CutModel& stock_;
     StockGoal goal_;
-    std::vector<Aabb> boxes_;
+    std::vector<ShapeOutline> outlines_;
     Separation upper_;
     double lower_ = infinity;
     double refined_lower_ = infinity;

@@ -25,6 +25,7 @@ double contact_depth(const Allowance& allowance) { return std::max(allowance.con
 void merge(PairClearance& known, const PairClearance& later) {
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
+    known.at_end = later.lower;
     if (later.upper >= known.upper) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;

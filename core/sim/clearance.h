@@ -28,6 +28,7 @@ struct PairClearance {
     Vec3 on_tool = Vec3(0.0), on_body = Vec3(0.0); // witness of `upper`, in the stock's frame
     double time = 0.0; // of the witness, seconds after the block's start
     Verdict verdict = Verdict::clear;
+    double at_end = 0.0; // a lower bound of the clearance where the last leg ended
 
     bool found() const { return upper < infinity; }
     double margin() const { return (found() ? upper : lower) - allowance.distance; }

@@ -22,6 +22,19 @@ Leg stretch(const Leg& leg, double first, double last) {
     return {{place(first), place(last)}, time(first), time(last), leg.path_error};
 }
 
+/// How far a point of the tool moves at most along a leg.
+double reach(const Leg& leg) {
+    return glm::distance(leg.places.front(), leg.places.back()) + leg.path_error;
+}
+
+/// Whether a leg cannot bring a pair nearer than it has been in this block: no point of the tool
+/// moves farther than the leg is long. Keeps the bound at the leg's end up to date if so.
+bool stays_away(PairClearance& known, const Leg& leg) {
+    if (!leg.straight || known.at_end - reach(leg) < known.upper) return false;
+    known.at_end -= reach(leg);
+    return true;
+}
+
 double length(const Leg& leg) { return glm::distance(leg.places.front(), leg.places.back()); }
 
 /// What narrows the search against the stock: the interval should not span the allowance.
@@ -61,9 +74,10 @@ Separation LegCheck::to_fixture(const Shapes& shapes, const Fixture& fixture, do
     return best;
 }
 
-Separation LegCheck::to_stock(const Shapes& shapes, const CutModel& stock, double threshold) {
+Separation LegCheck::to_stock(const Shapes& shapes, const CutModel& stock, double threshold,
+                              double limit) {
     const StockSeparation found =
-        separation(shapes, stock, {.limit = setup_.search_limit, .threshold = threshold});
+        separation(shapes, stock, {.limit = limit, .threshold = std::min(threshold, limit)});
     statistics_.box_tests += found.box_tests;
     statistics_.shape_tests += found.shape_tests;
     statistics_.refined += found.refined;
@@ -75,6 +89,7 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     const Fixture& body = setup_.fixtures[fixture];
     const Allowance allowance = fixture_allowance(setup_, part.kind, body);
     PairClearance& known = entry(pairs, {part.kind, fixture}, allowance);
+    if (stays_away(known, leg)) return;
     const double limit = std::min(setup_.search_limit, known.upper);
     const Separation found =
         widened(to_fixture(shapes(part.profile, leg), body, limit), leg.path_error);
@@ -106,13 +121,16 @@ void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClea
 }
 
 LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
-                                        const Allowance& allowance) {
+                                        double nearest) {
+    const Allowance allowance = stock_allowance(setup_, part.kind);
+    const double limit = std::min(setup_.search_limit, nearest);
     Observation seen;
-    seen.plain = to_stock(shapes(part.profile, leg), stock, deciding_distance(allowance));
+    seen.plain = to_stock(shapes(part.profile, leg), stock, deciding_distance(allowance), limit);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
     if (may_touch || seen.plain.upper == 0.0) {
         const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
-        seen.shrunk = to_stock(shapes(inner, leg), stock, resolution + leg.path_error);
+        const double just_apart = resolution + leg.path_error;
+        seen.shrunk = to_stock(shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
     }
     seen.plain = widened(seen.plain, leg.path_error);
     seen.shrunk = widened(seen.shrunk, leg.path_error);
@@ -139,31 +157,40 @@ PairClearance LegCheck::clearance(const ToolPart& part, const Leg& leg, double s
 
 double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
                                std::vector<PairClearance>& pairs) {
-    struct Check {
-        const ToolPart& part;
-        Observation before;
-    };
-    std::vector<Check> checks;
+    std::vector<PartCheck> checks;
     bool settled = true;
     for (const ToolPart& part : tool_.parts) {
+        const Allowance allowance = stock_allowance(setup_, part.kind);
         if (part.kind == PartKind::flutes) continue;
-        const Observation before = observe(part, leg, stock, stock_allowance(setup_, part.kind));
-        settled = settled && clearance(part, leg, start, before, before).verdict == Verdict::clear;
-        checks.push_back({part, before});
+        PairClearance& known = entry(pairs, {part.kind, std::nullopt}, allowance);
+        if (stays_away(known, leg)) continue;
+        const Observation before = observe(part, leg, stock, known.upper);
+        const bool clear = clearance(part, leg, start, before, before).verdict == Verdict::clear;
+        settled = settled && clear;
+        checks.push_back({part, before, clear});
     }
     if (!settled && length(leg) > setup_.mesh_size)
         return check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
                + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
 
     const double removed = cut_along(leg, stock);
-    for (const Check& check : checks) {
-        const Allowance allowance = stock_allowance(setup_, check.part.kind);
-        const bool same = removed == 0.0 || !check.before.plain.found();
-        const Observation after = same ? check.before : observe(check.part, leg, stock, allowance);
+    for (const PartCheck& check : checks) {
+        const Observation after = removed > 0.0 ? look_again(check, leg, stock) : check.before;
         const PairClearance now = clearance(check.part, leg, start, check.before, after);
-        merge(entry(pairs, now.pair, allowance), now);
+        merge(entry(pairs, now.pair, now.allowance), now);
     }
     return removed;
+}
+
+LegCheck::Observation LegCheck::look_again(const PartCheck& check, const Leg& leg,
+                                           const CutModel& stock) {
+    if (!check.before.plain.found()) return check.before;
+    if (!check.clear) return observe(check.part, leg, stock, setup_.search_limit);
+    // Clear by its lower bound: what is left of the stock only gives the upper one.
+    Observation after = check.before;
+    after.plain = widened(
+        to_stock(shapes(check.part.profile, leg), stock, 0.0, setup_.search_limit), leg.path_error);
+    return after;
 }
 
 bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
@@ -171,10 +198,12 @@ bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
     bool gouged = false;
     for (const ToolPart& part : tool_.parts) {
         const Allowance allowance = stock_allowance(setup_, part.kind);
-        const Observation seen = observe(part, leg, stock, allowance);
+        PairClearance& known = entry(pairs, {part.kind, std::nullopt}, allowance);
+        if (stays_away(known, leg)) continue;
+        const Observation seen = observe(part, leg, stock, known.upper);
         const PairClearance now = clearance(part, leg, start, seen, seen);
         gouged = gouged || (part.kind == PartKind::flutes && now.verdict == Verdict::collision);
-        merge(entry(pairs, now.pair, allowance), now);
+        merge(known, now);
     }
     return gouged;
 }
@@ -245,7 +274,7 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
         const double limit = distance + leg.path_error + resolution;
         const Separation found =
             pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
-                         : to_stock(moved, stock, 0.0);
+                         : to_stock(moved, stock, 0.0, limit + 1.0);
         return found.upper <= limit;
     };
     if (reached(0.0)) return 0.0;

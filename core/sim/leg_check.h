@@ -45,14 +45,24 @@ private:
 
     Shapes shapes(const RevolvedProfile& profile, const Leg& leg) const;
     Separation to_fixture(const Shapes& shapes, const Fixture& fixture, double limit);
-    Separation to_stock(const Shapes& shapes, const CutModel& stock, double threshold);
+    Separation to_stock(const Shapes& shapes, const CutModel& stock, double threshold,
+                        double limit);
 
     void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
     void check_fixture(const Leg& leg, double start, size_t fixture, const ToolPart& part,
                        std::vector<PairClearance>& pairs);
 
+    /// A part of a cutting tool before the stock is cut, and whether it is clear of it already.
+    struct PartCheck {
+        const ToolPart& part;
+        Observation before;
+        bool clear;
+    };
+
+    /// Looks no farther than `nearest`.
     Observation observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
-                        const Allowance& allowance);
+                        double nearest);
+    Observation look_again(const PartCheck& check, const Leg& leg, const CutModel& stock);
     PairClearance clearance(const ToolPart& part, const Leg& leg, double start,
                             const Observation& before, const Observation& after) const;
     /// Adds the pairs of all parts with the stock; whether the flutes gouge it.
