@@ -7,7 +7,8 @@
 namespace core {
 namespace {
 
-/// Bounds nearer together than this are not told apart, mm; it is subtracted where it matters.
+/// Bounds nearer together than this are not told apart, mm: what is so little nearer than the best
+/// so far is passed over, and its bound remembered.
 constexpr double same = 1e-7;
 
 struct NearTile {
@@ -106,17 +107,24 @@ private:
 
     void search_columns() {
         lower_ = goal_.limit;
+        double passed_over = infinity;
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
-            if (near.bound >= lower_ - same) break;
+            if (near.bound >= lower_ - same) {
+                passed_over = std::min(passed_over, near.bound);
+                break;
+            }
             const Aabb& box = stock_.column_boxes.boxes[near.tile];
-            if (nearest(convex(box), box, lower_).lower >= lower_ - same) continue;
+            const double bound_of_tile = nearest(convex(box), box, lower_).lower;
+            if (bound_of_tile >= lower_ - same) {
+                passed_over = std::min(passed_over, bound_of_tile);
+                continue;
+            }
             for_columns(near.tile, [&](int i, int j, const Square& square) {
                 const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
                 lower_ = std::min(lower_, bound);
             });
         }
-        // What was passed over is at most `same` nearer than the least that was looked at.
-        lower_ = std::max(0.0, lower_ - same);
+        lower_ = std::min(lower_, passed_over);
     }
 
     template <typename Act>
