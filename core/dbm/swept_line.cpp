@@ -254,6 +254,10 @@ std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, doub
     const ProfileElement& e = sweep.element;
     const LineMotion line(sweep, axis, u, v);
     const double disc = std::max(e.r0, e.r1);
+    // Most lines near a sweep miss it: the cylinder round the piece tells them without a search.
+    const double widest = disc + e.margin;
+    const ProfileElement round{e.z0 - e.margin, widest, e.z0 + e.margin, widest, 0.0};
+    if (!line_interval({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
     const auto reach = [&](double t) { // radius at the line's height
         const double height = line[2](t) - e.z0;
         return disc + std::sqrt(std::max(0.0, e.margin * e.margin - height * height));
