@@ -89,6 +89,58 @@ void expect_sound(const CutBox& world, const Shapes& shapes, const StockSeparati
     EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, 1e-9);
 }
 
+/// The distance to the boxes of all columns: what `lower` is without refinement.
+double to_columns(const Shapes& shapes, const CutModel& model) {
+    double least = infinity;
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i) {
+            const Square s = cell_square(model, i, j);
+            for (const Interval& z : model.columns.line(i, j))
+                for (const ConvexShape& shape : shapes) {
+                    const Aabb box{{s.x0, s.y0, z.lower}, {s.x1, s.y1, z.upper}};
+                    least = std::min(least, separation(shape, convex(box)).upper);
+                }
+        }
+    return least;
+}
+
+/// The distance to the matter on all lines: what `upper` is without refinement.
+double to_lines(const Shapes& shapes, const CutModel& model) {
+    double least = infinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+        for (int v = 0; v < family.v_count(); ++v)
+            for (int u = 0; u < family.u_count(); ++u)
+                for (const Interval& i : family.line(u, v))
+                    for (const ConvexShape& shape : shapes) {
+                        const ScanGrid& grid = model.lines.grid;
+                        const ConvexShape matter =
+                            convex_segment(point_on_line(grid, axis, u, v, i.lower),
+                                           point_on_line(grid, axis, u, v, i.upper));
+                        least = std::min(least, separation(shape, matter).upper);
+                    }
+    }
+    return least;
+}
+
+TEST(StockDistance, IsThatOfTheNearestColumnAndTheNearestLine) {
+    std::mt19937 rng(74);
+    int near = 0;
+    for (int i = 0; i < 40; ++i) {
+        const CutBox world = random_cut_box(rng, i % 12, 0.0);
+        const CutModel model = world.model(i % 2 ? 0.7 : 0.35); // one tile, and several
+        for (int k = 0; k < 3; ++k) {
+            const Shapes shapes = random_tool(rng, world.box.grown(4.0));
+            const Separation found = separation(shapes, model).separation;
+            const double columns = to_columns(shapes, model), lines = to_lines(shapes, model);
+            EXPECT_NEAR(found.lower, std::min(columns, 50.0), 1e-6) << i;
+            EXPECT_NEAR(std::min(found.upper, 50.0), std::min(lines, 50.0), 1e-6) << i;
+            near += lines > 0.0 && lines < 50.0;
+        }
+    }
+    EXPECT_GT(near, 20);
+}
+
 TEST(StockDistance, LiesBetweenItsBoundsAfterRandomCuts) {
     std::mt19937 rng(71);
     Seen seen;
