@@ -118,6 +118,13 @@ IntervalList column_of_mesh(const SolidMesh& solid, const Square& s) {
     return heights;
 }
 
+IntervalList line_of_mesh(const SolidMesh& solid, int axis, double u, double v) {
+    // Lines along Z are asked for one by one while squares are refined.
+    if (axis == 2)
+        return scan_line(triangles_over(solid, {u, u, v, v}), 2, u, v).value_or(IntervalList());
+    return scan_line(*solid.mesh, axis, u, v).value_or(IntervalList());
+}
+
 /// The first vertex of every connected shell.
 std::vector<Vec3> shell_points(const Mesh& mesh) {
     std::vector<uint32_t> parent(mesh.vertices.size());
@@ -177,9 +184,7 @@ IntervalList line_of(const Solid& solid, int axis, double u, double v) {
     return std::visit(
         Overloaded{[&](const SolidBox& b) { return line_of_box(b.box, axis, u, v); },
                    [&](const SolidCylinder& c) { return line_of_cylinder(c, axis, u, v); },
-                   [&](const SolidMesh& m) {
-                       return scan_line(*m.mesh, axis, u, v).value_or(IntervalList());
-                   }},
+                   [&](const SolidMesh& m) { return line_of_mesh(m, axis, u, v); }},
         solid.shape);
 }
 
