@@ -24,6 +24,7 @@ public:
     }
 
     StockSeparation run() {
+        if (goal_.first_line) search_line(*goal_.first_line);
         for (int axis = 0; axis < 3; ++axis) search_lines(axis);
         search_columns();
         if (lower_ < goal_.threshold && upper_.upper >= goal_.threshold) refine_columns();
@@ -86,14 +87,17 @@ private:
                 continue;
             const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
             for (int v = range.v_first; v < range.v_last; ++v)
-                for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
+                for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
         }
     }
 
-    void search_line(int axis, int u, int v) {
+    void search_line(const LineId& id) {
+        const double before = upper_.upper;
+        const auto& [axis, u, v] = id;
         for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
+        if (upper_.upper < before) result_.line = id;
     }
 
     /// Matter that is certainly there, from `a` to `b`.
@@ -105,7 +109,7 @@ private:
     }
 
     void search_columns() {
-        lower_ = goal_.limit;
+        lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
             if (near.bound >= lower_ - same) break;
             const Aabb& box = stock_.column_boxes.boxes[near.tile];
