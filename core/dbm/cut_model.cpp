@@ -47,11 +47,16 @@ Aabb box_of_column(const CutModel& model, int i, int j) {
 
 template <typename BoxOf>
 void refit(const ScanLines& lines, TileBoxes& tiles, size_t tile, const BoxOf& box_of) {
-    const LineRange range = lines_of_tile(lines, tiles, tile);
-    Aabb box;
-    for (int v = range.v_first; v < range.v_last; ++v)
-        for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
-    tiles.boxes[tile] = box;
+    Aabb whole;
+    for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
+        const LineRange range = lines_of_block(lines, tiles, tile, block);
+        Aabb box;
+        for (int v = range.v_first; v < range.v_last; ++v)
+            for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
+        tiles.blocks[tile * TileBoxes::blocks_per_tile + block] = box;
+        whole.extend(box);
+    }
+    tiles.boxes[tile] = whole;
 }
 
 template <typename BoxOf>
@@ -188,10 +193,20 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
     return {u, std::min(u + side, lines.u_count()), v, std::min(v + side, lines.v_count())};
 }
 
+LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile,
+                         size_t block) {
+    const LineRange whole = lines_of_tile(lines, tiles, tile);
+    const int side = TileBoxes::block_side;
+    const int u = whole.u_first + static_cast<int>(block) % TileBoxes::blocks_per_side * side;
+    const int v = whole.v_first + static_cast<int>(block) / TileBoxes::blocks_per_side * side;
+    return {u, std::min(u + side, whole.u_last), v, std::min(v + side, whole.v_last)};
+}
+
 TileBoxes empty_tile_boxes(const ScanLines& lines) {
     constexpr int side = ScanLines::tile_side;
     TileBoxes tiles{(lines.u_count() + side - 1) / side, (lines.v_count() + side - 1) / side, {}};
     tiles.boxes.resize(static_cast<size_t>(tiles.u_tiles) * static_cast<size_t>(tiles.v_tiles));
+    tiles.blocks.resize(tiles.boxes.size() * TileBoxes::blocks_per_tile);
     tiles.cuts.assign(tiles.boxes.size(), TileBoxes::cuts_before_refit);
     return tiles;
 }
