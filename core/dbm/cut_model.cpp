@@ -291,8 +291,10 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
 }
 
 bool is_gone(const CutModel& model) {
-    for (const Aabb& box : model.column_boxes.boxes)
-        if (!box.empty()) return false;
+    // A box that was not fitted since the last cut may stand round nothing.
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i)
+            if (!model.columns.line(i, j).empty()) return false;
     return true;
 }
 

@@ -36,13 +36,22 @@ struct Quadratic {
     double operator()(double t) const { return (a * t + 2.0 * b) * t + c; }
 };
 
+/// The zeros of q, lower one first, from its discriminant >= 0. Nothing cancels, so that a very
+/// small `a` does no harm; a zero that is not there (a = 0) comes out infinite.
+Range zeros(const Quadratic& q, double discriminant) {
+    const double far = -q.b - std::copysign(std::sqrt(discriminant), q.b);
+    if (far == 0.0) return {0.0, 0.0};
+    const double one = far / q.a, other = q.c / far;
+    return {std::min(one, other), std::max(one, other)};
+}
+
 /// Where q <= 0, for a >= 0, within `range`.
 Range where_not_positive(const Quadratic& q, Range range) {
     if (q.a == 0.0) return where_not_negative({-q.c, -2.0 * q.b}, range);
     const double discriminant = q.b * q.b - q.a * q.c;
     if (discriminant < 0.0) return {1.0, 0.0};
-    const double root = std::sqrt(discriminant);
-    return {std::max(range.first, (-q.b - root) / q.a), std::min(range.last, (-q.b + root) / q.a)};
+    const Range below = zeros(q, discriminant);
+    return {std::max(range.first, below.first), std::min(range.last, below.last)};
 }
 
 /// Least and greatest of two functions over the candidates that were tried.
@@ -59,27 +68,33 @@ struct Extent {
     }
 };
 
-/// The extent of along(t) -+ sqrt(under(t)) over `range`, for a concave root: ends and stationary
-/// points. Every candidate is a point of the swept volume, so nothing is ever taken too long.
-std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& under, Range range) {
+/// Half the chord of a circle at a distance from its centre; at a cone's tip both are rounding.
+double half_chord(double radius, double away) {
+    return std::sqrt(std::max(0.0, (radius - away) * (radius + away)));
+}
+
+/// The extent of along(t) -+ half(t) over `range`, where half is the root of `under` and concave:
+/// ends and stationary points. Every candidate is a point of the swept volume, so nothing is ever
+/// taken too long.
+template <typename Half>
+std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& under,
+                                         const Half& half, Range range) {
     if (range.empty() && range.first != range.last) return std::nullopt;
     Extent extent;
-    const auto offer = [&](double t) {
-        const double half = std::sqrt(std::max(0.0, under(t)));
-        extent.add(along(t) - half, along(t) + half);
-    };
+    const auto offer = [&](double t) { extent.add(along(t) - half(t), along(t) + half(t)); };
     offer(range.first);
     offer(range.last);
-    // Stationary where (a t + b)^2 = by^2 (a t^2 + 2 b t + c).
+    // Stationary where (a t + b)^2 = k (a t^2 + 2 b t + c), k = by^2. The discriminant of this is
+    // k (k - a) (b^2 - a c); multiplied out it would be noise where k is 0, as it is for every line
+    // across the motion. Its last factor is positive where the root is concave.
     const double k = along.by * along.by;
-    const double a = under.a * (under.a - k);
-    const double b = under.b * (under.a - k);
-    const double c = under.b * under.b - k * under.c;
-    const double discriminant = b * b - a * c;
-    if (a != 0.0 && discriminant >= 0.0) {
-        const double root = std::sqrt(discriminant);
-        offer(range.clamp((-b - root) / a));
-        offer(range.clamp((-b + root) / a));
+    const Quadratic stationary{under.a * (under.a - k), under.b * (under.a - k),
+                               under.b * under.b - k * under.c};
+    const double bend = std::max(0.0, under.b * under.b - under.a * under.c);
+    if (k >= under.a) {
+        const Range at = zeros(stationary, k * (k - under.a) * bend);
+        offer(range.clamp(at.first));
+        offer(range.clamp(at.last));
     }
     return extent.interval();
 }
@@ -123,7 +138,11 @@ std::optional<Interval> ball_interval(const ElementSweep& sweep, int axis, doubl
     const Range range = where_not_positive(outside, whole_motion);
     if (range.first > range.last) return std::nullopt;
     const Linear along{-line[axis].at, -line[axis].by};
-    return extent_with_root(along, {-outside.a, -outside.b, -outside.c}, range);
+    const auto half = [&](double t) {
+        const double d = std::hypot(line[(axis + 1) % 3](t), line[(axis + 2) % 3](t));
+        return half_chord(r, d);
+    };
+    return extent_with_root(along, {-outside.a, -outside.b, -outside.c}, half, range);
 }
 
 /// A truncated cone met by a line along X or Y: at each moment a chord of the circle at its height.
@@ -141,7 +160,8 @@ std::optional<Interval> cone_across(const ElementSweep& sweep, int axis, double 
     range = where_not_negative({radius.at + side.at, radius.by + side.by}, range);
     if (range.first > range.last) return std::nullopt;
     const Linear along{-line[axis].at, -line[axis].by};
-    return extent_with_root(along, squared(radius) - squared(side), range);
+    const auto half = [&](double t) { return half_chord(radius(t), side(t)); };
+    return extent_with_root(along, squared(radius) - squared(side), half, range);
 }
 
 /// Lower and upper end of a truncated cone at rest above a point `r` from its axis, at most its
@@ -171,7 +191,7 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     const Linear rise{-line[2].at, -line[2].by};
     const auto offer = [&](double at) {
         const double t = range.clamp(at);
-        const Interval ends = cone_heights(e, std::sqrt(std::max(0.0, across(t))));
+        const Interval ends = cone_heights(e, std::hypot(line[0](t), line[1](t)));
         extent.add(rise(t) + ends.lower, rise(t) + ends.upper);
     };
     offer(range.first);
@@ -185,10 +205,10 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     // On the slant: d/dt (rise + k sqrt(across)) = 0.
     const double k = (e.z1 - e.z0) / (e.r1 - e.r0);
     const double middle = -across.b / across.a;
-    const double least = std::max(0.0, across(middle));
+    const double nearest = std::hypot(line[0](middle), line[1](middle));
     const double steepness = k * k * across.a - rise.by * rise.by;
     if (steepness > 0.0) {
-        const double away = std::abs(rise.by) * std::sqrt(least / (across.a * steepness));
+        const double away = std::abs(rise.by) * nearest / std::sqrt(across.a * steepness);
         offer(middle - away);
         offer(middle + away);
     }
@@ -234,23 +254,29 @@ std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, doub
     const ProfileElement& e = sweep.element;
     const LineMotion line(sweep, axis, u, v);
     const double disc = std::max(e.r0, e.r1);
-    const auto reach = [&](double height) { // radius at a height above the disc
+    const auto reach = [&](double t) { // radius at the line's height
+        const double height = line[2](t) - e.z0;
         return disc + std::sqrt(std::max(0.0, e.margin * e.margin - height * height));
     };
-    const auto height = [&](double t) { return line[2](t) - e.z0; };
     const auto depth = [&](double t) { // how far the line lies within the body across itself
         if (axis == 2) return disc + e.margin - std::hypot(line[0](t), line[1](t));
-        const double level = e.margin - std::abs(height(t));
-        if (level < 0.0) return level;
-        return std::min(level, reach(height(t)) - std::abs(line[1 - axis](t)));
+        return reach(t) - std::abs(line[1 - axis](t));
     };
-    const double deepest = argmax(depth, whole_motion);
+    // Only at the heights of the body is the depth concave.
+    Range level = whole_motion;
+    if (axis != 2) {
+        const Linear height{line[2].at - e.z0, line[2].by};
+        level = where_not_negative({e.margin - height.at, -height.by}, level);
+        level = where_not_negative({e.margin + height.at, height.by}, level);
+        if (level.first > level.last) return std::nullopt;
+    }
+    const double deepest = argmax(depth, level);
     if (depth(deepest) < 0.0) return std::nullopt;
-    const Range range{border(depth, deepest, 0.0), border(depth, deepest, 1.0)};
+    const Range range{border(depth, deepest, level.first), border(depth, deepest, level.last)};
     const auto half = [&](double t) {
         if (axis != 2) {
             const double side = line[1 - axis](t);
-            const double r = reach(height(t));
+            const double r = reach(t);
             return std::sqrt(std::max(0.0, r * r - side * side));
         }
         const double beyond = std::max(0.0, std::hypot(line[0](t), line[1](t)) - disc);

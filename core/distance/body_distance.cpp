@@ -47,7 +47,10 @@ Aabb bounds(const ExactBody& body) {
 Separation separation(const ConvexShape& shape, const ExactBody& body, const SeparationGoal& goal) {
     if (const auto* convex = std::get_if<ConvexShape>(&body)) {
         const Separation found = separation(shape, *convex, goal);
-        return found.upper < goal.limit ? found : Separation{};
+        if (found.upper < goal.limit) return found;
+        Separation none;
+        none.lower = std::min(found.lower, goal.limit);
+        return none;
     }
     const auto& mesh = std::get<SolidMesh>(body);
     const Separation found = separation(shape, *mesh.bvh, goal);

@@ -15,8 +15,8 @@ Aabb bounds(const ExactBody& body);
 
 /// The distance between a convex shape over its sweep and a body, insides included.
 ///
-/// Result: as separation() of the shapes; 0 also when one lies wholly inside the other. Infinite
-///         when nothing lies within `goal.limit`.
+/// Result: as separation() of the shapes; 0 also when one lies wholly inside the other. `upper` is
+///         infinite when nothing is found within `goal.limit`, and `lower` at most the limit.
 Separation separation(const ConvexShape& shape, const ExactBody& body,
                       const SeparationGoal& goal = {});
 

@@ -7,7 +7,8 @@
 namespace core {
 namespace {
 
-/// Bounds nearer together than this are not told apart, mm; it is subtracted where it matters.
+/// Bounds nearer together than this are not told apart, mm: what is so little nearer than the best
+/// so far is passed over, and its bound remembered.
 constexpr double same = 1e-7;
 
 struct NearTile {
@@ -121,15 +122,15 @@ private:
 
     void search_columns() {
         lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
-        const auto limit = [&] { return lower_ - same; };
+        // Ties are passed over, and the bound lowered by what they may be nearer; none at the limit.
+        const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
             if (near.bound >= limit()) break;
             for_columns(near.tile, limit, [&](int i, int j, const Square& square) {
                 lower_ = std::min(lower_, bound_of(square, stock_.columns.line(i, j), limit()));
             });
         }
-        // What was passed over is at most `same` nearer than the least that was looked at.
-        lower_ = std::max(0.0, lower_ - same);
+        lower_ = std::max(0.0, limit());
     }
 
     template <typename Limit, typename Act>

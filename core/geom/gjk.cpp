@@ -24,17 +24,41 @@ bool already_in(const Simplex& simplex, const Simplex::Vertex& vertex) {
     return false;
 }
 
+/// The vertex that stands for the nearest point of the simplex; it is a point of A - B as well.
+Simplex::Vertex nearest_vertex(const Simplex& simplex) {
+    Simplex::Vertex sum{Vec3(0.0), Vec3(0.0), Vec3(0.0), 0.0, 1.0};
+    for (size_t i = 0; i < static_cast<size_t>(simplex.count); ++i) {
+        const Simplex::Vertex& vertex = simplex.vertices[i];
+        sum.difference += vertex.weight * vertex.difference;
+        sum.on_a += vertex.weight * vertex.on_a;
+        sum.on_b += vertex.weight * vertex.on_b;
+        sum.time_a += vertex.weight * vertex.time_a;
+    }
+    return sum;
+}
+
+/// Takes `w` into the simplex and returns its nearest point, shorter than `v` if that can be had.
+Vec3 advance(Simplex& simplex, const Simplex::Vertex& w, const Vec3& v) {
+    const Simplex before = simplex;
+    if (simplex.count < 4 && !already_in(simplex, w)) {
+        simplex.vertices[static_cast<size_t>(simplex.count++)] = w;
+        const Vec3 next = reduce_to_nearest(simplex);
+        if (glm::length(next) < glm::length(v)) return next;
+    }
+    // The simplex is so flat that its faces are rounding. The way from v to w is sound.
+    simplex.vertices[0] = nearest_vertex(before);
+    simplex.vertices[1] = w;
+    simplex.count = 2;
+    return reduce_to_nearest(simplex);
+}
+
 /// The pair of points behind the nearest point of the simplex, moved out by the margins.
 void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, double margin_a,
                  double margin_b) {
-    found.point_a = found.point_b = Vec3(0.0);
-    found.time_a = 0.0;
-    for (size_t i = 0; i < static_cast<size_t>(simplex.count); ++i) {
-        const Simplex::Vertex& vertex = simplex.vertices[i];
-        found.point_a += vertex.weight * vertex.on_a;
-        found.point_b += vertex.weight * vertex.on_b;
-        found.time_a += vertex.weight * vertex.time_a;
-    }
+    const Simplex::Vertex nearest = nearest_vertex(simplex);
+    found.point_a = nearest.on_a;
+    found.point_b = nearest.on_b;
+    found.time_a = nearest.time_a;
     const double length = glm::length(v);
     if (length <= margin_a + margin_b) { // overlap: any point between the cores is in both
         const double share = margin_a + margin_b > 0.0 ? margin_a / (margin_a + margin_b) : 0.0;
@@ -70,9 +94,9 @@ Separation separation(const ConvexShape& a, const ConvexShape& b, const Separati
         const Simplex::Vertex w = support_pair(a, b, v);
         found.lower = std::max(found.lower, glm::dot(v, w.difference) / length - margins);
         if (found.lower >= goal.limit || found.upper - found.lower <= goal.tolerance) break;
-        if (simplex.count == 4 || already_in(simplex, w)) break;
-        simplex.vertices[static_cast<size_t>(simplex.count++)] = w;
-        v = reduce_to_nearest(simplex);
+        const Vec3 next = advance(simplex, w, v);
+        if (!(glm::length(next) < length)) break;
+        v = next;
     }
     found.lower = std::min(found.lower, found.upper);
     return found;

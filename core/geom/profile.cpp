@@ -17,11 +17,10 @@ double radius_at(const ProfileElement& e, double z) {
     return e.r0 + (e.r1 - e.r0) * (z - e.z0) / (e.z1 - e.z0);
 }
 
-/// The part of a cone between two heights, its side moved inwards by `by`; empty if nothing is
-/// left.
-std::optional<ProfileElement> inner_cone(const ProfileElement& e, double by, double z0, double z1) {
+/// The part of a cone between two heights, made narrower; empty if nothing is left.
+std::optional<ProfileElement> inner_cone(const ProfileElement& e, double narrower, double z0,
+                                         double z1) {
     if (!(z0 < z1)) return std::nullopt;
-    const double narrower = by * widening(e);
     double r0 = radius_at(e, z0) - narrower, r1 = radius_at(e, z1) - narrower;
     if (r0 <= 0.0 && r1 <= 0.0) return std::nullopt;
     // Where the side reaches the axis the cone now has its tip.
@@ -53,6 +52,17 @@ bool faces_down(const RevolvedProfile& profile, size_t i) {
     if (i == 0) return true;
     const ProfileElement& below = profile.elements[i - 1];
     return e.r0 > below.r1 + below.margin;
+}
+
+/// What joins a piece, raised by `by`, to the narrower one below: the points that deep lie within
+/// the chord of the circle round the inner edge of the step.
+std::optional<ProfileElement> inner_collar(const ProfileElement& e, const ProfileElement& below,
+                                           double by) {
+    const double rim = below.r1 + below.margin;
+    const double top = std::min(e.z0 + by, e.z1);
+    if (!(e.z0 < top) || e.margin > 0.0) return std::nullopt;
+    return ProfileElement{e.z0, std::max(0.0, rim - by), top, std::min(rim, radius_at(e, top)),
+                          0.0};
 }
 
 } // namespace
@@ -92,19 +102,28 @@ bool is_convex(const RevolvedProfile& profile) {
 RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by) {
     RevolvedProfile inner;
     for (const ProfileElement& e : profile.elements) {
-        const auto kept =
-            e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, by, e.z0 + by, e.z1 - by);
+        const auto kept = e.margin > 0.0 ? inner_round(e, by)
+                                         : inner_cone(e, by * widening(e), e.z0 + by, e.z1 - by);
         if (kept) inner.elements.push_back(*kept);
     }
     return inner;
 }
 
 RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by) {
+    // Beside a seam that turns outwards a point may be deep in the body though the flank of its
+    // own piece, carried on beyond the seam, is near. What lies on its own level is always near.
+    const bool convex = is_convex(profile);
     RevolvedProfile inner;
     for (size_t i = 0; i < profile.elements.size(); ++i) {
         const ProfileElement& e = profile.elements[i];
-        const double z0 = faces_down(profile, i) ? e.z0 + by : e.z0;
-        const auto kept = e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, by, z0, e.z1);
+        const bool raised = faces_down(profile, i);
+        const double z0 = raised ? e.z0 + by : e.z0;
+        const double narrower = convex ? by * widening(e) : by;
+        const auto kept = e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, narrower, z0, e.z1);
+        if (i > 0 && raised) {
+            const auto collar = inner_collar(e, profile.elements[i - 1], by);
+            if (collar) inner.elements.push_back(*collar);
+        }
         if (kept) inner.elements.push_back(*kept);
     }
     return inner;

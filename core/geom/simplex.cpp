@@ -67,9 +67,18 @@ bool hold_origin(Simplex& s) {
     const double weights[] = {volume(at(1), at(2), at(3)) / all, volume(at(0), at(3), at(2)) / all,
                               volume(at(0), at(1), at(3)) / all, volume(at(0), at(2), at(1)) / all};
     for (const double weight : weights)
-        if (weight < 0.0) return false;
-    for (size_t i = 0; i < 4; ++i) s.vertices[i].weight = weights[i];
-    return true;
+        if (!(weight >= 0.0)) return false;
+    // Of a flat tetrahedron far away these are nothing but rounding. Only the point they stand for
+    // proves anything.
+    const double sum = weights[0] + weights[1] + weights[2] + weights[3];
+    Vec3 point(0.0);
+    double reach = 0.0;
+    for (size_t i = 0; i < 4; ++i) {
+        s.vertices[i].weight = weights[i] / sum;
+        point += s.vertices[i].weight * at(i);
+        reach = std::max(reach, glm::length(at(i)));
+    }
+    return glm::length(point) <= 1e-13 * reach;
 }
 
 Nearest nearest_on_tetrahedron(const Simplex& s) {

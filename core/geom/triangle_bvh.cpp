@@ -64,9 +64,9 @@ struct Search {
     }
 
     Separation result() const {
-        Separation found = best;
-        if (!(found.upper < goal.limit)) return {};
-        found.lower = std::min(least_lower, found.upper);
+        const double lower = std::min({least_lower, best.upper, goal.limit});
+        Separation found = best.upper < goal.limit ? best : Separation{};
+        found.lower = lower;
         return found;
     }
 };
@@ -140,7 +140,6 @@ Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transfor
     for (const auto& [bound, shape] : queue) {
         if (bound >= best.limit() || best.best.upper == 0.0) break;
         Separation found = separation(shape, a, {goal.tolerance, best.limit()});
-        if (!found.found()) continue;
         std::swap(found.point_a, found.point_b);
         best.offer(found);
     }

@@ -27,8 +27,9 @@ TriangleBvh build_bvh(const Mesh& mesh);
 
 /// The distance from a convex shape to the surface of a mesh.
 ///
-/// Result: empty (infinite) when nothing lies within `goal.limit`. The inside of the mesh does not
-///         count: a shape wholly inside has a distance to the surface.
+/// Result: `upper` is infinite when nothing is found within `goal.limit`, and `lower` at most the
+///         limit. The inside of the mesh does not count: a shape wholly inside has a distance to
+///         the surface.
 /// Cost:   O(log n) near the surface, O(n) at worst.
 Separation separation(const ConvexShape& shape, const TriangleBvh& mesh,
                       const SeparationGoal& goal = {});

@@ -1,0 +1,255 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/dbm/cut_model.h"
+#include "tests/support/convex_oracle.h"
+#include "tests/support/stock_oracle.h"
+
+namespace core {
+namespace {
+
+using test_support::CutBox;
+using test_support::random_cut_box;
+using test_support::random_direction;
+using test_support::random_point;
+
+constexpr double spacing = 0.7;
+
+/// Calls act(i, j, square) for every cell whose closed square holds the point.
+template <typename Act>
+void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i) {
+            const Square s = cell_square(model, i, j);
+            if (s.x0 <= p.x && p.x <= s.x1 && s.y0 <= p.y && p.y <= s.y1) act(i, j, s);
+        }
+}
+
+/// A part of the square that holds the point.
+Square part_round(const Square& s, const Vec3& p, std::mt19937& rng) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    return {p.x - share(rng) * (p.x - s.x0), p.x + share(rng) * (s.x1 - p.x),
+            p.y - share(rng) * (p.y - s.y0), p.y + share(rng) * (s.y1 - p.y)};
+}
+
+void expect_held(const CutModel& model, const Vec3& p, std::mt19937& rng) {
+    int cells = 0;
+    for_cells_at(model, p, [&](int i, int j, const Square& s) {
+        ++cells;
+        EXPECT_TRUE(model.columns.line(i, j).contains(p.z)) << p.x << ' ' << p.y << ' ' << p.z;
+        const Square part = part_round(s, p, rng);
+        EXPECT_TRUE(fresh_column(model, i, j, part).contains(p.z))
+            << p.x << ' ' << p.y << ' ' << p.z;
+        const Aabb& box = model.column_boxes.boxes[model.column_boxes.index(i, j)];
+        EXPECT_EQ(distance_squared(p, box), 0.0);
+    });
+    EXPECT_GE(cells, 1);
+}
+
+struct Seen {
+    int stock = 0, close = 0, gone = 0;
+};
+
+/// Whatever is stock under some path within the path error lies in the columns.
+void expect_outer_model_holds(const CutBox& world, const CutModel& model, std::mt19937& rng,
+                              Seen& seen) {
+    const Vec3 off = world.path_error * random_direction(rng);
+    for (int k = 0; k < 500; ++k) {
+        const Vec3 p = random_point(world.box, rng);
+        const double outside = world.outside_cuts(p, off);
+        if (outside <= 0.0) {
+            ++seen.gone;
+            continue;
+        }
+        ++(outside < 0.1 ? seen.close : seen.stock);
+        expect_held(model, p, rng);
+    }
+}
+
+TEST(CutModelColumns, HoldEveryPointThatIsStillStock) {
+    std::mt19937 rng(61);
+    Seen seen;
+    for (int i = 0; i < 60; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 12, i % 3 ? 0.0 : 0.15);
+        expect_outer_model_holds(world, world.model(spacing), rng, seen);
+        ASSERT_FALSE(HasFailure()) << i;
+    }
+    EXPECT_GT(seen.stock, 4000);
+    EXPECT_GT(seen.close, 500);
+    EXPECT_GT(seen.gone, 4000);
+}
+
+TEST(CutModelLines, AreStockOverTheirWholeLength) {
+    std::mt19937 rng(62);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    size_t ends = 0;
+    for (int i = 0; i < 30; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 8, i % 3 ? 0.0 : 0.15);
+        const CutModel model = world.model(spacing);
+        const Vec3 off = world.path_error * random_direction(rng);
+        for (int axis = 0; axis < 3; ++axis) {
+            const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+            const TileBoxes& tiles = model.line_boxes[static_cast<size_t>(axis)];
+            for (int v = 0; v < family.v_count(); ++v)
+                for (int u = 0; u < family.u_count(); ++u)
+                    for (const Interval& matter : family.line(u, v))
+                        for (const double s : {0.0, 1.0, share(rng)}) {
+                            const Vec3 p = point_on_line(model.lines.grid, axis, u, v,
+                                                         matter.lower + s * matter.length());
+                            ++ends;
+                            ASSERT_LE(distance_squared(p, world.box), 1e-20);
+                            ASSERT_GE(world.outside_cuts(p, off), -1e-7) << i << ' ' << axis;
+                            const Aabb& box = tiles.boxes[tiles.index(u, v)];
+                            ASSERT_LE(distance_squared(p, box), 1e-20);
+                        }
+        }
+    }
+    EXPECT_GT(ends, 20000u);
+}
+
+TEST(CutModelLines, AreAllThatIsStock) {
+    // Lines are no shorter than the stock either, up to the path error that is taken off twice.
+    std::mt19937 rng(63);
+    int held = 0;
+    for (int i = 0; i < 30; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 8, 0.0);
+        const CutModel model = world.model(spacing);
+        for (int k = 0; k < 400; ++k) {
+            const int axis = k % 3;
+            const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+            const int u = static_cast<int>(rng() % static_cast<unsigned>(family.u_count()));
+            const int v = static_cast<int>(rng() % static_cast<unsigned>(family.v_count()));
+            const Vec3 p =
+                point_on_line(model.lines.grid, axis, u, v, random_point(world.box, rng)[axis]);
+            if (world.outside_cuts(p) < 1e-7) continue;
+            ++held;
+            ASSERT_TRUE(family.line(u, v).contains(p[axis])) << i;
+        }
+    }
+    EXPECT_GT(held, 3000);
+}
+
+TEST(FreshLine, IsStockOverItsWholeLengthAndMissesNone) {
+    std::mt19937 rng(64);
+    int in = 0, out = 0;
+    for (int i = 0; i < 20; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 8, 0.0);
+        const CutModel model = world.model(spacing);
+        for (int k = 0; k < 300; ++k) {
+            const Vec3 p = random_point(world.box, rng);
+            const double outside = world.outside_cuts(p);
+            if (std::abs(outside) < 1e-7) continue;
+            ++(outside > 0.0 ? in : out);
+            for_cells_at(model, p, [&](int ci, int cj, const Square&) {
+                EXPECT_EQ(fresh_line(model, ci, cj, p.x, p.y).contains(p.z), outside > 0.0);
+            });
+        }
+    }
+    EXPECT_GT(in, 1000);
+    EXPECT_GT(out, 1000);
+}
+
+TEST(Cut, RemovesTheVolumeOfASlot) {
+    const RevolvedProfile flutes{{{0, 5, 20, 5, 0}}};
+    const CutBox world{{{0, 0, -20}, {100, 40, 0}}, 0.0, {{flutes, {-6, 20, -5}, {106, 20, -5}}}};
+    CutModel model = world.uncut(0.5);
+    EXPECT_NEAR(cut(model, world.sweep(0)), 5000.0, 1.0);
+    EXPECT_EQ(cut(model, world.sweep(0)), 0.0);
+}
+
+TEST(Cut, RemovesWhatASampleSaysAndNothingTheSecondTime) {
+    std::mt19937 rng(65);
+    int cutting = 0;
+    for (int i = 0; i < 24; ++i) {
+        const CutBox world = random_cut_box(rng, 4, 0.0);
+        CutModel model = world.uncut(0.5);
+        double removed = 0.0;
+        for (size_t k = 0; k < world.cuts.size(); ++k) {
+            const double now = cut(model, world.sweep(k));
+            ASSERT_GE(now, 0.0);
+            removed += now;
+        }
+        for (size_t k = 0; k < world.cuts.size(); ++k) ASSERT_EQ(cut(model, world.sweep(k)), 0.0);
+        int gone = 0;
+        constexpr int samples = 1500;
+        for (int k = 0; k < samples; ++k)
+            gone += world.outside_cuts(random_point(world.box, rng)) < 0.0;
+        const Vec3 size = world.box.size();
+        const double whole = size.x * size.y * size.z;
+        EXPECT_NEAR(removed, whole * gone / samples, 0.05 * whole) << i;
+        cutting += removed > 10.0;
+    }
+    EXPECT_GT(cutting, 12);
+}
+
+TEST(CutModel, DoesNotDependOnTheOrderOfCuts) {
+    std::mt19937 rng(66);
+    for (int i = 0; i < 12; ++i) {
+        CutBox world = random_cut_box(rng, 8, i % 2 ? 0.1 : 0.0);
+        const CutModel one = world.model(spacing);
+        std::shuffle(world.cuts.begin(), world.cuts.end(), rng);
+        const CutModel other = world.model(spacing);
+        EXPECT_TRUE(one.columns == other.columns);
+        for (size_t axis = 0; axis < 3; ++axis)
+            EXPECT_TRUE(one.lines.families[axis] == other.lines.families[axis]);
+    }
+}
+
+TEST(CutModel, CopyIsASnapshotThatLaterCutsDoNotChange) {
+    std::mt19937 rng(67);
+    CutBox world = random_cut_box(rng, 150, 0.0); // more than a chunk of the log
+    for (CutBox::Cut& c : world.cuts) c.flutes = {{{0, 0.6, 12, 0.6, 0}}};
+    CutModel model = world.uncut(spacing);
+    std::vector<CutModel> copies;
+    for (size_t k = 0; k < world.cuts.size(); ++k) {
+        if (k % 30 == 0) copies.push_back(model);
+        cut(model, world.sweep(k));
+    }
+    CutModel branch = copies[2]; // two ways on from one snapshot
+    cut(branch, world.sweep(149));
+    const std::vector<CutBox::Cut> all = world.cuts;
+    for (size_t c = 0; c < copies.size(); ++c) {
+        world.cuts.assign(all.begin(), all.begin() + static_cast<long>(30 * c));
+        const CutModel again = world.model(spacing);
+        EXPECT_TRUE(again.columns == copies[c].columns);
+        EXPECT_EQ(again.log.size(), copies[c].log.size());
+        for (size_t axis = 0; axis < 3; ++axis)
+            EXPECT_TRUE(again.lines.families[axis] == copies[c].lines.families[axis]);
+        for (int i = 0; i < again.columns.u_count(); ++i) {
+            const Square s = cell_square(again, i, 7);
+            EXPECT_EQ(fresh_column(again, i, 7, s), fresh_column(copies[c], i, 7, s));
+        }
+    }
+}
+
+TEST(CutModel, IsGoneWhenAllOfItWasCut) {
+    const RevolvedProfile wide{{{0, 40, 60, 40, 0}}};
+    const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {{wide, {5, 5, -1}, {5, 5, -1}}}};
+    EXPECT_FALSE(is_gone(world.uncut(1.0)));
+    EXPECT_TRUE(is_gone(world.model(1.0)));
+}
+
+TEST(CutModelColumns, HoldTheToleranceThatNoLineMeets) {
+    // The raw stock may reach 1 mm farther: what is not cut there may be there.
+    CutModel model = make_cut_model({SolidBox{{{0, 0, 0}, {10, 10, 10}}}, 1.0}, 0.5).value();
+    const RevolvedProfile flat{{{0, 3, 30, 3, 0}}};
+    const auto cutter = std::make_shared<Cutter>(make_cutter(flat, 0.0));
+    cut(model, {cutter, {-5, 5, 2}, {20, 5, 2}});
+    std::mt19937 rng(68);
+    int in = 0;
+    for (int k = 0; k < 3000; ++k) {
+        const Vec3 p = random_point({Vec3(-1), Vec3(11)}, rng);
+        if (distance_squared(p, {Vec3(0), Vec3(10)}) > 1.0) continue;
+        if (test_support::outside_sweep(flat, {-5, 5, 2}, {20, 5, 2}, p) <= 0.0) continue;
+        ++in;
+        expect_held(model, p, rng);
+    }
+    EXPECT_GT(in, 1000);
+    for_cells_at(model, {-0.9, 5.1, 0}, [&](int i, int j, const Square&) {
+        EXPECT_FALSE(model.columns.line(i, j).contains(3.0)); // and what is cut is not
+    });
+}
+
+} // namespace
+} // namespace core

@@ -1,0 +1,228 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/distance/stock_distance.h"
+#include "tests/support/convex_oracle.h"
+#include "tests/support/stock_oracle.h"
+
+namespace core {
+namespace {
+
+using test_support::certainly_outside;
+using test_support::CutBox;
+using test_support::random_cut_box;
+using test_support::random_point;
+
+using Shapes = std::vector<ConvexShape>;
+
+ProfileElement cylinder(double r, double z0, double z1) { return {z0, r, z1, r, 0.0}; }
+
+/// A shank and a holder, a ball, a turned box or a triangle, at rest or moved straight.
+Shapes random_tool(std::mt19937& rng, const Aabb& near) {
+    const Vec3 at = random_point(near, rng);
+    const Vec3 places[] = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
+    Shapes shapes;
+    switch (rng() % 4) {
+    case 0:
+        shapes = {convex(cylinder(0.8, 0, 4)), convex(ProfileElement{4, 1.5, 6, 2.5, 0})};
+        break;
+    case 1:
+        shapes = {convex_sphere(0.5)};
+        break;
+    case 2:
+        shapes = {posed(convex(Aabb{{-1, -0.5, -0.2}, {1, 0.5, 0.2}}),
+                        {rotation_xyz_deg({30, 40, 50}), Vec3(0.0)})};
+        break;
+    default:
+        shapes = {convex(Triangle{{0, 0, 0}, {1, 2, 0}, {0, 0, 1.5}})};
+    }
+    for (ConvexShape& shape : shapes) shape = swept(posed(shape, translation(at)), places);
+    return shapes;
+}
+
+double distance_to(const Shapes& shapes, const Vec3& p) {
+    double least = infinity;
+    for (const ConvexShape& shape : shapes)
+        least = std::min(least, separation(shape, convex_segment(p, p)).upper);
+    return least;
+}
+
+/// Points of the stock that is left, at random, many of them near its cut faces, and near `round`.
+std::vector<Vec3> stock_points(const CutBox& world, const Vec3& round, std::mt19937& rng) {
+    std::normal_distribution<double> away(0.0, 0.3);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 700; ++i) {
+        const Vec3 p =
+            i % 2 ? random_point(world.box, rng) : round + Vec3(away(rng), away(rng), away(rng));
+        if (distance_squared(p, world.box) == 0.0 && world.outside_cuts(p) > 0.0)
+            points.push_back(p);
+    }
+    return points;
+}
+
+struct Seen {
+    int far = 0, near = 0, overlapping = 0, clear = 0, violated = 0, undecided = 0;
+};
+
+/// Any point of the stock contradicts a `lower` above its distance; the witness proves `upper`.
+void expect_sound(const CutBox& world, const Shapes& shapes, const StockSeparation& result,
+                  const StockGoal& goal, std::mt19937& rng, Seen& seen) {
+    const Separation& found = result.separation;
+    ASSERT_TRUE(found.lower >= 0.0 && found.lower <= found.upper && found.lower <= goal.limit);
+    const Vec3 round = found.found() ? found.point_b : bounds(shapes[0]).center();
+    double sampled = infinity;
+    for (const Vec3& p : stock_points(world, round, rng))
+        sampled = std::min(sampled, distance_to(shapes, p));
+    EXPECT_LE(found.lower, sampled + 1e-9);
+    ++(!found.found() ? seen.far : found.upper > 0.0 ? seen.near : seen.overlapping);
+    ++(found.lower >= goal.threshold  ? seen.clear
+       : found.upper < goal.threshold ? seen.violated
+                                      : seen.undecided);
+    if (!found.found()) return;
+    double outside = infinity;
+    for (const ConvexShape& shape : shapes)
+        outside = std::min(outside, certainly_outside(shape, found.point_a, rng));
+    EXPECT_LE(outside, 1e-9);
+    EXPECT_LE(distance_squared(found.point_b, world.box), 1e-18);
+    EXPECT_GE(world.outside_cuts(found.point_b), -1e-7);
+    EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, 1e-9);
+}
+
+TEST(StockDistance, LiesBetweenItsBoundsAfterRandomCuts) {
+    std::mt19937 rng(71);
+    Seen seen;
+    for (int i = 0; i < 36; ++i) {
+        const CutBox world = random_cut_box(rng, i % 12, 0.0);
+        const CutModel model = world.model(0.7);
+        for (int k = 0; k < 6; ++k) {
+            const Shapes shapes = random_tool(rng, world.box.grown(k % 2 ? 3.0 : 0.0));
+            const StockGoal goal{.limit = k % 3 ? 50.0 : 1.5};
+            expect_sound(world, shapes, separation(shapes, model, goal), goal, rng, seen);
+            ASSERT_FALSE(HasFailure()) << i << ' ' << k;
+        }
+    }
+    EXPECT_GT(seen.near, 40);
+    EXPECT_GT(seen.overlapping, 40);
+    EXPECT_GT(seen.far, 5);
+}
+
+TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
+    std::mt19937 rng(72);
+    Seen seen;
+    size_t refined = 0;
+    for (int i = 0; i < 30; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 12, 0.0);
+        const CutModel model = world.model(0.7);
+        for (int k = 0; k < 6; ++k) {
+            const Shapes shapes = random_tool(rng, world.box.grown(2.0));
+            const Separation first = separation(shapes, model).separation;
+            if (!first.found()) continue;
+            const double share = k / 5.0;
+            const StockGoal goal{.threshold = first.lower + share * (first.upper - first.lower),
+                                 .finest = 0.02,
+                                 .work_limit = k == 3 ? 10u : 3000u};
+            const StockSeparation found = separation(shapes, model, goal);
+            refined += found.refined > 0;
+            EXPECT_GE(found.separation.lower, first.lower - 1e-6);
+            EXPECT_LE(found.separation.upper, first.upper);
+            expect_sound(world, shapes, found, goal, rng, seen);
+            ASSERT_FALSE(HasFailure()) << i << ' ' << k;
+        }
+    }
+    EXPECT_GT(refined, 40u);
+    EXPECT_GT(seen.clear, 25);
+    EXPECT_GT(seen.violated, 10);
+}
+
+/// A plate from which two slots leave a wall of the given thickness at y = 0.13.
+CutBox thin_wall(double thickness) {
+    const RevolvedProfile flat{{cylinder(3, 0, 30)}};
+    const double y = 0.13 + 3.0;
+    return {{{-15, -15, -10}, {15, 15, 0}},
+            0.0,
+            {{flat, {-30, y + 0.5 * thickness, -8}, {30, y + 0.5 * thickness, -8}},
+             {flat, {-30, y - 6.0 - 0.5 * thickness, -8}, {30, y - 6.0 - 0.5 * thickness, -8}}}};
+}
+
+TEST(StockDistance, SeesAWallThinnerThanTheMeshSize) {
+    std::mt19937 rng(73);
+    for (const double thickness : {0.3, 0.05, 0.004}) {
+        const CutBox world = thin_wall(thickness);
+        const CutModel model = world.model(0.5);
+        // A ball beside the wall, above the floor of the slot.
+        const double truth = 0.6;
+        const Shapes ball = {posed(convex_sphere(1.0),
+                                   translation({1.7, 0.13 + 0.5 * thickness + 1.0 + truth, -4}))};
+        for (const double threshold : {0.0, 0.55, 0.65}) {
+            const StockGoal goal{.threshold = threshold, .finest = 0.002};
+            const StockSeparation found = separation(ball, model, goal);
+            EXPECT_LE(found.separation.lower, truth + 1e-9);
+            EXPECT_GE(found.separation.upper, truth - 1e-6);
+            if (threshold > 0.0 && threshold < truth) {
+                EXPECT_GE(found.separation.lower, threshold) << thickness;
+            }
+            if (threshold > truth && thickness > 0.1) {
+                EXPECT_LT(found.separation.upper, threshold) << thickness;
+            }
+        }
+        // A needle through the wall between the scan lines.
+        const Shapes needle = {convex_segment({0.01, -2, -3}, {0.01, 2, -3.01})};
+        EXPECT_EQ(separation(needle, model).separation.lower, 0.0);
+    }
+}
+
+TEST(StockDistance, IsBeyondTheLimitForBodiesFarAway) {
+    const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {}};
+    const CutModel model = world.model(1.0);
+    const Shapes ball = {posed(convex_sphere(1.0), translation({41, 5, 5}))};
+    for (const double limit : {1.0, 20.0, 29.9999999999}) {
+        const Separation found = separation(ball, model, {.limit = limit}).separation;
+        EXPECT_FALSE(found.found());
+        EXPECT_EQ(found.lower, limit);
+    }
+    const Separation found = separation(ball, model, {.limit = 50.0}).separation;
+    EXPECT_NEAR(found.lower, 30.0, 1e-6);
+    EXPECT_NEAR(found.upper, 30.0, 0.1);
+    EXPECT_LE(found.lower, 30.0);
+    EXPECT_GE(found.upper, 30.0);
+}
+
+TEST(StockDistance, OfAStockThatIsCutAwayIsBeyondTheLimit) {
+    const RevolvedProfile wide{{cylinder(40, 0, 60)}};
+    const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {{wide, {5, 5, -1}, {5, 5, -1}}}};
+    const Shapes ball = {posed(convex_sphere(1.0), translation({5, 5, 5}))};
+    const Separation found = separation(ball, world.model(1.0), {.threshold = 1.0}).separation;
+    EXPECT_FALSE(found.found());
+    EXPECT_EQ(found.lower, 50.0);
+}
+
+TEST(StockDistance, IsNothingInsideTheStock) {
+    const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {}};
+    const Shapes small = {posed(convex_sphere(0.01), translation({5.2, 5.3, 5.1}))};
+    const Separation found = separation(small, world.model(1.0)).separation;
+    EXPECT_EQ(found.lower, 0.0);
+    EXPECT_LE(found.upper, 1.0);
+}
+
+TEST(StockDistance, OfAFlatFaceOverAFlatStockIsExactAndCheap) {
+    const CutBox world{{{-50, -50, -30}, {50, 50, 0}}, 0.0, {}};
+    const CutModel model = world.model(0.5);
+    const Shapes holder = {posed(convex(cylinder(20, 0, 30)), translation({3, 2, 1.25}))};
+    const StockSeparation found = separation(holder, model, {.threshold = 1.0});
+    EXPECT_NEAR(found.separation.lower, 1.25, 1e-6);
+    EXPECT_NEAR(found.separation.upper, 1.25, 1e-6);
+    EXPECT_LT(found.shape_tests, 300u); // ties are passed over
+}
+
+TEST(StockDistance, OfAContactIsNothing) {
+    const CutBox world{{{-5, -5, -3}, {5, 5, 0}}, 0.0, {}};
+    const CutModel model = world.model(0.5);
+    const Shapes resting = {convex(cylinder(2, 0, 30))};
+    const Separation found = separation(resting, model, {.threshold = 1e-6}).separation;
+    EXPECT_LE(found.lower, 1e-9);
+    EXPECT_LE(found.upper, 1e-9);
+}
+
+} // namespace
+} // namespace core

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "core/dbm/cut_model.h"
+#include "tests/support/profile_oracle.h"
+
+namespace test_support {
+
+/// A box that has been cut, known by its cuts alone: what is true, whatever the model says.
+struct CutBox {
+    struct Cut {
+        core::RevolvedProfile flutes;
+        core::Vec3 from, to;
+    };
+    core::Aabb box;
+    double path_error = 0.0;
+    std::vector<Cut> cuts;
+
+    /// How far a point lies outside everything that was cut, the paths being off by `off`.
+    double outside_cuts(const core::Vec3& p, const core::Vec3& off = core::Vec3(0.0)) const {
+        double least = core::infinity;
+        for (const Cut& cut : cuts)
+            least = std::min(least, outside_sweep(cut.flutes, cut.from + off, cut.to + off, p));
+        return least;
+    }
+
+    core::CutModel uncut(double spacing) const {
+        return core::make_cut_model({core::SolidBox{box}, 0.0}, spacing).value();
+    }
+    core::CutterSweep sweep(size_t i) const {
+        return {std::make_shared<core::Cutter>(core::make_cutter(cuts[i].flutes, path_error)),
+                cuts[i].from, cuts[i].to};
+    }
+    core::CutModel model(double spacing) const {
+        core::CutModel result = uncut(spacing);
+        for (size_t i = 0; i < cuts.size(); ++i) core::cut(result, sweep(i));
+        return result;
+    }
+};
+
+inline core::Vec3 random_point(const core::Aabb& box, std::mt19937& rng) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    const core::Vec3 at(share(rng), share(rng), share(rng));
+    return box.min + at * box.size();
+}
+
+/// The outlines of cutters of every kind, convex or not.
+inline std::vector<core::RevolvedProfile> cutters() {
+    return {
+        {{{0, 3, 12, 3, 0}}},                                        // flat
+        {{{2, 0, 2, 0, 2}, {2, 2, 9, 2, 0}}},                        // ball
+        {{{0.8, 2, 0.8, 2, 0.8}, {0.8, 2.8, 9, 2.8, 0}}},            // bull nose
+        {{{0, 0, 1.2, 2, 0}, {1.2, 2, 14, 2, 0}}},                   // drill
+        {{{0, 0.3, 10, 3, 0}}},                                      // taper
+        {{{0, 4, 1.5, 4, 0}, {1.5, 1.5, 8, 1.5, 0}}},                // T-slot
+        {{{0, 3.5, 3, 1.5, 0}, {3, 1.2, 9, 1.2, 0}}},                // dovetail
+        {{{0, 2, 1, 1, 0}, {1, 1, 2, 2.5, 0}, {2, 2.5, 8, 2.5, 0}}}, // a profile with a waist
+    };
+}
+
+/// Some cuts at random heights and directions, many of them flat, upright or along an axis.
+inline CutBox random_cut_box(std::mt19937& rng, size_t count, double path_error) {
+    CutBox world{{{-8, -7, -6}, {9, 8, 2}}, path_error, {}};
+    const std::vector<core::RevolvedProfile> tools = cutters();
+    for (size_t i = 0; i < count; ++i) {
+        core::Vec3 from = random_point(world.box.grown(2.0), rng);
+        core::Vec3 to = random_point(world.box.grown(2.0), rng);
+        const unsigned kind = static_cast<unsigned>(rng() % 7);
+        if (kind < 3) to.z = from.z;
+        if (kind == 1) to.y = from.y;
+        if (kind == 2) to.x = from.x;
+        if (kind == 3) to = {from.x, from.y, to.z};
+        if (kind == 4) to = from;
+        if (kind == 0) from = glm::round(from), to = glm::round(to);
+        world.cuts.push_back({tools[rng() % tools.size()], from, to});
+    }
+    return world;
+}
+
+} // namespace test_support
