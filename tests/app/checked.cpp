@@ -8,7 +8,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-template <typename T> std::optional<T> maybe(const Json& json, const char* key) {
+template <typename T>
+std::optional<T> maybe(const Json& json, const char* key) {
     if (!json.contains(key) || json[key].is_null()) return std::nullopt;
     return json[key].get<T>();
 }
@@ -28,10 +29,17 @@ PairLine pair_line(const Json& json) {
 }
 
 BlockLine block_line(const Json& json) {
-    BlockLine block{json["block"],   json["line"],    json["text"],
-                    json["motion"],  json["verdict"], json["time"],
-                    json["duration"], json["removed"], maybe<int>(json, "tool"),
-                    pair_line(json), {}};
+    BlockLine block{json["block"],
+                    json["line"],
+                    json["text"],
+                    json["motion"],
+                    json["verdict"],
+                    json["time"],
+                    json["duration"],
+                    json["removed"],
+                    maybe<int>(json, "tool"),
+                    pair_line(json),
+                    {}};
     for (const Json& pair : json["pairs"]) block.pairs.push_back(pair_line(pair));
     return block;
 }
@@ -86,7 +94,7 @@ test_support::Ran feeler(std::vector<std::string> words, const std::string& befo
 
 Checked check_files(const std::string& program, const std::string& setup,
                     const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"check",  program, "--setup", setup,
+    std::vector<std::string> words = {"check",    program, "--setup", setup,
                                       "--format", "json",  "--pairs"};
     words.insert(words.end(), more.begin(), more.end());
     const test_support::Ran ran = feeler(words);
