@@ -47,20 +47,30 @@ Aabb box_of_column(const CutModel& model, int i, int j) {
 
 template <typename BoxOf>
 void refit(const ScanLines& lines, TileBoxes& tiles, size_t tile, const BoxOf& box_of) {
-    const LineRange range = lines_of_tile(lines, tiles, tile);
-    Aabb box;
-    for (int v = range.v_first; v < range.v_last; ++v)
-        for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
-    tiles.boxes[tile] = box;
+    Aabb whole;
+    for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
+        const LineRange range = lines_of_block(lines, tiles, tile, block);
+        Aabb box;
+        for (int v = range.v_first; v < range.v_last; ++v)
+            for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
+        tiles.blocks[tile * TileBoxes::blocks_per_tile + block] = box;
+        whole.extend(box);
+    }
+    tiles.boxes[tile] = whole;
 }
 
 template <typename BoxOf>
 void refit(const ScanLines& lines, TileBoxes& tiles, const LineRange& touched,
            const BoxOf& box_of) {
     constexpr int side = ScanLines::tile_side;
-    for (int v = touched.v_first / side * side; v < touched.v_last; v += side)
-        for (int u = touched.u_first / side * side; u < touched.u_last; u += side)
-            refit(lines, tiles, tiles.index(u, v), box_of);
+    for (int v = touched.v_first / side * side; v < touched.v_last; v += side) {
+        for (int u = touched.u_first / side * side; u < touched.u_last; u += side) {
+            const size_t tile = tiles.index(u, v);
+            if (++tiles.cuts[tile] < TileBoxes::cuts_before_refit) continue;
+            tiles.cuts[tile] = 0;
+            refit(lines, tiles, tile, box_of);
+        }
+    }
 }
 
 void refit_lines(CutModel& model, int axis, const LineRange& touched) {
@@ -74,60 +84,92 @@ void refit_columns(CutModel& model, const LineRange& touched) {
           [&](int u, int v) { return box_of_column(model, u, v); });
 }
 
+/// Whether a line or column holds anything within lower .. upper.
+bool reaches_into(const IntervalList& matter, double lower, double upper) {
+    return !matter.empty() && matter[0].lower < upper && matter[matter.size() - 1].upper > lower;
+}
+
 /// Takes the sweep out of one family and returns the volume that it says is gone.
-double cut_lines(CutModel& model, int axis, const CutterSweep& sweep, const LineRange& range) {
+double cut_lines(CutModel& model, int axis, const LoggedSweep& logged, const LineRange& range) {
     const ScanGrid& grid = model.lines.grid;
     ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+    const double low = logged.box.min[axis], high = logged.box.max[axis];
     double length = 0.0;
     for (int v = range.v_first; v < range.v_last; ++v) {
         for (int u = range.u_first; u < range.u_last; ++u) {
-            if (family.line(u, v).empty()) continue;
-            for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-                const auto gone =
-                    line_interval(piece.around, sweep, axis, grid.coordinate(u_axis(axis), u),
-                                  grid.coordinate(v_axis(axis), v));
-                if (!gone) continue;
+            for (const Cutter::Piece& piece : logged.sweep.cutter->pieces) {
                 const IntervalList& line = family.line(u, v);
-                if (gone->upper <= line[0].lower || gone->lower >= line[line.size() - 1].upper)
-                    continue;
-                length += family.edit(u, v).subtract(*gone);
-                if (family.line(u, v).empty()) break;
+                if (!reaches_into(line, low, high)) break;
+                const auto gone = line_interval(piece.around, logged.sweep, axis,
+                                                grid.coordinate(u_axis(axis), u),
+                                                grid.coordinate(v_axis(axis), v));
+                if (gone && reaches_into(line, gone->lower, gone->upper))
+                    length += family.edit(u, v).subtract(*gone);
             }
         }
     }
     return length * grid.spacing * grid.spacing;
 }
 
-void cut_columns(CutModel& model, const CutterSweep& sweep, const LineRange& range) {
-    for (int j = range.v_first; j < range.v_last; ++j) {
-        for (int i = range.u_first; i < range.u_last; ++i) {
-            const Square square = cell_square(model, i, j);
-            for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-                const IntervalList& column = model.columns.line(i, j);
-                if (column.empty()) break;
-                const auto gone = covered_heights(piece.within, sweep, square);
-                if (gone && gone->upper > column[0].lower
-                    && gone->lower < column[column.size() - 1].upper)
-                    model.columns.edit(i, j).subtract(*gone);
-            }
-        }
-    }
+/// What one convex piece sweeps on the lines through the corners of a row of cells.
+using CornerRow = std::vector<std::optional<Interval>>;
+
+CornerRow corner_row(const CutModel& model, const RevolvedProfile& within, const CutterSweep& sweep,
+                     const LineRange& cells, double y) {
+    CornerRow row;
+    for (int i = cells.u_first; i < cells.u_last; ++i)
+        row.push_back(line_interval(within, sweep, 2, cell_square(model, i, 0).x0, y));
+    row.push_back(line_interval(within, sweep, 2, cell_square(model, cells.u_last - 1, 0).x1, y));
+    return row;
 }
 
-/// Notes the sweep, for all tiles of columns that it may have touched.
-void log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& box, const LineRange& range) {
+/// The heights covered over a whole cell: those that all four of its corners share.
+std::optional<Interval> shared_by(const CornerRow& front, const CornerRow& back, size_t cell) {
+    std::optional<Interval> common = front[cell];
+    for (const auto& corner : {front[cell + 1], back[cell], back[cell + 1]}) {
+        if (!common || !corner) return std::nullopt;
+        common = Interval{std::max(common->lower, corner->lower),
+                          std::min(common->upper, corner->upper)};
+    }
+    return safely_within(common);
+}
+
+/// Takes a convex piece out of the columns; returns whether any changed.
+bool cut_columns(CutModel& model, const RevolvedProfile& within, const LoggedSweep& logged,
+                 const LineRange& cells) {
+    bool changed = false;
+    CornerRow front =
+        corner_row(model, within, logged.sweep, cells, cell_square(model, 0, cells.v_first).y0);
+    for (int j = cells.v_first; j < cells.v_last; ++j) {
+        CornerRow back =
+            corner_row(model, within, logged.sweep, cells, cell_square(model, 0, j).y1);
+        for (int i = cells.u_first; i < cells.u_last; ++i) {
+            const auto gone = shared_by(front, back, static_cast<size_t>(i - cells.u_first));
+            if (!gone || !reaches_into(model.columns.line(i, j), gone->lower, gone->upper))
+                continue;
+            model.columns.edit(i, j).subtract(*gone);
+            changed = true;
+        }
+        front = std::move(back);
+    }
+    return changed;
+}
+
+/// Notes the sweep for all tiles of columns that it may have touched; false when there are none.
+bool log_sweep(CutModel& model, const LoggedSweep& logged, const LineRange& range) {
     constexpr int side = ScanLines::tile_side;
     const auto number = static_cast<uint32_t>(model.log.size());
     bool noted = false;
     for (int v = range.v_first / side * side; v < range.v_last; v += side) {
         for (int u = range.u_first / side * side; u < range.u_last; u += side) {
             const size_t tile = model.column_boxes.index(u, v);
-            if (!overlaps(model.column_boxes.boxes[tile], box)) continue;
+            if (!overlaps(model.column_boxes.boxes[tile], logged.box)) continue;
             model.history[tile].push_back(number);
             noted = true;
         }
     }
-    if (noted) model.log.push_back({sweep, box});
+    if (noted) model.log.push_back(logged);
+    return noted;
 }
 
 /// Runs `act` over the logged sweeps that may reach into a square of cell (i, j).
@@ -151,10 +193,21 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
     return {u, std::min(u + side, lines.u_count()), v, std::min(v + side, lines.v_count())};
 }
 
+LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile,
+                         size_t block) {
+    const LineRange whole = lines_of_tile(lines, tiles, tile);
+    const int side = TileBoxes::block_side;
+    const int u = whole.u_first + static_cast<int>(block) % TileBoxes::blocks_per_side * side;
+    const int v = whole.v_first + static_cast<int>(block) / TileBoxes::blocks_per_side * side;
+    return {u, std::min(u + side, whole.u_last), v, std::min(v + side, whole.v_last)};
+}
+
 TileBoxes empty_tile_boxes(const ScanLines& lines) {
     constexpr int side = ScanLines::tile_side;
     TileBoxes tiles{(lines.u_count() + side - 1) / side, (lines.v_count() + side - 1) / side, {}};
     tiles.boxes.resize(static_cast<size_t>(tiles.u_tiles) * static_cast<size_t>(tiles.v_tiles));
+    tiles.blocks.resize(tiles.boxes.size() * TileBoxes::blocks_per_tile);
+    tiles.cuts.assign(tiles.boxes.size(), TileBoxes::cuts_before_refit);
     return tiles;
 }
 
@@ -183,23 +236,24 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
 }
 
 double cut(CutModel& model, const CutterSweep& sweep) {
-    const Aabb box = bounds(sweep);
-    if (!overlaps(box, model.outer_box)) return 0.0;
-    std::array<double, 3> volumes{};
+    const LoggedSweep logged{sweep, bounds(sweep)};
+    if (!overlaps(logged.box, model.outer_box)) return 0.0;
+    const LineRange cells = cells_in(model, logged.box);
+    if (cells.empty() || !log_sweep(model, logged, cells)) return 0.0;
+
+    double volume = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-        const LineRange range = lines_in(model.lines, axis, box);
+        const LineRange range = lines_in(model.lines, axis, logged.box);
         if (range.empty()) continue;
-        volumes[static_cast<size_t>(axis)] = cut_lines(model, axis, sweep, range);
-        if (volumes[static_cast<size_t>(axis)] > 0.0) refit_lines(model, axis, range);
+        const double gone = cut_lines(model, axis, logged, range);
+        if (gone > 0.0) refit_lines(model, axis, range);
+        volume += gone / 3.0;
     }
-    const LineRange cells = cells_in(model, box);
-    if (!cells.empty()) {
-        log_sweep(model, sweep, box, cells);
-        cut_columns(model, sweep, cells);
-        refit_columns(model, cells);
-    }
-    std::sort(volumes.begin(), volumes.end());
-    return volumes[1];
+    bool changed = false;
+    for (const Cutter::Piece& piece : sweep.cutter->pieces)
+        changed = cut_columns(model, piece.within, logged, cells) || changed;
+    if (changed) refit_columns(model, cells);
+    return volume;
 }
 
 Square cell_square(const CutModel& model, int i, int j) {

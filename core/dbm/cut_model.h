@@ -34,7 +34,8 @@ Result<CutModel> make_cut_model(Solid solid, double spacing,
 
 /// Removes what one move of a cutter sweeps, and returns the volume, mm3.
 ///
-/// The volume is the middle one of what the three families of lines say.
+/// The volume is the mean of what the three families of lines say, so that the parts of a cut add
+/// up to the whole.
 double cut(CutModel& model, const CutterSweep& sweep);
 
 /// The square of a column, clipped to where the stock can be.

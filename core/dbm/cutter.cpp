@@ -56,12 +56,16 @@ std::optional<Interval> covered_heights(const RevolvedProfile& convex, const Cut
         for (const double y : {square.y0, square.y1}) {
             const auto corner = line_interval(convex, sweep, 2, x, y);
             if (!corner) return std::nullopt;
-            common.lower = std::max(common.lower, corner->lower + rounding);
-            common.upper = std::min(common.upper, corner->upper - rounding);
+            common.lower = std::max(common.lower, corner->lower);
+            common.upper = std::min(common.upper, corner->upper);
         }
     }
-    if (!(common.lower < common.upper)) return std::nullopt;
-    return common;
+    return safely_within(common);
+}
+
+std::optional<Interval> safely_within(std::optional<Interval> swept) {
+    if (!swept || !(swept->lower + rounding < swept->upper - rounding)) return std::nullopt;
+    return Interval{swept->lower + rounding, swept->upper - rounding};
 }
 
 } // namespace core

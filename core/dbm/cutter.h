@@ -39,4 +39,7 @@ std::optional<Interval> line_interval(const RevolvedProfile& convex, const Cutte
 std::optional<Interval> covered_heights(const RevolvedProfile& convex, const CutterSweep& sweep,
                                         const Square& square);
 
+/// A computed stretch, shortened by what rounding may have added to it; empty if nothing is left.
+std::optional<Interval> safely_within(std::optional<Interval> swept);
+
 } // namespace core

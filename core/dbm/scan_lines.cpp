@@ -10,31 +10,17 @@ constexpr int tiles_for(int lines) {
     return (lines + ScanLines::tile_side - 1) / ScanLines::tile_side;
 }
 
-constexpr size_t place_in_tile(int u, int v) {
-    constexpr int side = ScanLines::tile_side;
-    return static_cast<size_t>(u % side) + static_cast<size_t>(v % side) * side;
-}
-
 } // namespace
+
+const IntervalList ScanLines::nothing{};
 
 ScanLines::ScanLines(int axis, int u_count, int v_count)
     : axis_(axis),
       u_count_(u_count),
       v_count_(v_count),
+      u_tiles_(static_cast<size_t>(tiles_for(u_count))),
       tiles_(static_cast<size_t>(tiles_for(u_count)) * static_cast<size_t>(tiles_for(v_count))) {
     assert(axis >= 0 && axis < 3 && u_count >= 0 && v_count >= 0);
-}
-
-size_t ScanLines::tile_of(int u, int v) const {
-    assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
-    return static_cast<size_t>(u / tile_side)
-           + static_cast<size_t>(v / tile_side) * static_cast<size_t>(tiles_for(u_count_));
-}
-
-const IntervalList& ScanLines::line(int u, int v) const {
-    static const IntervalList nothing{};
-    const auto& tile = tiles_[tile_of(u, v)];
-    return tile ? (*tile)[place_in_tile(u, v)] : nothing;
 }
 
 IntervalList& ScanLines::edit(int u, int v) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <memory>
 #include <vector>
 
@@ -28,7 +29,10 @@ public:
     int u_count() const { return u_count_; }
     int v_count() const { return v_count_; }
 
-    const IntervalList& line(int u, int v) const;
+    const IntervalList& line(int u, int v) const {
+        const auto& tile = tiles_[tile_of(u, v)];
+        return tile ? (*tile)[place_in_tile(u, v)] : nothing;
+    }
 
     /// The line, to be changed. Its tile is cloned first if another snapshot shares it.
     IntervalList& edit(int u, int v);
@@ -41,11 +45,21 @@ public:
 private:
     using Tile = std::array<IntervalList, static_cast<size_t>(tile_side) * tile_side>;
 
-    size_t tile_of(int u, int v) const;
+    static const IntervalList nothing;
+
+    static constexpr size_t place_in_tile(int u, int v) {
+        return static_cast<size_t>(u % tile_side)
+               + static_cast<size_t>(v % tile_side) * static_cast<size_t>(tile_side);
+    }
+    size_t tile_of(int u, int v) const {
+        assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
+        return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
+    }
 
     int axis_ = 0;
     int u_count_ = 0;
     int v_count_ = 0;
+    size_t u_tiles_ = 0;
     std::vector<std::shared_ptr<Tile>> tiles_; // null: no line of the tile holds anything
 };
 

@@ -144,10 +144,15 @@ std::optional<Interval> cone_across(const ElementSweep& sweep, int axis, double 
     return extent_with_root(along, squared(radius) - squared(side), range);
 }
 
-/// Lower and upper end of a truncated cone at rest above a point `r` from its axis.
+/// Lower and upper end of a truncated cone at rest above a point `r` from its axis, at most its
+/// largest radius but for rounding.
 Interval cone_heights(const ProfileElement& e, double r) {
-    const auto slant = [&] { return e.z0 + (r - e.r0) * (e.z1 - e.z0) / (e.r1 - e.r0); };
-    return {r <= e.r0 ? e.z0 : slant(), r <= e.r1 ? e.z1 : slant()};
+    Interval ends{e.z0, e.z1};
+    if (e.r0 == e.r1) return ends;
+    const double slant = std::clamp(e.z0 + (r - e.r0) * (e.z1 - e.z0) / (e.r1 - e.r0), e.z0, e.z1);
+    if (r > e.r0) ends.lower = slant;
+    if (r > e.r1) ends.upper = slant;
+    return ends;
 }
 
 /// A truncated cone met by a line along Z. The lower end is convex in time, the upper concave, with

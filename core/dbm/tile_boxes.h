@@ -1,16 +1,25 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/dbm/dbm.h"
 
 namespace core {
 
-/// The box of the matter in each tile of a family of lines or columns; empty where there is none.
+/// A box round the matter in each tile of a family of lines or columns. Cuts only ever take away,
+/// so a box is fitted again only after some of them; until then it is larger than it need be.
 struct TileBoxes {
+    static constexpr uint8_t cuts_before_refit = 8;
+    static constexpr int block_side = 4;
+    static constexpr int blocks_per_side = ScanLines::tile_side / block_side;
+    static constexpr size_t blocks_per_tile = blocks_per_side * blocks_per_side;
+
     int u_tiles = 0;
     int v_tiles = 0;
-    std::vector<Aabb> boxes; // u fastest
+    std::vector<Aabb> boxes;   // u fastest
+    std::vector<Aabb> blocks;  // of 4 x 4 lines, the 16 of a tile in a row, u fastest
+    std::vector<uint8_t> cuts; // since the box was fitted
 
     size_t index(int u, int v) const {
         return static_cast<size_t>(v / ScanLines::tile_side) * static_cast<size_t>(u_tiles)
@@ -27,6 +36,9 @@ struct LineRange {
 
 /// The lines of the tile with this index.
 LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t tile);
+
+/// The lines of one of its 4 x 4 blocks.
+LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
 
 TileBoxes empty_tile_boxes(const ScanLines& lines);
 

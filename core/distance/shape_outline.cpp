@@ -65,9 +65,9 @@ ShapeOutline outline(const ConvexShape& shape) {
     return result;
 }
 
-double distance_bound(const ShapeOutline& shape, const Aabb& box) {
+double distance_bound(const ShapeOutline& shape, const Aabb& box, double limit) {
     const double by_boxes = distance(shape.box, box);
-    if (!shape.straight) return by_boxes;
+    if (!shape.straight || by_boxes >= limit) return by_boxes;
     const double above = std::max({box.min.z - shape.box.max.z, shape.box.min.z - box.max.z, 0.0});
     const double across = std::max(0.0, path_to_rectangle(shape, box) - shape.radius);
     return std::max(by_boxes, std::sqrt(squared(across, above)));

@@ -15,7 +15,8 @@ struct ShapeOutline {
 
 ShapeOutline outline(const ConvexShape& shape);
 
-/// A lower bound of the distance between the shape and a box; 0 when they may meet.
-double distance_bound(const ShapeOutline& shape, const Aabb& box);
+/// A lower bound of the distance between the shape and a box; 0 when they may meet. The best one
+/// only where it may be below `limit`.
+double distance_bound(const ShapeOutline& shape, const Aabb& box, double limit);
 
 } // namespace core

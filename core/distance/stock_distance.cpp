@@ -24,6 +24,7 @@ public:
     }
 
     StockSeparation run() {
+        if (goal_.first_line) search_line(*goal_.first_line);
         for (int axis = 0; axis < 3; ++axis) search_lines(axis);
         search_columns();
         if (lower_ < goal_.threshold && upper_.upper >= goal_.threshold) refine_columns();
@@ -33,11 +34,11 @@ public:
     }
 
 private:
-    double box_bound(const Aabb& box) {
+    double box_bound(const Aabb& box, double limit) {
         double bound = infinity;
         ++result_.box_tests;
         for (const ShapeOutline& mine : outlines_)
-            bound = std::min(bound, distance_bound(mine, box));
+            bound = std::min(bound, distance_bound(mine, box, limit));
         return bound;
     }
 
@@ -46,7 +47,7 @@ private:
         Separation best;
         double lower = infinity;
         for (size_t i = 0; i < shapes_.size(); ++i) {
-            if (const double bound = distance_bound(outlines_[i], box); bound >= limit) {
+            if (const double bound = distance_bound(outlines_[i], box, limit); bound >= limit) {
                 lower = std::min(lower, bound);
                 continue;
             }
@@ -65,7 +66,7 @@ private:
         std::vector<NearTile> near;
         for (size_t tile = 0; tile < tiles.boxes.size(); ++tile) {
             if (tiles.boxes[tile].empty()) continue;
-            const double bound = box_bound(tiles.boxes[tile]);
+            const double bound = box_bound(tiles.boxes[tile], limit);
             if (bound < limit) near.push_back({bound, tile});
         }
         std::sort(near.begin(), near.end(), [](const NearTile& a, const NearTile& b) {
@@ -76,55 +77,68 @@ private:
 
     double line_limit() const { return std::min(goal_.limit, upper_.upper) - same; }
 
-    void search_lines(int axis) {
-        const auto family = static_cast<size_t>(axis);
-        const TileBoxes& tiles = stock_.line_boxes[family];
-        for (const NearTile& near : near_tiles(tiles, line_limit())) {
-            if (near.bound >= line_limit()) break;
-            if (nearest(convex(tiles.boxes[near.tile]), tiles.boxes[near.tile], line_limit()).lower
-                >= line_limit())
-                continue;
-            const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
-            for (int v = range.v_first; v < range.v_last; ++v)
-                for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
+    /// Runs `act` over the ranges of lines in a tile that may come nearer than `limit` says.
+    template <typename Limit, typename Act>
+    void for_blocks(const ScanLines& lines, const TileBoxes& tiles, size_t tile, const Limit& limit,
+                    const Act& act) {
+        for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
+            const Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
+            if (box.empty() || box_bound(box, limit()) >= limit()) continue;
+            act(lines_of_block(lines, tiles, tile, block));
         }
     }
 
-    void search_line(int axis, int u, int v) {
+    void search_lines(int axis) {
+        const auto family = static_cast<size_t>(axis);
+        const ScanLines& lines = stock_.lines.families[family];
+        const TileBoxes& tiles = stock_.line_boxes[family];
+        const auto limit = [&] { return line_limit(); };
+        for (const NearTile& near : near_tiles(tiles, line_limit())) {
+            if (near.bound >= line_limit()) break;
+            for_blocks(lines, tiles, near.tile, limit, [&](const LineRange& range) {
+                for (int v = range.v_first; v < range.v_last; ++v)
+                    for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
+            });
+        }
+    }
+
+    void search_line(const LineId& id) {
+        const double before = upper_.upper;
+        const auto& [axis, u, v] = id;
         for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
+        if (upper_.upper < before) result_.line = id;
     }
 
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
-        if (box_bound({a, b}) >= line_limit()) return;
+        if (box_bound({glm::min(a, b), glm::max(a, b)}, line_limit()) >= line_limit()) return;
         const Separation found =
             nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, line_limit());
         if (found.upper < upper_.upper) upper_ = found;
     }
 
     void search_columns() {
-        lower_ = goal_.limit;
+        lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
+        const auto limit = [&] { return lower_ - same; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
-            if (near.bound >= lower_ - same) break;
-            const Aabb& box = stock_.column_boxes.boxes[near.tile];
-            if (nearest(convex(box), box, lower_).lower >= lower_ - same) continue;
-            for_columns(near.tile, [&](int i, int j, const Square& square) {
-                const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
-                lower_ = std::min(lower_, bound);
+            if (near.bound >= limit()) break;
+            for_columns(near.tile, limit, [&](int i, int j, const Square& square) {
+                lower_ = std::min(lower_, bound_of(square, stock_.columns.line(i, j), limit()));
             });
         }
         // What was passed over is at most `same` nearer than the least that was looked at.
         lower_ = std::max(0.0, lower_ - same);
     }
 
-    template <typename Act>
-    void for_columns(size_t tile, const Act& act) {
-        const LineRange range = lines_of_tile(stock_.columns, stock_.column_boxes, tile);
-        for (int j = range.v_first; j < range.v_last; ++j)
-            for (int i = range.u_first; i < range.u_last; ++i)
-                if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+    template <typename Limit, typename Act>
+    void for_columns(size_t tile, const Limit& limit, const Act& act) {
+        for_blocks(stock_.columns, stock_.column_boxes, tile, limit, [&](const LineRange& range) {
+            for (int j = range.v_first; j < range.v_last; ++j)
+                for (int i = range.u_first; i < range.u_last; ++i)
+                    if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+        });
     }
 
     /// A lower bound of the distance to the boxes of a column, or at least `limit`.
@@ -133,7 +147,7 @@ private:
         for (const Interval& heights : column) {
             const Aabb box{{square.x0, square.y0, heights.lower},
                            {square.x1, square.y1, heights.upper}};
-            const double here = box_bound(box);
+            const double here = box_bound(box, limit);
             if (here >= limit) {
                 bound = std::min(bound, here);
                 continue;
@@ -146,8 +160,9 @@ private:
     void refine_columns() {
         // Every column that is not looked at here, or not to its end, is at least this far away.
         refined_lower_ = goal_.threshold + same;
+        const auto near_enough = [&] { return goal_.threshold + same; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, goal_.threshold + same)) {
-            for_columns(near.tile, [&](int i, int j, const Square& square) {
+            for_columns(near.tile, near_enough, [&](int i, int j, const Square& square) {
                 refine(i, j, square, stock_.columns.line(i, j));
             });
         }

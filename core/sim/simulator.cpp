@@ -89,7 +89,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     std::vector<PairClearance> pairs;
     for (const Leg& leg : path.legs)
-        LegCheck(setup, *tool(), use(motion), state.statistics)
+        LegCheck(setup, *tool(), use(motion), state.hints, state.statistics)
             .run(leg, result.duration, state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
     if (!path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
@@ -116,7 +116,7 @@ void BlockRun::carry_out(const Motion& motion) {
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else {
-        LegCheck check(setup, *tool(), use(motion), state.statistics);
+        LegCheck check(setup, *tool(), use(motion), state.hints, state.statistics);
         for (const Leg& leg : path.legs) {
             result.removed += check.run(leg, result.duration, state.stock, result.pairs);
             legs.push_back({leg, result.duration});
@@ -143,7 +143,8 @@ void settle_time(BlockRun& run, PairClearance& pair) {
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
-        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.statistics);
+        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.hints,
+                       run.state.statistics);
         const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;

@@ -6,6 +6,7 @@
 #include "core/dbm/cut_model.h"
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
+#include "core/sim/leg_check.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
@@ -20,6 +21,7 @@ struct SimulatorState {
     LengthOffsetChange length_offset;
     double time = 0.0; // seconds since the program's start
     Statistics statistics;
+    StockHints hints;
     std::set<std::string> assumptions;  // what had to be taken for granted on the way
     std::set<ToolNumber> unknown_tools; // called, but nothing is known about them; told once
     bool told_unknown_start = false;
