@@ -159,7 +159,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup);
+    auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     run.times.model = seconds_since(modelling);
 

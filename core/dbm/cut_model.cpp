@@ -45,25 +45,32 @@ Aabb box_of_column(const CutModel& model, int i, int j) {
     return {{s.x0, s.y0, column[0].lower}, {s.x1, s.y1, column[column.size() - 1].upper}};
 }
 
+/// Fits the box of the block round line (u, v).
 template <typename BoxOf>
-void refit(const ScanLines& lines, TileBoxes& tiles, size_t tile, const BoxOf& box_of) {
-    const LineRange range = lines_of_tile(lines, tiles, tile);
+void refit_block(const ScanLines& lines, TileBoxes& tiles, int u, int v, const BoxOf& box_of) {
+    constexpr int side = TileBoxes::block_side;
     Aabb box;
-    for (int v = range.v_first; v < range.v_last; ++v)
-        for (int u = range.u_first; u < range.u_last; ++u) box.extend(box_of(u, v));
-    tiles.boxes[tile] = box;
+    for (int j = v / side * side; j < std::min((v / side + 1) * side, lines.v_count()); ++j)
+        for (int i = u / side * side; i < std::min((u / side + 1) * side, lines.u_count()); ++i)
+            box.extend(box_of(i, j));
+    tiles.blocks[tiles.block_index(u, v)] = box;
 }
 
+/// Fits the boxes of all blocks and tiles that a range of lines touches.
 template <typename BoxOf>
 void refit(const ScanLines& lines, TileBoxes& tiles, const LineRange& touched,
            const BoxOf& box_of) {
-    constexpr int side = ScanLines::tile_side;
-    for (int v = touched.v_first / side * side; v < touched.v_last; v += side) {
-        for (int u = touched.u_first / side * side; u < touched.u_last; u += side) {
+    constexpr int small = TileBoxes::block_side, large = ScanLines::tile_side;
+    for (int v = touched.v_first / small * small; v < touched.v_last; v += small)
+        for (int u = touched.u_first / small * small; u < touched.u_last; u += small)
+            refit_block(lines, tiles, u, v, box_of);
+    for (int v = touched.v_first / large * large; v < touched.v_last; v += large) {
+        for (int u = touched.u_first / large * large; u < touched.u_last; u += large) {
             const size_t tile = tiles.index(u, v);
-            if (++tiles.cuts[tile] < TileBoxes::cuts_before_refit) continue;
-            tiles.cuts[tile] = 0;
-            refit(lines, tiles, tile, box_of);
+            Aabb box;
+            for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block)
+                box.extend(tiles.blocks[tile * TileBoxes::blocks_per_tile + block]);
+            tiles.boxes[tile] = box;
         }
     }
 }
@@ -188,11 +195,20 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
     return {u, std::min(u + side, lines.u_count()), v, std::min(v + side, lines.v_count())};
 }
 
+LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile,
+                         size_t block) {
+    const LineRange whole = lines_of_tile(lines, tiles, tile);
+    const int side = TileBoxes::block_side;
+    const int u = whole.u_first + static_cast<int>(block) % TileBoxes::blocks_per_side * side;
+    const int v = whole.v_first + static_cast<int>(block) / TileBoxes::blocks_per_side * side;
+    return {u, std::min(u + side, whole.u_last), v, std::min(v + side, whole.v_last)};
+}
+
 TileBoxes empty_tile_boxes(const ScanLines& lines) {
     constexpr int side = ScanLines::tile_side;
     TileBoxes tiles{(lines.u_count() + side - 1) / side, (lines.v_count() + side - 1) / side, {}};
     tiles.boxes.resize(static_cast<size_t>(tiles.u_tiles) * static_cast<size_t>(tiles.v_tiles));
-    tiles.cuts.assign(tiles.boxes.size(), TileBoxes::cuts_before_refit);
+    tiles.blocks.resize(tiles.boxes.size() * TileBoxes::blocks_per_tile);
     return tiles;
 }
 

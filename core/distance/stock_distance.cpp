@@ -25,6 +25,7 @@ public:
     }
 
     StockSeparation run() {
+        if (goal_.first_line) search_line(*goal_.first_line);
         for (int axis = 0; axis < 3; ++axis) search_lines(axis);
         search_columns();
         if (lower_ < goal_.threshold && upper_.upper >= goal_.threshold) refine_columns();
@@ -77,24 +78,38 @@ private:
 
     double line_limit() const { return std::min(goal_.limit, upper_.upper) - same; }
 
-    void search_lines(int axis) {
-        const auto family = static_cast<size_t>(axis);
-        const TileBoxes& tiles = stock_.line_boxes[family];
-        for (const NearTile& near : near_tiles(tiles, line_limit())) {
-            if (near.bound >= line_limit()) break;
-            if (nearest(convex(tiles.boxes[near.tile]), tiles.boxes[near.tile], line_limit()).lower
-                >= line_limit())
-                continue;
-            const LineRange range = lines_of_tile(stock_.lines.families[family], tiles, near.tile);
-            for (int v = range.v_first; v < range.v_last; ++v)
-                for (int u = range.u_first; u < range.u_last; ++u) search_line(axis, u, v);
+    /// Runs `act` over the ranges of lines in a tile that may come nearer than `limit` says.
+    template <typename Limit, typename Act>
+    void for_blocks(const ScanLines& lines, const TileBoxes& tiles, size_t tile, const Limit& limit,
+                    const Act& act) {
+        for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
+            const Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
+            if (box.empty() || box_bound(box, limit()) >= limit()) continue;
+            act(lines_of_block(lines, tiles, tile, block));
         }
     }
 
-    void search_line(int axis, int u, int v) {
+    void search_lines(int axis) {
+        const auto family = static_cast<size_t>(axis);
+        const ScanLines& lines = stock_.lines.families[family];
+        const TileBoxes& tiles = stock_.line_boxes[family];
+        const auto limit = [&] { return line_limit(); };
+        for (const NearTile& near : near_tiles(tiles, line_limit())) {
+            if (near.bound >= line_limit()) break;
+            for_blocks(lines, tiles, near.tile, limit, [&](const LineRange& range) {
+                for (int v = range.v_first; v < range.v_last; ++v)
+                    for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
+            });
+        }
+    }
+
+    void search_line(const LineId& id) {
+        const double before = upper_.upper;
+        const auto& [axis, u, v] = id;
         for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
+        if (upper_.upper < before) result_.line = id;
     }
 
     /// Matter that is certainly there, from `a` to `b`.
@@ -106,33 +121,25 @@ private:
     }
 
     void search_columns() {
-        lower_ = goal_.limit;
-        double passed_over = infinity;
+        lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
+        // Ties are passed over, and the bound lowered by what they may be nearer; none at the limit.
+        const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
-            if (near.bound >= lower_ - same) {
-                passed_over = std::min(passed_over, near.bound);
-                break;
-            }
-            const Aabb& box = stock_.column_boxes.boxes[near.tile];
-            const double bound_of_tile = nearest(convex(box), box, lower_).lower;
-            if (bound_of_tile >= lower_ - same) {
-                passed_over = std::min(passed_over, bound_of_tile);
-                continue;
-            }
-            for_columns(near.tile, [&](int i, int j, const Square& square) {
-                const double bound = bound_of(square, stock_.columns.line(i, j), lower_ - same);
-                lower_ = std::min(lower_, bound);
+            if (near.bound >= limit()) break;
+            for_columns(near.tile, limit, [&](int i, int j, const Square& square) {
+                lower_ = std::min(lower_, bound_of(square, stock_.columns.line(i, j), limit()));
             });
         }
-        lower_ = std::min(lower_, passed_over);
+        lower_ = std::max(0.0, limit());
     }
 
-    template <typename Act>
-    void for_columns(size_t tile, const Act& act) {
-        const LineRange range = lines_of_tile(stock_.columns, stock_.column_boxes, tile);
-        for (int j = range.v_first; j < range.v_last; ++j)
-            for (int i = range.u_first; i < range.u_last; ++i)
-                if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+    template <typename Limit, typename Act>
+    void for_columns(size_t tile, const Limit& limit, const Act& act) {
+        for_blocks(stock_.columns, stock_.column_boxes, tile, limit, [&](const LineRange& range) {
+            for (int j = range.v_first; j < range.v_last; ++j)
+                for (int i = range.u_first; i < range.u_last; ++i)
+                    if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+        });
     }
 
     /// A lower bound of the distance to the boxes of a column, or at least `limit`.
@@ -154,8 +161,9 @@ private:
     void refine_columns() {
         // Every column that is not looked at here, or not to its end, is at least this far away.
         refined_lower_ = goal_.threshold + same;
+        const auto near_enough = [&] { return goal_.threshold + same; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, goal_.threshold + same)) {
-            for_columns(near.tile, [&](int i, int j, const Square& square) {
+            for_columns(near.tile, near_enough, [&](int i, int j, const Square& square) {
                 refine(i, j, square, stock_.columns.line(i, j));
             });
         }

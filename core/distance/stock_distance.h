@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/dbm/cut_model.h"
@@ -7,20 +8,28 @@
 
 namespace core {
 
+/// A scan line of a stock: which one, of which family.
+struct LineId {
+    int axis = 0, u = 0, v = 0;
+};
+
 /// What a search against a stock should decide, and what it may spend.
 struct StockGoal {
     double limit = 50.0;        // mm: beyond it nobody asks
     double threshold = 0.0;     // mm: the interval is narrowed until it lies on one side of this
     double finest = 0.03;       // mm: squares are not divided below this side
     size_t work_limit = 20'000; // squares that may be worked out afresh
+    std::optional<LineId>
+        first_line; // looked at before all others; the last answer is a good guess
 };
 
 /// How far a shape is from a stock that is being cut.
 struct StockSeparation {
-    Separation separation;  // `upper` from matter on a scan line, `lower` from the outer model
-    size_t refined = 0;     // squares worked out afresh
-    size_t box_tests = 0;   // pairs of boxes compared
-    size_t shape_tests = 0; // exact distances of convex shapes
+    Separation separation;      // `upper` from matter on a scan line, `lower` from the outer model
+    std::optional<LineId> line; // that gave `upper`
+    size_t refined = 0;         // squares worked out afresh
+    size_t box_tests = 0;       // pairs of boxes compared
+    size_t shape_tests = 0;     // exact distances of convex shapes
 };
 
 /// The distance from convex shapes, taken together, to a stock.

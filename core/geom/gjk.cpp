@@ -7,6 +7,10 @@ namespace {
 
 constexpr int max_steps = 100;
 
+/// Nearer than this the bodies touch: a point of the simplex that should be the origin is off by
+/// rounding.
+constexpr double touching = 1e-10;
+
 Simplex::Vertex support_pair(const ConvexShape& a, const ConvexShape& b, const Vec3& towards_a) {
     // The vertex of A - B that lies farthest back along the line from the origin to A - B.
     const SupportPoint on_a = support(a, -towards_a);
@@ -79,7 +83,7 @@ Separation separation(const ConvexShape& a, const ConvexShape& b, const Separati
 
     for (int step = 0; step < max_steps; ++step) {
         const double length = glm::length(v);
-        const double upper = std::max(0.0, length - margins);
+        const double upper = length - margins <= touching ? 0.0 : length - margins;
         if (upper < found.upper) {
             found.upper = upper;
             set_witness(found, simplex, v, a.margin, b.margin);

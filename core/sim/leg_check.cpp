@@ -74,10 +74,13 @@ Separation LegCheck::to_fixture(const Shapes& shapes, const Fixture& fixture, do
     return best;
 }
 
-Separation LegCheck::to_stock(const Shapes& shapes, const CutModel& stock, double threshold,
-                              double limit) {
+Separation LegCheck::to_stock(PartKind part, const Shapes& shapes, const CutModel& stock,
+                              double threshold, double limit) {
+    std::optional<LineId>& hint = hints_[static_cast<size_t>(part)];
     const StockSeparation found =
-        separation(shapes, stock, {.limit = limit, .threshold = std::min(threshold, limit)});
+        separation(shapes, stock,
+                   {.limit = limit, .threshold = std::min(threshold, limit), .first_line = hint});
+    if (found.line) hint = found.line;
     statistics_.box_tests += found.box_tests;
     statistics_.shape_tests += found.shape_tests;
     statistics_.refined += found.refined;
@@ -125,12 +128,13 @@ LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, co
     const Allowance allowance = stock_allowance(setup_, part.kind);
     const double limit = std::min(setup_.search_limit, nearest);
     Observation seen;
-    seen.plain = to_stock(shapes(part.profile, leg), stock, deciding_distance(allowance), limit);
+    seen.plain =
+        to_stock(part.kind, shapes(part.profile, leg), stock, deciding_distance(allowance), limit);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
     if (may_touch || seen.plain.upper == 0.0) {
         const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
         const double just_apart = resolution + leg.path_error;
-        seen.shrunk = to_stock(shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
+        seen.shrunk = to_stock(part.kind, shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
     }
     seen.plain = widened(seen.plain, leg.path_error);
     seen.shrunk = widened(seen.shrunk, leg.path_error);
@@ -189,7 +193,8 @@ LegCheck::Observation LegCheck::look_again(const PartCheck& check, const Leg& le
     // Clear by its lower bound: what is left of the stock only gives the upper one.
     Observation after = check.before;
     after.plain = widened(
-        to_stock(shapes(check.part.profile, leg), stock, 0.0, setup_.search_limit), leg.path_error);
+        to_stock(check.part.kind, shapes(check.part.profile, leg), stock, 0.0, setup_.search_limit),
+        leg.path_error);
     return after;
 }
 
@@ -274,7 +279,7 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
         const double limit = distance + leg.path_error + resolution;
         const Separation found =
             pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
-                         : to_stock(moved, stock, 0.0, limit + 1.0);
+                         : to_stock(part->kind, moved, stock, 0.0, limit + 1.0);
         return found.upper <= limit;
     };
     if (reached(0.0)) return 0.0;

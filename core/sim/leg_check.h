@@ -8,6 +8,9 @@
 
 namespace core {
 
+/// Where each part of a tool last met the stock most nearly: a good place to look first.
+using StockHints = std::array<std::optional<LineId>, 3>;
+
 /// Whether what the flutes meet becomes chips or is a crash.
 enum class FluteUse : uint8_t { cutting, not_cutting };
 
@@ -16,8 +19,9 @@ enum class FluteUse : uint8_t { cutting, not_cutting };
 /// Refers to what it was given; make one where it is needed.
 class LegCheck {
 public:
-    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, Statistics& statistics)
-        : setup_(setup), tool_(tool), use_(use), statistics_(statistics) {}
+    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, StockHints& hints,
+             Statistics& statistics)
+        : setup_(setup), tool_(tool), use_(use), hints_(hints), statistics_(statistics) {}
 
     /// Checks one leg, cuts the stock along it, and adds what was found to `pairs`, with times
     /// counted from `start`, seconds. While the flutes cut, shank and holder are held against the
@@ -45,8 +49,8 @@ private:
 
     Shapes shapes(const RevolvedProfile& profile, const Leg& leg) const;
     Separation to_fixture(const Shapes& shapes, const Fixture& fixture, double limit);
-    Separation to_stock(const Shapes& shapes, const CutModel& stock, double threshold,
-                        double limit);
+    Separation to_stock(PartKind part, const Shapes& shapes, const CutModel& stock,
+                        double threshold, double limit);
 
     void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
     void check_fixture(const Leg& leg, double start, size_t fixture, const ToolPart& part,
@@ -79,6 +83,7 @@ private:
     const Setup& setup_;
     const ToolAssembly& tool_;
     FluteUse use_;
+    StockHints& hints_;
     Statistics& statistics_;
 };
 

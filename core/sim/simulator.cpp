@@ -52,6 +52,8 @@ struct BlockRun {
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
 
+    void move_without_tool(const Motion& motion);
+    void check_tool_change();
     void check_limits(const Motion& motion);
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
@@ -89,7 +91,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     std::vector<PairClearance> pairs;
     for (const Leg& leg : path.legs)
-        LegCheck(setup, *tool(), use(motion), state.statistics)
+        LegCheck(setup, *tool(), use(motion), state.hints, state.statistics)
             .run(leg, result.duration, state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
     if (!path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
@@ -111,12 +113,13 @@ void BlockRun::carry_out(const Motion& motion) {
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
     check_limits(motion);
+    state.position = motion.to;
     if (!tool()) {
-        if (state.tool || !state.tool_known) result.checked = false;
+        move_without_tool(motion);
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else {
-        LegCheck check(setup, *tool(), use(motion), state.statistics);
+        LegCheck check(setup, *tool(), use(motion), state.hints, state.statistics);
         for (const Leg& leg : path.legs) {
             result.removed += check.run(leg, result.duration, state.stock, result.pairs);
             legs.push_back({leg, result.duration});
@@ -125,16 +128,55 @@ void BlockRun::carry_out(const Motion& motion) {
     result.duration += path.duration;
 }
 
+void BlockRun::move_without_tool(const Motion& motion) {
+    if (!state.tool && (state.tool_known || motion.kind == MotionKind::rapid)) {
+        if (!state.tool_known)
+            state.assumptions.insert("the spindle is empty until the first tool change");
+        return;
+    }
+    result.checked = false;
+    if (std::exchange(state.told_unchecked_tool, true)) return;
+    if (state.tool)
+        find(
+            "undecided",
+            fmt::format("Tool {} moves, but nothing is known about it: none of its motions can be "
+                        "checked.",
+                        value_of(*state.tool)),
+            fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*state.tool)));
+    else
+        find("undecided", "The program feeds before it calls a tool: nobody knows what moves.",
+             "Call the tool (T and M6), or describe a single tool in the set-up.");
+}
+
 void BlockRun::carry_out(const ToolChange& change) {
     state.tool = change.tool;
     state.tool_known = true;
+    state.told_unchecked_tool = false;
     result.tool = change.tool;
-    if (!change.tool || tool()) return;
-    if (!state.unknown_tools.insert(*change.tool).second) return;
-    find("tool-not-in-table",
-         fmt::format("Nothing is known about tool {}: its motions cannot be checked.",
-                     value_of(*change.tool)),
-         fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*change.tool)));
+    if (tool()) return check_tool_change();
+    if (change.tool)
+        find("tool-not-in-table",
+             fmt::format("Tool {} is called, but the set-up does not describe it.",
+                         value_of(*change.tool)),
+             fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
+}
+
+void BlockRun::check_tool_change() {
+    const AxisPosition& at = state.position;
+    if (!at[0] || !at[1] || !at[2]) return;
+    std::vector<PairClearance> pairs;
+    LegCheck(setup, *tool(), FluteUse::not_cutting, state.hints, state.statistics)
+        .rest(setup.machine.place(Vec3(*at[0], *at[1], *at[2])), state.stock, pairs);
+    const PairClearance* worst = deciding_pair(pairs);
+    if (!worst || worst->verdict == Verdict::clear) return;
+    find("tool-change-unsafe",
+         fmt::format("Tool {} is changed in where its {} {} only {:.3f} mm from {}; {:.3f} mm must "
+                     "be kept.",
+                     value_of(*state.tool), name_of(worst->pair.part),
+                     worst->pair.part == PartKind::flutes ? "are" : "is",
+                     worst->found() ? worst->upper : worst->lower, body_name(setup, worst->pair),
+                     worst->allowance.distance),
+         "Move to a safe place, as with G28 or G53 Z0, before the tool change.");
 }
 
 /// The place of the witness in time, at its earliest, where several moments are equally near.
@@ -143,7 +185,8 @@ void settle_time(BlockRun& run, PairClearance& pair) {
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
-        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.statistics);
+        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.hints,
+                       run.state.statistics);
         const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
@@ -186,11 +229,12 @@ const char* name_of(BlockMotion motion) {
     }
 }
 
-Result<SimulatorState> start_of_run(const Setup& setup) {
+Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
     FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
+    state.position = position;
     return state;
 }
 

@@ -6,6 +6,7 @@
 #include "core/dbm/cut_model.h"
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
+#include "core/sim/leg_check.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
@@ -15,14 +16,16 @@ namespace core {
 struct SimulatorState {
     CutModel stock;
     std::optional<ToolNumber> tool; // what is in the spindle; empty: nothing, or nobody knows
-    bool tool_known = false;
+    bool tool_known = false;        // something was called, if only an empty spindle
+    AxisPosition position;          // where the last motion ended
     SpindleChange spindle;
     LengthOffsetChange length_offset;
     double time = 0.0; // seconds since the program's start
     Statistics statistics;
-    std::set<std::string> assumptions;  // what had to be taken for granted on the way
-    std::set<ToolNumber> unknown_tools; // called, but nothing is known about them; told once
+    StockHints hints;
+    std::set<std::string> assumptions; // what had to be taken for granted on the way
     bool told_unknown_start = false;
+    bool told_unchecked_tool = false; // of the tool that is in the spindle now
 };
 
 /// What a block moves, as a report says it.
@@ -51,10 +54,10 @@ struct BlockEvents {
     std::span<const Event> events;
 };
 
-/// The state before the first block.
+/// The state before the first block, with the machine at `position`.
 ///
 /// Errors: those of make_cut_model, for a stock that cannot be modelled.
-Result<SimulatorState> start_of_run(const Setup& setup);
+Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position);
 
 /// Carries out one block: moves, cuts, measures. The set-up must outlive the result.
 BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state);

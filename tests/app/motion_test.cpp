@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+
+namespace app_test {
+namespace {
+
+using test_support::flat_10;
+using test_support::program;
+using test_support::SetupWriter;
+
+const std::string far_stock = "box = [[200, 200, -30], [210, 210, 0]]\n";
+
+/// From X0 Y0 to X100 Y50 at Z10. Straight, it passes X50 at Y25; axis by axis it passes at Y50.
+const std::string slanted = program({"G0 Z10.", "X100. Y50.", "Z60."});
+
+SetupWriter post_beside_the_way() {
+    return SetupWriter().stock(far_stock).fixture("post", "box = [[40, 48, -30], [50, 58, 40]]");
+}
+
+TEST(Rapid, PassesClearWhenItRunsStraight) {
+    const Checked checked = check(post_beside_the_way(), slanted);
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.errors(), "");
+    // The corner X50 Y48 is this far from the line from the origin through X100 Y50.
+    const double off = (48.0 * 100.0 - 50.0 * 50.0) / std::hypot(100.0, 50.0);
+    expect_encloses(checked.at_line(7).pair("flutes post"), off - 5.0, 1e-6);
+}
+
+TEST(Rapid, HitsWhatTheDogLegRunsInto) {
+    const Checked checked =
+        check(post_beside_the_way().machine("rapid = \"dogleg\"\n" + SetupWriter::mill()), slanted);
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_EQ(checked.verdict, "collision");
+    EXPECT_EQ(checked.at_line(7).pair("flutes post").verdict, "collision");
+    EXPECT_EQ(checked.at_line(7).pair("shank post").verdict, "collision");
+}
+
+TEST(Rapid, IsUndecidedWhereTheSpeedsOfADogLegAreNotKnown) {
+    const Checked checked = check(post_beside_the_way().machine("rapid = \"dogleg\"\n"), slanted);
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_EQ(checked.verdict, "undecided");
+    EXPECT_EQ(checked.errors(), "undecided 7, undecided 7");
+}
+
+TEST(OverTravel, IsFoundInsideAnArcWhoseEndsAreWithinTheLimits) {
+    // The half circle bulges by its radius of 50: to Y220 of the work, 20 beyond the machine's 0.
+    const SetupWriter setup = SetupWriter().stock(far_stock);
+    const Checked beyond = check(
+        setup, program({"G0 X100. Y170.", "G0 Z20.", "G2 X200. Y170. I50. J0 F1000.", "G0 Z60."}));
+    EXPECT_EQ(beyond.status, 1);
+    EXPECT_EQ(beyond.errors(), "over-travel 8");
+    EXPECT_NE(beyond.findings.at(0).message.find("20.000 mm beyond"), std::string::npos);
+    const Checked within = check(
+        setup, program({"G0 X100. Y150.", "G0 Z50.", "G2 X200. Y150. I50. J0 F1000.", "G0 Z60."}));
+    EXPECT_EQ(within.errors(), "");
+    EXPECT_EQ(within.status, 0);
+}
+
+TEST(OverTravel, IsNotFoundInTheHalfOfTheCircleThatIsNotDriven) {
+    const Checked checked =
+        check(SetupWriter().stock(far_stock),
+              program({"G0 X100. Y170.", "G0 Z50.", "G3 X200. Y170. I50. J0 F1000.", "G0 Z60."}));
+    EXPECT_EQ(checked.errors(), "");
+}
+
+TEST(OverTravel, IsFoundAHairBeyondTheLimitAndNotAtIt) {
+    const SetupWriter setup = SetupWriter().stock(far_stock);
+    EXPECT_EQ(check(setup, program({"G0 Y200."})).errors(), "");
+    EXPECT_EQ(check(setup, program({"G0 Y200.001"})).errors(), "over-travel 6");
+}
+
+TEST(FirstMove, FromAnUnknownPlaceIsAWarningOnly) {
+    const SetupWriter setup = SetupWriter().without_machine().program("dialect = \"fanuc\"\n");
+    const Checked checked =
+        check(setup, program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60."}));
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.errors(), "");
+    EXPECT_EQ(checked.of_severity("warning"), "first-move 5");
+    EXPECT_EQ(checked.at_line(8).verdict, "clear"); // every axis is known by then
+    EXPECT_NEAR(checked.at_line(8).removed, 5000.0, 1.0);
+}
+
+TEST(FirstMove, FromHomeIsNoWarning) {
+    const std::string home = "home = 0\nmin = -700\nmax = 0\n";
+    const SetupWriter setup =
+        SetupWriter()
+            .program("dialect = \"fanuc\"\n")
+            .machine(SetupWriter::axis("X", "direction = [1, 0, 0]\n" + home)
+                     + SetupWriter::axis("Y", "direction = [0, 1, 0]\n" + home)
+                     + SetupWriter::axis("Z", "direction = [0, 0, 1]\n" + home));
+    const Checked checked = check(setup, program({"G0 X-20. Y50."}));
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.of_severity("warning"), "");
+}
+
+TEST(ToolChange, IsCheckedWithTheLengthOfTheNewTool) {
+    // The second tool is 40 longer: after the change its tip stands 20 deep in the block at Z30.
+    const std::string longer = "number = 2\nshape = \"flat\"\ndiameter = 10\nflute_length = 60\n"
+                               "shank = [[10, 10, 25]]\nholder = [[40, 40, 50]]\n"
+                               "[[length_offset]]\nnumber = 2\nlength = 135\n";
+    const SetupWriter setup = SetupWriter().stock(far_stock).also_tool(longer).fixture(
+        "block", "box = [[40, 40, 0], [60, 60, 30]]");
+    const Checked checked = check(setup, program({"G0 X50. Y50.", "Z50.", "T2 M6", "G0 X0 Y0"}));
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_EQ(checked.at_line(7).verdict, "clear");
+    EXPECT_EQ(checked.verdict, "collision");
+    EXPECT_EQ(checked.at_line(9).pair("flutes block").verdict, "collision");
+    const Checked high = check(setup, program({"G0 X50. Y50.", "Z73.", "T2 M6", "G0 X0 Y0"}));
+    EXPECT_EQ(high.status, 0);
+    expect_encloses(high.at_line(9).pair("flutes block"), 3.0, 1e-6);
+}
+
+TEST(Tool, ThatNobodyDescribedLeavesItsMotionsUndecided) {
+    const Checked checked =
+        check(SetupWriter(), "G21 G90 G54\nT7 M6\nS6000 M3\nG0 G43 H1 Z60.\nM30\n");
+    EXPECT_EQ(checked.of_severity("warning").substr(0, 19), "tool-not-in-table 2");
+    EXPECT_EQ(checked.at_line(4).verdict, "undecided");
+}
+
+} // namespace
+} // namespace app_test

@@ -1,0 +1,204 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "app/report/text_report.h"
+#include "app/setup/setup_file.h"
+#include "tests/support/scoped_folder.h"
+#include "tests/support/setup_writer.h"
+
+namespace app {
+namespace {
+
+using test_support::flat_10;
+using test_support::SetupWriter;
+
+/// The error of a set-up, as it is printed; empty when it is good.
+std::string error_of(const std::string& text) {
+    const test_support::ScopedFolder folder;
+    const auto read = read_setup(folder.write("setup.toml", text));
+    return read ? std::string() : error_text(read.error());
+}
+
+void expect_error(const SetupWriter& setup, const std::vector<std::string>& words) {
+    const std::string error = error_of(setup.text());
+    for (const std::string& word : words)
+        EXPECT_NE(error.find(word), std::string::npos) << word << " in: " << error;
+    EXPECT_NE(error.find("setup.toml:"), std::string::npos) << error;
+}
+
+/// The place that an error names must be the line that holds `what`.
+void expect_at_line_of(const std::string& text, const std::string& what) {
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(what)), '\n');
+    const std::string error = error_of(text);
+    EXPECT_NE(error.find("setup.toml:" + std::to_string(line) + ":"), std::string::npos)
+        << line << " in: " << error;
+}
+
+std::string fixture(const std::string& keys) { return "[[fixture]]\nname = \"vise\"\n" + keys; }
+
+const std::string box = "box = [[0, 0, 0], [1, 1, 1]]\n";
+
+/// A length offset in which one key says something else.
+std::string length_offset_with(const std::string& key, const std::string& is) {
+    std::string text = "[[length_offset]]\n";
+    for (const char* each : {"number", "length", "wear", "diameter"})
+        text += each + (each == key ? is : std::string(" = 1\n"));
+    return text;
+}
+
+TEST(SetupFile, IsReadAsTheBuilderWritesIt) { EXPECT_EQ(error_of(SetupWriter().text()), ""); }
+
+TEST(SetupFile, NamesTheLineOfAMistake) {
+    expect_at_line_of(SetupWriter().stock(box + "tolerence = 1\n").text(), "tolerence");
+    expect_at_line_of(SetupWriter().tool(flat_10 + "spindle = 5\n").text(), "spindle");
+    expect_at_line_of(SetupWriter().also(fixture(box + "frame = \"G53\"\n")).text(), "\"G53\"");
+    expect_at_line_of(SetupWriter().root("mesh_size = 0.5\nmesh_size = 1\n").text(),
+                      "mesh_size = 1");
+}
+
+TEST(SetupFile, SuggestsTheKeyThatWasMeant) {
+    expect_error(SetupWriter().root("mesh_sise = 1\n"),
+                 {"mesh_sise", "did you mean \"mesh_size\""});
+    expect_error(SetupWriter().stock(box + "tolerence = 1\n"), {"did you mean \"tolerance\""});
+    expect_error(SetupWriter().tool(flat_10 + "cut_at_centre = true\n"),
+                 {"did you mean \"cuts_at_centre\""});
+    expect_error(SetupWriter().also(fixture(box + "rotate = [0, 0, 9]\n")), {"\"rotate\""});
+    expect_error(SetupWriter().offsets("G45 = { X = 1 }\n"), {"unknown key \"G45\""});
+    expect_error(SetupWriter().also("[colour]\nx = 1\n"), {"unknown key \"colour\""});
+    expect_error(SetupWriter().also("[rules]\nair-cuts = \"off\"\n"), {"air-cut"});
+}
+
+TEST(SetupFile, RefusesTextThatIsNoToml) {
+    expect_error(SetupWriter().stock("box = [[0, 0,\n"), {"setup.toml:"});
+    expect_error(SetupWriter().root("mesh_size == 1\n"), {"setup.toml:1:"});
+    expect_error(SetupWriter().also("[stock]\n" + box), {"stock"});
+}
+
+TEST(SetupFile, RefusesAWrongTypeOfEveryKey) {
+    for (const char* value : {"\"1\"", "true", "[1]", "nan", "inf", "{}"}) {
+        const std::string is = std::string(" = ") + value + "\n";
+        expect_error(SetupWriter().root("mesh_size" + is), {"mesh_size"});
+        expect_error(SetupWriter().root("allowance" + is), {"allowance"});
+        expect_error(SetupWriter().stock(box + "tolerance" + is), {"tolerance"});
+        expect_error(SetupWriter().program("start = { X" + is.substr(0, is.size() - 1) + " }\n"),
+                     {"X must be a number"});
+        expect_error(SetupWriter().offsets("G54 = { Z" + is.substr(0, is.size() - 1) + " }\n"),
+                     {"Z must be a number"});
+        for (const char* key : {"min", "max", "home", "rapid", "acceleration"})
+            expect_error(SetupWriter().machine(SetupWriter::axis("X", key + is)), {key});
+        for (const char* key : {"number", "length", "wear", "diameter"})
+            expect_error(SetupWriter().lengths(length_offset_with(key, is)), {key, "must be"});
+    }
+}
+
+TEST(SetupFile, RefusesANumberWhereATextOrATableIsMeant) {
+    for (const char* keys : {"dialect = 1\n", "block_delete = 1\n", "start = 1\n"})
+        expect_error(SetupWriter().program(keys), {"must be"});
+    for (const char* keys : {"file = 1\n", "rapid = 1\n", "axis = 1\n"})
+        expect_error(SetupWriter().machine(keys), {"must be"});
+    for (const char* keys : {"at = 1\n", "rotate_deg = [1, 2]\n", "frame = 1\n",
+                             "expendable = \"yes\"\n", "at = [1, 2, \"3\"]\n"})
+        expect_error(SetupWriter().also(fixture(box + keys)), {"must be"});
+    for (const char* shape : {"mesh = 1\n", "cylinder = 1\n", "box = 1\n", "box = [1, 2, 3]\n",
+                              "box = [[1, 2, 3]]\n", "box = [[1, 2], [3, 4]]\n"})
+        expect_error(SetupWriter().also(fixture(shape)), {"must"});
+    for (const char* keys : {"name = 1\n", "shank = 1\n", "holder = [[1, 2]]\n", "spindle = 1\n",
+                             "cuts_at_centre = 1\n", "corner_radius = \"1\"\n"})
+        expect_error(SetupWriter().tool(flat_10 + keys), {"setup.toml:"});
+    for (const char* root : {"fixture", "rules", "part"})
+        expect_error(SetupWriter().root(root + std::string(" = 1\n")), {root, "must be"});
+}
+
+TEST(SetupFile, NeedsAStock) {
+    expect_error(SetupWriter().without_stock(), {"[stock] is missing"});
+}
+
+TEST(SetupFile, NeedsExactlyOneShape) {
+    const std::string cylinder = "cylinder = { radius = 1, height = 1 }\n";
+    expect_error(SetupWriter().stock(box + cylinder), {"a single shape"});
+    expect_error(SetupWriter().stock("frame = \"G54\"\n"), {"one of box, cylinder, mesh"});
+    expect_error(SetupWriter().also(fixture(box + cylinder)), {"a single shape"});
+    expect_error(SetupWriter().also(fixture("")), {"one of box, cylinder, mesh"});
+}
+
+TEST(SetupFile, NamesTheFramesItKnows) {
+    expect_error(SetupWriter().also(fixture(box + "frame = \"G53\"\n")),
+                 {"\"G53\" is not known", "G54", "machine"});
+    expect_error(SetupWriter().stock(box + "frame = \"vise\"\n"), {"\"vise\" is not known"});
+}
+
+TEST(SetupFile, NamesTheShapesOfTools) {
+    expect_error(SetupWriter().tool("number = 1\nshape = \"round\"\n"),
+                 {"\"round\"", "flat ball bull"});
+    expect_error(SetupWriter().tool("number = 1\n"), {"shape is missing"});
+    expect_error(SetupWriter().tool("shape = \"flat\"\n"), {"number is missing"});
+}
+
+TEST(SetupFile, RefusesSizesThatAreNotAboveZero) {
+    for (const char* size : {"0", "-1", "-0.0"}) {
+        const std::string is = std::string(" = ") + size + "\n";
+        expect_error(SetupWriter().root("mesh_size" + is), {"mesh_size"});
+        expect_error(
+            SetupWriter().tool("number = 1\nshape = \"flat\"\nflute_length = 5\ndiameter" + is),
+            {"diameter"});
+        expect_error(
+            SetupWriter().tool("number = 1\nshape = \"flat\"\ndiameter = 5\nflute_length" + is),
+            {"flute_length"});
+        expect_error(SetupWriter().also(
+                         fixture(std::string("cylinder = { height = 1, radius = ") + size + " }")),
+                     {"radius"});
+        expect_error(SetupWriter().machine(SetupWriter::axis("X", "rapid" + is)), {"rapid"});
+    }
+    expect_error(SetupWriter().also(fixture("box = [[0, 0, 0], [1, 1, 0]]\n")),
+                 {"two opposite corners"});
+    expect_error(SetupWriter().root("allowance = -1\n"), {"allowance"});
+    expect_error(SetupWriter().stock(box + "tolerance = -0.1\n"), {"tolerance"});
+    for (const char* row : {"[10, 10, 0]", "[10, 10, -1]", "[-1, 10, 5]"})
+        expect_error(SetupWriter().tool("number = 1\nshape = \"flat\"\ndiameter = 10\n"
+                                        "flute_length = 5\nshank = ["
+                                        + std::string(row) + "]\n"),
+                     {"shank"});
+}
+
+TEST(SetupFile, RefusesTwoOfOneName) {
+    expect_error(SetupWriter().also(fixture(box)).also(fixture(box)), {"\"vise\" is there twice"});
+    expect_error(SetupWriter().also_tool(flat_10), {"1 is there twice"});
+    expect_error(SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 1\n"
+                                       "[[length_offset]]\nnumber = 1\nlength = 2\n"),
+                 {"1 is there twice"});
+}
+
+TEST(SetupFile, RefusesWordsOfItsOwnAsNames) {
+    for (const char* name : {"stock", "flutes", "shank", "holder", "nose", "fixture", "machine"})
+        expect_error(SetupWriter().fixture(name, box), {"meaning of its own"});
+}
+
+TEST(SetupFile, RefusesAllowancesOfBodiesThatAreNotThere) {
+    expect_error(SetupWriter().also("[[allowance]]\nbetween = [\"holder\", \"vise\"]\n"
+                                    "distance = 5\n"),
+                 {"no body \"vise\""});
+    expect_error(SetupWriter().also("[[allowance]]\nbetween = [\"holder\"]\ndistance = 5\n"),
+                 {"between"});
+    expect_error(SetupWriter().also("[[allowance]]\n"), {"distance is missing"});
+    expect_error(SetupWriter().also("[[allowance]]\ndistance = -1\n"), {"distance"});
+}
+
+TEST(SetupFile, RefusesToSwitchCollisionsOff) {
+    expect_error(SetupWriter().also("[rules]\ncollision = \"off\"\n"), {"collision"});
+    expect_error(SetupWriter().also("[rules]\nnear-miss = \"maybe\"\n"), {"near-miss"});
+}
+
+TEST(SetupFile, RefusesAMachineThatCannotBe) {
+    using W = SetupWriter;
+    expect_error(W().machine(W::axis("X", "direction = [1, 1, 0]\n")), {"direction"});
+    expect_error(W().machine(W::axis("X", "direction = [0, 1, 0]\n")), {"right angles"});
+    expect_error(W().machine(W::axis("X", "min = 5\nmax = 5\n")), {"min must be below max"});
+    expect_error(W().machine(W::axis("A", "kind = \"rotary\"\n")), {"linear axes"});
+    EXPECT_NE(error_of(W().machine("file = \"nope.toml\"\n").text()).find("nope.toml: there is"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace app
