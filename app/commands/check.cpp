@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
+#include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/report/json_report.h"
 #include "app/report/text_report.h"
@@ -60,9 +61,9 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command
         .add_option("--allowance", options->allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(CLI::PositiveNumber);
+        ->check(number_range(1e-3, 1000.0));
     command.add_option("--dialect", options->dialect, "linuxcnc, fanuc, haas or grbl")
         ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
     command.add_option("--format", options->format, "text or json")

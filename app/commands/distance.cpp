@@ -4,6 +4,7 @@
 
 #include "app/commands/body_argument.h"
 #include "app/commands/commands.h"
+#include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/report/distance_report.h"
 #include "app/session/body_pair.h"
@@ -50,11 +51,7 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
     command.add_option(name, value, help)
         ->delimiter(',')
         ->expected(3)
-        ->check([](const std::string& text) {
-            double number = 0.0;
-            const bool finite = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
-            return finite ? std::string() : text + " is no finite number";
-        });
+        ->check(number_range(-1e6, 1e6));
 }
 
 } // namespace
@@ -66,7 +63,7 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("a", options->a, body)->required();
     command.add_option("b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(CLI::PositiveNumber)
+        ->check(number_range(1e-3, 1000.0))
         ->capture_default_str();
     add_vector(command, "--move", options->move, "X,Y,Z: moves B, mm");
     add_vector(command, "--rotate", options->rotate,

@@ -31,14 +31,24 @@ core::Result<void> write_output(const std::string& path, const std::string& text
         if (!write_all(stdout, text)) return refused("standard output", "cannot be written");
         return {};
     }
-    const std::string fresh = fmt::format("{}.{}.new", path, ::getpid());
+    std::error_code failure;
+    const std::filesystem::path target = std::filesystem::weakly_canonical(path, failure);
+    if (failure) return refused(path, "cannot be written: " + failure.message());
+    const auto kind = std::filesystem::status(target, failure).type();
+    if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
+    const bool replace = kind == std::filesystem::file_type::regular
+                         || kind == std::filesystem::file_type::not_found;
+    const std::string fresh =
+        replace ? fmt::format("{}.{}.new", target.string(), ::getpid()) : target.string();
     std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "wb"));
     if (!file) return refused(path, "cannot be written: no such folder, or no permission");
-    const bool written = write_all(file.get(), text) && ::fsync(::fileno(file.get())) == 0;
+    const bool written =
+        write_all(file.get(), text) && (!replace || ::fsync(::fileno(file.get())) == 0);
     file.reset();
-    std::error_code failure;
-    if (written) std::filesystem::rename(fresh, path, failure);
+    failure.clear();
+    if (written && replace) std::filesystem::rename(fresh, target, failure);
     if (written && !failure) return {};
+    if (!replace) return refused(path, "could not be written to its end");
     std::filesystem::remove(fresh, failure);
     return refused(path, "could not be written to its end; what was there is unchanged");
 }

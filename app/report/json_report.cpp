@@ -78,6 +78,7 @@ Json finding_json(const CheckRun& run, const core::Finding& finding) {
         json["block"] = core::value_of(*finding.block);
         json["line"] = run.blocks[core::value_of(*finding.block)].line;
     }
+    if (!finding.pair[0].empty()) json["pair"] = finding.pair;
     json["message"] = finding.message;
     json["cure"] = finding.cure;
     return json;

@@ -20,7 +20,8 @@ std::vector<FindingGroup> grouped(const CheckRun& run) {
     std::vector<FindingGroup> groups;
     std::map<std::pair<std::string, std::string>, size_t> known;
     for (const core::Finding& finding : run.findings) {
-        const std::string about = finding.subject.empty() ? finding.message : finding.subject;
+        const std::string about =
+            finding.pair[0].empty() ? finding.message : finding.pair[0] + " / " + finding.pair[1];
         const auto [at, is_new] = known.try_emplace({finding.rule, about}, groups.size());
         if (is_new) groups.push_back({});
         FindingGroup& group = groups[at->second];
@@ -139,7 +140,9 @@ std::string text_report(const CheckRun& run, const TextOptions& options) {
 }
 
 std::string error_text(const core::Error& error) {
-    std::string text = error.file;
+    // Messages about a file as a whole name it themselves.
+    const bool named = error.message.find(error.file) != std::string::npos;
+    std::string text = named && error.where.line == 0 ? std::string() : error.file;
     if (error.where.line > 0) text += fmt::format(":{}", error.where.line);
     if (error.where.column > 0) text += fmt::format(":{}", error.where.column);
     return text.empty() ? error.message : text + ": " + error.message;

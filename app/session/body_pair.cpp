@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include <fmt/format.h>
+
 #include "core/dbm/mesh_scan.h"
 #include "core/distance/closest_pair.h"
 
@@ -15,6 +17,8 @@ double rounding(const core::Aabb& box) {
     const core::Vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
     return 1e-9 * std::max(1.0, std::max({farthest.x, farthest.y, farthest.z}) / 2000.0);
 }
+
+constexpr double most_poses = 10'000.0;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -75,6 +79,12 @@ core::Result<BodyPairDistance> measure(const MeasuredBody& a, const MeasuredBody
     FEELER_TRY(const core::SphereTree tree_b, core::sphere_tree(points_b));
     found.build_seconds = seconds_since(start);
 
+    if (glm::length(sweep) / mesh_size > most_poses)
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("the sweep is {:.0f} mm long: the scan points would be "
+                                      "compared at more than {:.0f} poses; a larger mesh size "
+                                      "needs fewer",
+                                      glm::length(sweep), most_poses));
     start = Clock::now();
     search_points(tree_a, tree_b, a_from_b, sweep, mesh_size, found);
     const core::ExactBody exact_a = exact(a), exact_b = exact(b);

@@ -55,6 +55,14 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
                                   : "rapids run as dog-legs, each axis at its own speed");
 }
 
+/// Whoever asks for much room wants to know about bodies that are farther away, too.
+void look_beyond_allowances(core::Setup& setup) {
+    double largest = setup.allowance.value_or(0.0);
+    for (const core::AllowanceRule& rule : setup.allowances)
+        largest = std::max(largest, rule.distance);
+    setup.search_limit = std::max(setup.search_limit, largest + 1.0);
+}
+
 void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
     if (program_calls_tools || setup.tools.size() != 1) return;
     setup.tool_at_start = setup.tools.begin()->first;
@@ -151,6 +159,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    look_beyond_allowances(run.setup);
     const auto dialect = choose_dialect(job, file, *program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;

@@ -14,12 +14,14 @@ constexpr const char* axis_keys[] = {"X", "Y", "Z"};
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
+constexpr double largest_allowance = 1000.0; // mm; more is a slip of the finger
+
 core::Result<toml::table> parse(const std::string& path) {
     std::error_code failure;
     if (std::filesystem::is_directory(path, failure))
-        return core::fail(core::ErrorCode::io, "is a folder, not a set-up file");
+        return core::fail(core::ErrorCode::io, "is a folder, not a file");
     if (!std::filesystem::exists(path, failure))
-        return core::fail(core::ErrorCode::io, "there is no such set-up file");
+        return core::fail(core::ErrorCode::io, "there is no such file");
     try {
         return toml::parse_file(path);
     } catch (const toml::parse_error& error) {
@@ -64,7 +66,8 @@ void read_allowance(TableReader& table, core::Setup& setup) {
     if (!distance) return table.need("distance");
     rule.distance = *distance;
     rule.contact = table.number_or("contact", 0.0);
-    if (rule.distance < 0.0) table.refuse("distance", "must not be negative");
+    if (!(rule.distance >= 0.0 && rule.distance <= largest_allowance))
+        table.refuse("distance", "must lie between 0 and 1000 mm");
     if (rule.contact < 0.0) table.refuse("contact", "must not be negative");
     if (const auto names = table.strings("between", 2)) {
         rule.between = {(*names)[0], (*names)[1]};
@@ -82,7 +85,8 @@ void read_allowances(TableReader& root, core::Setup& setup) {
         return;
     }
     setup.allowance = root.number("allowance");
-    if (setup.allowance && *setup.allowance < 0.0) root.refuse("allowance", "must not be negative");
+    if (setup.allowance && !(*setup.allowance >= 0.0 && *setup.allowance <= largest_allowance))
+        root.refuse("allowance", "must lie between 0 and 1000 mm");
 }
 
 /// A name that no body has would make a rule that never counts.

@@ -58,6 +58,9 @@ public:
     /// Notes a mistake in the value of a key, unless there was one before.
     void refuse(const char* key, const std::string& why);
 
+    /// Notes a mistake of the table as a whole.
+    void refuse_whole(const std::string& why) { refuse_at(table_.source(), why); }
+
     /// Notes that a key is missing.
     void need(const char* key);
 

@@ -64,7 +64,7 @@ void read_tool(TableReader& table, SetupFile& file) {
     table.finish();
 
     const auto assembled = core::assemble(tool);
-    if (!assembled) return table.refuse("number", fmt::format("({})", assembled.error().message));
+    if (!assembled) return table.refuse_whole(assembled.error().message);
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;

@@ -257,6 +257,22 @@ double cut(CutModel& model, const CutterSweep& sweep) {
     return volume;
 }
 
+std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box) {
+    constexpr int side = ScanLines::tile_side;
+    const LineRange cells = cells_in(model, box);
+    std::vector<uint32_t> numbers;
+    for (int v = cells.v_first / side * side; v < cells.v_last; v += side) {
+        for (int u = cells.u_first / side * side; u < cells.u_last; u += side) {
+            const SharedLog<uint32_t>& tile = model.history[model.column_boxes.index(u, v)];
+            for (size_t k = 0; k < tile.size(); ++k)
+                if (overlaps(model.log[tile[k]].box, box)) numbers.push_back(tile[k]);
+        }
+    }
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    return numbers;
+}
+
 Square cell_square(const CutModel& model, int i, int j) {
     const ScanGrid& grid = model.lines.grid;
     const Aabb& box = model.outer_box;

@@ -47,6 +47,9 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 /// The matter on a line along Z through cell (i, j), worked out afresh from the log.
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y);
 
+/// The numbers of the logged sweeps that may have come into a box, in order.
+std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box);
+
 /// Whether the model holds no matter any more.
 bool is_gone(const CutModel& model);
 

@@ -15,7 +15,7 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     else
         for (const ProfileElement& element : flutes.elements)
             convex.push_back(RevolvedProfile{{element}});
-    Cutter cutter;
+    Cutter cutter{.flutes = flutes};
     for (const RevolvedProfile& piece : convex) {
         if (path_error == 0.0)
             cutter.pieces.push_back({piece, piece});

@@ -15,6 +15,7 @@ struct Cutter {
     struct Piece {
         RevolvedProfile within, around;
     };
+    RevolvedProfile flutes;
     std::vector<Piece> pieces;
 };
 

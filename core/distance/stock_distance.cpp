@@ -122,7 +122,8 @@ private:
 
     void search_columns() {
         lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
-        // Ties are passed over, and the bound lowered by what they may be nearer; none at the limit.
+        // Ties are passed over, and the bound lowered by what they may be nearer; none at the
+        // limit.
         const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
         for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
             if (near.bound >= limit()) break;

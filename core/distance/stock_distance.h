@@ -15,10 +15,10 @@ struct LineId {
 
 /// What a search against a stock should decide, and what it may spend.
 struct StockGoal {
-    double limit = 50.0;        // mm: beyond it nobody asks
-    double threshold = 0.0;     // mm: the interval is narrowed until it lies on one side of this
-    double finest = 0.03;       // mm: squares are not divided below this side
-    size_t work_limit = 20'000; // squares that may be worked out afresh
+    double limit = 50.0;         // mm: beyond it nobody asks
+    double threshold = 0.0;      // mm: the interval is narrowed until it lies on one side of this
+    double finest = 0.03;        // mm: squares are not divided below this side
+    size_t work_limit = 100'000; // squares that may be worked out afresh
     std::optional<LineId>
         first_line; // looked at before all others; the last answer is a good guess
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,12 +17,11 @@ const char* name_of(Severity severity);
 struct Finding {
     std::string rule; // stable name, as in `near-miss`
     Severity severity = Severity::warning;
-    std::optional<BlockIndex> block; // empty: the program as a whole
-    std::string message;             // one or two sentences as a machinist would say them
-    std::string cure;                // what would make it go away; may be empty
-    std::string
-        subject{}; // the pair it is about, `holder / clamp-1`, so that findings can be grouped
-    double shortfall = 0.0; // how much is missing of what must be kept, mm
+    std::optional<BlockIndex> block;   // empty: the program as a whole
+    std::string message;               // one or two sentences as a machinist would say them
+    std::string cure;                  // what would make it go away; may be empty
+    std::array<std::string, 2> pair{}; // the part and the body it is about; empty if about none
+    double shortfall = 0.0;            // how much is missing of what must be kept, mm
 };
 
 /// What the set-up says about rules by name, in place of their own severity.

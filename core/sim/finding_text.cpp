@@ -37,12 +37,18 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     if (rule == "undecided")
         return "A smaller mesh size decides it; if not, give the block more room.";
     const double missing = pair.allowance.distance - pair.upper;
-    const std::string room = way_out(pair, missing);
+    const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
     if (!room.empty()) return fmt::format("{} would do{}.", room, move);
     if (pair.pair.part != PartKind::flutes && !fixture)
         return "A longer stick-out or a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
+}
+
+/// One number where both are the same to what is printed, else both.
+std::string range(double low, double high) {
+    if (high - low < 0.002) return fmt::format("{:.3f}", high);
+    return fmt::format("{:.3f} to {:.3f}", low, high);
 }
 
 std::string message_of(const PairClearance& pair, const std::string& rule, BlockMotion motion,
@@ -57,10 +63,10 @@ std::string message_of(const PairClearance& pair, const std::string& rule, Block
         return fmt::format("{} {} runs into {}, {:.0f} % of the way.", kind, part, body,
                            100.0 * at);
     if (pair.verdict == Verdict::violation)
-        return fmt::format("{} {} passes {} at {:.3f} mm; {:.3f} mm must be kept, {:.3f} mm are "
-                           "missing.",
-                           kind, part, body, pair.upper, pair.allowance.distance,
-                           pair.allowance.distance - pair.upper);
+        return fmt::format(
+            "{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.", kind, part,
+            body, range(pair.lower, pair.upper), pair.allowance.distance,
+            range(pair.allowance.distance - pair.upper, pair.allowance.distance - pair.lower));
     return fmt::format("{} {} may be as near to {} as {:.3f} mm; {:.3f} mm must be kept.", kind,
                        part, body, pair.lower, pair.allowance.distance);
 }
@@ -94,7 +100,7 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion mo
     finding.severity = severity_of(setup, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
-    finding.subject = fmt::format("{} / {}", name_of(pair.pair.part), body);
+    finding.pair = {name_of(pair.pair.part), body};
     finding.shortfall =
         pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
     if (!finding.cure.empty())

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "core/dbm/covered_path.h"
+
 namespace core {
 namespace {
 
@@ -131,7 +133,9 @@ LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, co
     seen.plain =
         to_stock(part.kind, shapes(part.profile, leg), stock, deciding_distance(allowance), limit);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
-    if (may_touch || seen.plain.upper == 0.0) {
+    if (may_touch && retraces(part, leg, stock, allowance)) {
+        seen.shrunk.lower = infinity; // no stock where the shrunk part goes
+    } else if (may_touch || seen.plain.upper == 0.0) {
         const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
         const double just_apart = resolution + leg.path_error;
         seen.shrunk = to_stock(part.kind, shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
@@ -139,6 +143,21 @@ LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, co
     seen.plain = widened(seen.plain, leg.path_error);
     seen.shrunk = widened(seen.shrunk, leg.path_error);
     return seen;
+}
+
+bool LegCheck::retraces(const ToolPart& part, const Leg& leg, const CutModel& stock,
+                        const Allowance& allowance) const {
+    const RevolvedProfile& flutes = tool_.parts[0].profile;
+    const double widest = bounds(flutes).max.x;
+    if (!leg.straight || part.kind == PartKind::holder || bounds(part.profile).max.x > widest)
+        return false;
+    // Half of the contact depth is for the way, the rest for the errors of both paths.
+    const double path_errors = leg.path_error + chord_error(setup_.mesh_size);
+    const Vec3 tip = setup_.stock_origin + Vec3(0.0, 0.0, tool_.length);
+    return runs_in_own_cut(stock, {.flutes = flutes,
+                                   .from = leg.places[0] - tip,
+                                   .to = leg.places[1] - tip,
+                                   .sideways = 0.5 * contact_depth(allowance) - path_errors});
 }
 
 PairClearance LegCheck::clearance(const ToolPart& part, const Leg& leg, double start,
@@ -173,7 +192,7 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         settled = settled && clear;
         checks.push_back({part, before, clear});
     }
-    if (!settled && length(leg) > setup_.mesh_size)
+    if (!settled && length(leg) > setup_.mesh_size && depends_on_time(checks, leg, stock))
         return check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
                + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
 
@@ -184,6 +203,19 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         merge(entry(pairs, now.pair, now.allowance), now);
     }
     return removed;
+}
+
+bool LegCheck::depends_on_time(const std::vector<PartCheck>& checks, const Leg& leg,
+                               const CutModel& stock) {
+    // What is too near both before and after the cut is so in any order.
+    CutModel cut_already = stock;
+    cut_along(leg, cut_already);
+    for (const PartCheck& check : checks) {
+        if (check.clear) continue;
+        const Observation after = look_again(check, leg, cut_already);
+        if (clearance(check.part, leg, 0.0, after, after).verdict == Verdict::clear) return true;
+    }
+    return false;
 }
 
 LegCheck::Observation LegCheck::look_again(const PartCheck& check, const Leg& leg,
@@ -216,6 +248,11 @@ bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
 double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock,
                                    std::vector<PairClearance>& pairs) {
     const bool gouged = check_parts(leg, start, stock, pairs);
+    if (gouged) {
+        PairClearance& flutes = entry(pairs, {PartKind::flutes, std::nullopt}, {});
+        const double share = earliest(leg, flutes.pair, 0.0, stock);
+        flutes.time = std::min(flutes.time, start + leg.begin + share * (leg.end - leg.begin));
+    }
     // After the finding the material is gone, so that one crash is one finding.
     return gouged ? cut_along(leg, stock) : 0.0;
 }

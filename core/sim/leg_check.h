@@ -66,6 +66,12 @@ private:
     /// Looks no farther than `nearest`.
     Observation observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
                         double nearest);
+    /// Whether the part goes only where the flutes have cut before (see runs_in_own_cut).
+    bool retraces(const ToolPart& part, const Leg& leg, const CutModel& stock,
+                  const Allowance& allowance) const;
+    /// Whether a part that is too near the stock before the cut is clear of what is left after it.
+    bool depends_on_time(const std::vector<PartCheck>& checks, const Leg& leg,
+                         const CutModel& stock);
     Observation look_again(const PartCheck& check, const Leg& leg, const CutModel& stock);
     PairClearance clearance(const ToolPart& part, const Leg& leg, double start,
                             const Observation& before, const Observation& after) const;

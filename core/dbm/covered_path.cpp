@@ -1,0 +1,80 @@
+#include "core/dbm/covered_path.h"
+
+namespace core {
+namespace {
+
+constexpr int deepest_division = 12;
+
+bool same_profile(const RevolvedProfile& a, const RevolvedProfile& b) {
+    return std::equal(a.elements.begin(), a.elements.end(), b.elements.begin(), b.elements.end(),
+                      [](const ProfileElement& p, const ProfileElement& q) {
+                          return p.z0 == q.z0 && p.r0 == q.r0 && p.z1 == q.z1 && p.r1 == q.r1
+                                 && p.margin == q.margin;
+                      });
+}
+
+bool widens_upwards(const RevolvedProfile& flutes) {
+    double radius = 0.0;
+    for (const ProfileElement& e : flutes.elements) {
+        if (e.r1 < e.r0 || e.r1 + e.margin < radius) return false;
+        radius = e.r1 + e.margin;
+    }
+    return is_convex(flutes);
+}
+
+/// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
+bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
+    const Vec3 q = logged.sweep.from, by = logged.sweep.to - logged.sweep.from;
+    // The places of the move that are not above p: first .. last of 0 .. 1.
+    double first = 0.0, last = 1.0;
+    if (by.z > 0.0) last = std::min(last, (p.z - q.z) / by.z);
+    if (by.z < 0.0) first = std::max(first, (p.z - q.z) / by.z);
+    if (by.z == 0.0 && q.z > p.z) return false;
+    if (first > last) return false;
+    const double length = by.x * by.x + by.y * by.y;
+    const double along = (p.x - q.x) * by.x + (p.y - q.y) * by.y;
+    const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
+    return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= sideways;
+}
+
+/// A search among the moves that can serve.
+struct Search {
+    std::vector<const LoggedSweep*> moves;
+    double sideways;
+
+    /// Both ends over one move: then, both being straight, all between is over it too.
+    bool covered(const Vec3& a, const Vec3& b, int depth) const {
+        bool ends_covered = false;
+        for (const LoggedSweep* move : moves) {
+            const bool at_a = covers(*move, a, sideways), at_b = covers(*move, b, sideways);
+            if (at_a && at_b) return true;
+            ends_covered = ends_covered || at_a || at_b;
+        }
+        if (!ends_covered || depth == deepest_division) return false;
+        const Vec3 middle = 0.5 * (a + b);
+        return covered(a, middle, depth + 1) && covered(middle, b, depth + 1);
+    }
+};
+
+} // namespace
+
+bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
+    if (question.sideways <= 0.0 || !widens_upwards(question.flutes)) return false;
+    const double height = bounds(question.flutes).max.z;
+    Aabb path;
+    path.extend(question.from);
+    path.extend(question.to);
+    Search search{{}, question.sideways};
+    // What cut under the path reached up through it, to the stock's top and beyond.
+    path.min.z = -infinity;
+    path.max.z = infinity;
+    for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
+        const LoggedSweep& logged = stock.log[number];
+        const CutterSweep& sweep = logged.sweep;
+        if (std::min(sweep.from.z, sweep.to.z) + height < stock.outer_box.max.z) continue;
+        if (same_profile(sweep.cutter->flutes, question.flutes)) search.moves.push_back(&logged);
+    }
+    return search.covered(question.from, question.to, 0);
+}
+
+} // namespace core
