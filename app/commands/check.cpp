@@ -63,7 +63,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-3, 1000.0));
+        ->check(number_range(1e-300, 1e300));
     command.add_option("--dialect", options->dialect, "linuxcnc, fanuc, haas or grbl")
         ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
     command.add_option("--format", options->format, "text or json")

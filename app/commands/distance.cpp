@@ -63,7 +63,7 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("a", options->a, body)->required();
     command.add_option("b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-3, 1000.0))
+        ->check(number_range(1e-300, 1e300))
         ->capture_default_str();
     add_vector(command, "--move", options->move, "X,Y,Z: moves B, mm");
     add_vector(command, "--rotate", options->rotate,

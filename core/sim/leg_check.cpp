@@ -199,7 +199,10 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     const double removed = cut_along(leg, stock);
     for (const PartCheck& check : checks) {
         const Observation after = removed > 0.0 ? look_again(check, leg, stock) : check.before;
-        const PairClearance now = clearance(check.part, leg, start, check.before, after);
+        PairClearance now = clearance(check.part, leg, start, check.before, after);
+        if (now.verdict == Verdict::collision)
+            now.time =
+                start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
         merge(entry(pairs, now.pair, now.allowance), now);
     }
     return removed;
