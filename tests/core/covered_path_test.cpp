@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include "core/dbm/covered_path.h"
+
+namespace core {
+namespace {
+
+const RevolvedProfile end_mill{{{0.0, 5.0, 20.0, 5.0, 0.0}}};
+const RevolvedProfile slimmer{{{0.0, 4.9, 20.0, 4.9, 0.0}}};
+const RevolvedProfile dovetail{{{0.0, 5.0, 20.0, 2.0, 0.0}}};
+
+/// A block of 100 x 100 x 30 with its top at Z 0, cut along a slot from X-20 to X60 at Y50, Z-5.
+struct Slot {
+    CutModel stock = *make_cut_model({SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0}, 1.0);
+
+    explicit Slot(const RevolvedProfile& flutes = end_mill, double z = -5.0) {
+        const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, 0.0));
+        cut(stock, {cutter, {-20, 50, z}, {60, 50, z}});
+    }
+    bool holds(const Vec3& from, const Vec3& to, const RevolvedProfile& flutes = end_mill,
+               double sideways = 0.02) const {
+        return runs_in_own_cut(stock, {flutes, from, to, sideways});
+    }
+};
+
+TEST(OwnCut, HoldsTheWayBackAndUp) {
+    const Slot slot;
+    EXPECT_TRUE(slot.holds({60, 50, -5}, {-20, 50, -5}));
+    EXPECT_TRUE(slot.holds({60, 50, -5}, {60, 50, 40}));
+    EXPECT_TRUE(slot.holds({60, 50.01, -5}, {20, 49.99, 3}));
+}
+
+TEST(OwnCut, EndsWhereTheCutEnded) {
+    const Slot slot;
+    EXPECT_FALSE(slot.holds({60, 50, -5}, {60.1, 50, -5}));
+    EXPECT_FALSE(slot.holds({60, 50, -5}, {60, 50, -5.001}));
+    EXPECT_FALSE(slot.holds({60, 50, -5}, {20, 50.1, -5}));
+    EXPECT_FALSE(slot.holds({60, 49.9, -5}, {60, 49.9, 30}));
+}
+
+TEST(OwnCut, GoesOnFromOneMoveToTheNext) {
+    Slot slot;
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(end_mill, 0.0));
+    cut(slot.stock, {cutter, {60, 50, -5}, {60, 90, -8}});
+    EXPECT_TRUE(slot.holds({60, 90, -8}, {60, 50, -5}));
+    EXPECT_TRUE(slot.holds({60, 70, -6}, {60, 50, -4}));
+    EXPECT_FALSE(slot.holds({60, 70, -7}, {60, 50, -5}));
+    EXPECT_FALSE(slot.holds({30, 50, -5}, {60, 80, -5}));
+}
+
+TEST(OwnCut, IsThatOfTheSameFlutesOnly) {
+    EXPECT_FALSE(Slot(slimmer).holds({60, 50, -5}, {0, 50, -5}));
+}
+
+TEST(OwnCut, IsNoneForFlutesThatGetSlimmerUpwards) {
+    EXPECT_FALSE(Slot(dovetail).holds({60, 50, -5}, {60, 50, 10}, dovetail));
+}
+
+TEST(OwnCut, IsClosedAboveWhereTheFlutesEndBelowTheTop) {
+    EXPECT_FALSE(Slot(end_mill, -25.0).holds({60, 50, -25}, {0, 50, -25}));
+}
+
+} // namespace
+} // namespace core
