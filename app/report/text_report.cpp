@@ -55,17 +55,17 @@ std::string findings_text(const CheckRun& run) {
 }
 
 std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
-    if (!result.checked) return fmt::format("{:>17}", "not known");
+    if (!result.checked) return fmt::format("{:>15}", "not known");
     if (!result.deciding)
-        return fmt::format("{:>17}", fmt::format("> {:.0f}", run.setup.search_limit));
+        return fmt::format("{:>15}", fmt::format("> {:.0f}", run.setup.search_limit));
     const core::PairClearance& pair = result.pairs[*result.deciding];
-    if (!pair.found()) return fmt::format("{:>17}", fmt::format(">= {:.3f}", pair.lower));
-    if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>17.3f}", pair.upper);
-    return fmt::format("{:>8.3f}-{:<8.3f}", pair.lower, pair.upper);
+    if (!pair.found()) return fmt::format("{:>15}", fmt::format(">= {:.3f}", pair.lower));
+    if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>15.3f}", pair.upper);
+    return fmt::format("{:>7.3f}-{:<7.3f}", pair.lower, pair.upper);
 }
 
 std::string blocks_text(const CheckRun& run) {
-    std::string text = "  line motion tool    clearance mm  near what            verdict   block\n";
+    std::string text = " line move  tool   clearance mm near what         verdict   block\n";
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         if (result.motion == core::BlockMotion::none) continue;
@@ -75,11 +75,11 @@ std::string blocks_text(const CheckRun& run) {
             pair = fmt::format("{} / {}", core::name_of(near.pair.part),
                                core::body_name(run.setup, near.pair));
         }
-        text += fmt::format("{:>6} {:<6} {:>4} {} {:<20} {:<9} {}\n", block.line,
+        text += fmt::format("{:>5} {:<5} {:>4} {} {:<17} {:<9} {}\n", block.line,
                             core::name_of(result.motion),
                             result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
-                            clearance_text(run, result), clipped(pair, 20),
-                            core::name_of(result.verdict), clipped(trimmed(block.text), 30));
+                            clearance_text(run, result), clipped(pair, 17),
+                            core::name_of(result.verdict), clipped(trimmed(block.text), 19));
     }
     return text + "\n";
 }
