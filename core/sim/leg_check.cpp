@@ -155,8 +155,8 @@ bool LegCheck::retraces(const ToolPart& part, const Leg& leg, const CutModel& st
     const double path_errors = leg.path_error + chord_error(setup_.mesh_size);
     const Vec3 tip = setup_.stock_origin + Vec3(0.0, 0.0, tool_.length);
     return runs_in_own_cut(stock, {.flutes = flutes,
-                                   .from = leg.places[0] - tip,
-                                   .to = leg.places[1] - tip,
+                                   .from = leg.places.front() - tip,
+                                   .to = leg.places.back() - tip,
                                    .sideways = 0.5 * contact_depth(allowance) - path_errors});
 }
 
