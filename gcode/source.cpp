@@ -49,7 +49,7 @@ private:
     void strip_byte_order_mark();
 
     Error refusal(std::string_view what, uint32_t line) const {
-        const std::string_view name = program_.file.empty() ? "the program" : program_.file;
+        const std::string name = program_.file.empty() ? "the program" : program_.file;
         return {ErrorCode::syntax, {.line = line}, fmt::format("{} {}", name, what), program_.file};
     }
 
