@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/dbm/mesh_scan.h"
-#include "core/distance/closest_pair.h"
+#include "core/distance/sphere_search.h"
 
 namespace app {
 namespace {
@@ -56,7 +56,7 @@ void search_points(const core::SphereTree& a, const core::SphereTree& b,
         const core::ClosestPair pair =
             core::closest_pair(a, b, core::translation(share * sweep) * a_from_b);
         found.distance = std::min(found.distance, pair.distance);
-        found.sphere_tests += pair.sphere_tests;
+        found.sphere_tests += pair.node_tests;
         found.point_tests += pair.point_tests;
     }
 }

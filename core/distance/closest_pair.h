@@ -1,32 +1,54 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
-#include "core/base/transform.h"
-#include "core/distance/sphere_tree.h"
+#include "core/base/vec.h"
 
 namespace core {
 
-/// The nearest points of two bodies, and what it took to find them.
-struct ClosestPair {
-    double distance = infinity; // mm
-    uint32_t point_a = 0;       // indices in the points the trees were built from
-    uint32_t point_b = 0;
-    Vec3 witness_a = Vec3(0.0); // both in the frame of A
-    Vec3 witness_b = Vec3(0.0);
-    uint64_t sphere_tests = 0; // pairs of spheres compared
-    uint64_t point_tests = 0;  // pairs of points compared
+/// A point of each body, by its index among the points the body was built from.
+struct PointPair {
+    uint32_t a = 0;
+    uint32_t b = 0;
+
+    bool operator==(const PointPair&) const = default;
 };
 
-/// Finds the closest pair of points by the paper's search.
-///
-/// Frame:  the result is in that of A.
-/// Result: the least distance over all pairs, to the last bit; of equally near pairs the first that
-///         the search meets, which depends on nothing but the input. Coinciding points end the
-///         search.
-/// Cost:   a few thousand sphere tests for bodies apart; up to all pairs where faces lie parallel.
-/// Source: Uddin, Yamazaki, Study of Distance Computation between Objects Represented by Discrete
-///         Boundary Model, 2010, 4.2.2.
-ClosestPair closest_pair(const SphereTree& a, const SphereTree& b, const Transform& a_from_b);
+/// What a search for the closest pair of points should find out, and what is known beforehand.
+struct PairGoal {
+    double limit = infinity;        // mm: pairs this far apart or farther do not count
+    bool any = false;               // any pair below the limit will do: "closer than m?"
+    double tolerance = 0.0;         // mm: how much nearer than the pair found another one may be
+    Vec3 sweep = Vec3(0.0);         // B moves on by this; the least distance on the way counts
+    std::optional<PointPair> first; // compared before all others: the last answer is a good guess
+};
+
+/// The nearest points of two bodies, and what it took to find them.
+struct ClosestPair {
+    double distance = infinity; // mm; infinite when no pair is below the limit
+    double lower = 0.0;         // no two points are nearer than this
+    PointPair points;
+    Vec3 witness_a = Vec3(0.0); // both in the frame of A, B's at the time `at`
+    Vec3 witness_b = Vec3(0.0);
+    double at = 0.0;          // 0..1 of the sweep
+    uint64_t node_tests = 0;  // pairs of nodes compared: spheres, or boxes
+    uint64_t point_tests = 0; // pairs of points compared
+
+    bool found() const { return distance < infinity; }
+};
+
+/// The time, 0..1, at which a point that moves on by `sweep` is nearest to another; `apart` leads
+/// from the first to the second at time 0.
+inline double nearest_time(const Vec3& apart, const Vec3& sweep) {
+    const double length_squared = glm::dot(sweep, sweep);
+    if (length_squared == 0.0) return 0.0;
+    return std::clamp(glm::dot(apart, sweep) / length_squared, 0.0, 1.0);
+}
+
+/// Their distance at that time.
+inline double swept_distance(const Vec3& apart, const Vec3& sweep) {
+    return glm::length(apart - nearest_time(apart, sweep) * sweep);
+}
 
 } // namespace core

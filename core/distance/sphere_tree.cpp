@@ -17,14 +17,15 @@ int longest_axis(const Vec3& size) {
 
 class Builder {
 public:
-    explicit Builder(std::span<const Vec3> points) : points_(points), order_(points.size()) {
+    explicit Builder(std::span<const Vec3> points)
+        : points_(points), order_(points.size()), leaf_of_point_(points.size()) {
         std::iota(order_.begin(), order_.end(), uint32_t{0});
         nodes_.reserve(2 * points.size() - 1);
     }
 
-    std::vector<SphereTree::Node> build() && {
+    SphereTree build() && {
         add(order_);
-        return std::move(nodes_);
+        return {std::move(nodes_), std::move(leaf_of_point_)};
     }
 
 private:
@@ -37,6 +38,7 @@ private:
         nodes_.push_back({.centre = box.center()});
         if (group.size() == 1) {
             nodes_[node] = {.centre = points_[group[0]], .point = group[0]};
+            leaf_of_point_[group[0]] = static_cast<uint32_t>(node);
             return;
         }
         nodes_[node].radius = radius_about(nodes_[node].centre, group);
@@ -68,6 +70,7 @@ private:
 
     std::span<const Vec3> points_;
     std::vector<uint32_t> order_;
+    std::vector<uint32_t> leaf_of_point_;
     std::vector<SphereTree::Node> nodes_;
 };
 
@@ -84,7 +87,7 @@ Result<SphereTree> sphere_tree(std::span<const Vec3> points) {
                 return fail(ErrorCode::invalid_value,
                             "point " + std::to_string(i)
                                 + " has a coordinate that is not finite or beyond 1e12 mm");
-    return SphereTree{Builder(points).build()};
+    return Builder(points).build();
 }
 
 } // namespace core

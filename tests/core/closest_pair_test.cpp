@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dbm/dbm.h"
-#include "core/distance/closest_pair.h"
+#include "core/distance/sphere_search.h"
 #include "tests/support/brute_force_pair.h"
 #include "tests/support/meshes.h"
 
@@ -38,11 +38,11 @@ std::vector<Vec3> lattice(int nx, int ny, int nz) {
 void expect_least(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Transform& pose) {
     const ClosestPair found = closest_pair(tree_of(a), tree_of(b), pose);
     EXPECT_EQ(found.distance, brute_force_distance(a, b, pose));
-    EXPECT_EQ(found.witness_a, a[found.point_a]);
-    EXPECT_EQ(found.witness_b, pose * b[found.point_b]);
+    EXPECT_EQ(found.witness_a, a[found.points.a]);
+    EXPECT_EQ(found.witness_b, pose * b[found.points.b]);
     EXPECT_EQ(found.distance, glm::distance(found.witness_a, found.witness_b));
-    EXPECT_GT(found.sphere_tests, 0u);
-    EXPECT_GE(found.sphere_tests, found.point_tests);
+    EXPECT_GT(found.node_tests, 0u);
+    EXPECT_GE(found.node_tests, found.point_tests);
 }
 
 TEST(SphereTree, RefusesNoPointsAndPointsThatAreNone) {
@@ -160,9 +160,8 @@ TEST(ClosestPair, IsTheSameEachTime) {
     const auto a = random_cloud(rng, 500, 5.0), b = random_cloud(rng, 500, 5.0);
     const ClosestPair first = closest_pair(tree_of(a), tree_of(b), translation({9.0, 0.0, 0.0}));
     const ClosestPair again = closest_pair(tree_of(a), tree_of(b), translation({9.0, 0.0, 0.0}));
-    EXPECT_EQ(first.point_a, again.point_a);
-    EXPECT_EQ(first.point_b, again.point_b);
-    EXPECT_EQ(first.sphere_tests, again.sphere_tests);
+    EXPECT_EQ(first.points, again.points);
+    EXPECT_EQ(first.node_tests, again.node_tests);
     EXPECT_EQ(first.point_tests, again.point_tests);
 }
 
@@ -192,7 +191,7 @@ TEST(PaperSpheres, NeedMoreSphereTestsThanPointTests) {
     const SphereTree ball = paper_sphere(0.5);
     for (const double gap : separations) {
         const auto found = closest_pair(ball, ball, translation({50.0 + gap, 0.0, 0.0}));
-        EXPECT_GT(found.sphere_tests, found.point_tests);
+        EXPECT_GT(found.node_tests, found.point_tests);
         EXPECT_GT(found.point_tests, 0u);
     }
 }
@@ -201,10 +200,10 @@ TEST(PaperSpheres, TakeTheTestsThatTheOrderOfTheSearchImplies) {
     // Other orders of splitting and visiting find the same distance with other counts.
     const SphereTree ball = paper_sphere(0.5);
     const auto near = closest_pair(ball, ball, translation({50.5, 0.0, 0.0}));
-    EXPECT_EQ(near.sphere_tests, 6629u);
+    EXPECT_EQ(near.node_tests, 6629u);
     EXPECT_EQ(near.point_tests, 4u);
     const auto unequal = closest_pair(ball, paper_sphere(2.0), translation({70.0, 10.0, 5.0}));
-    EXPECT_EQ(unequal.sphere_tests, 13159u);
+    EXPECT_EQ(unequal.node_tests, 13159u);
     EXPECT_EQ(unequal.point_tests, 20u);
 }
 

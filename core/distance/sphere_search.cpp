@@ -1,4 +1,4 @@
-#include "core/distance/closest_pair.h"
+#include "core/distance/sphere_search.h"
 
 #include <array>
 #include <cassert>
@@ -21,55 +21,69 @@ struct Pair {
 
 class Search {
 public:
-    Search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b)
+    Search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
+           const PairGoal& goal)
         : a_from_b_(a_from_b),
-          rounding_(rounding_of(a.nodes[0], b.nodes[0], a_from_b)),
+          goal_(goal),
+          moves_(goal.sweep != Vec3(0.0)),
+          rounding_(rounding_of(a.nodes[0], b.nodes[0], a_from_b, goal.sweep)),
           a_root_(&a.nodes[0]),
           b_root_(&b.nodes[0]) {}
 
-    ClosestPair run() {
+    ClosestPair run(const Node* first_a, const Node* first_b) {
+        if (first_a) compare_points(tested(first_a, first_b, a_from_b_ * first_b->centre));
         push(tested(a_root_, b_root_, a_from_b_ * b_root_->centre));
-        while (size_ > 0 && best_.distance > 0.0) {
+        while (size_ > 0 && !done()) {
             const Pair pair = stack_[--size_];
-            if (pair.gap >= best_.distance) continue;
+            if (pair.gap >= worth()) continue;
             if (pair.a->is_leaf() && pair.b->is_leaf())
                 compare_points(pair);
             else
                 split(pair);
         }
+        best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
         return best_;
     }
 
 private:
     /// What rounding can add to a gap computed from radii and mapped centres: some 10 operations on
     /// numbers up to the sum of all these lengths, and a rotation that is orthogonal to 1e-15.
-    static double rounding_of(const Node& a, const Node& b, const Transform& a_from_b) {
+    static double rounding_of(const Node& a, const Node& b, const Transform& a_from_b,
+                              const Vec3& sweep) {
         const double reach = glm::length(a.centre) + a.radius + glm::length(b.centre) + b.radius
-                             + glm::length(a_from_b.translation);
+                             + glm::length(a_from_b.translation) + glm::length(sweep);
         return 64.0 * std::numeric_limits<double>::epsilon() * reach;
     }
 
+    bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
+
+    /// Only what is nearer than this is still of interest.
+    double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
+
+    double apart(const Vec3& a, const Vec3& b) const {
+        return moves_ ? swept_distance(a - b, goal_.sweep) : glm::distance(a, b);
+    }
+
     Pair tested(const Node* a, const Node* b, const Vec3& b_centre) {
-        ++best_.sphere_tests;
-        const double apart = glm::distance(a->centre, b_centre);
-        if (a->is_leaf() && b->is_leaf()) return {a, b, b_centre, apart};
-        return {a, b, b_centre, apart - (a->radius + b->radius) - rounding_};
+        ++best_.node_tests;
+        const double gap = apart(a->centre, b_centre);
+        if (a->is_leaf() && b->is_leaf()) return {a, b, b_centre, gap};
+        return {a, b, b_centre, gap - (a->radius + b->radius) - rounding_};
     }
 
     void push(const Pair& pair) {
         assert(size_ < stack_.size());
-        if (pair.gap < best_.distance) stack_[size_++] = pair;
+        if (pair.gap < worth()) stack_[size_++] = pair;
     }
 
     void compare_points(const Pair& pair) {
         ++best_.point_tests;
-        const double apart = glm::distance(pair.a->centre, pair.b_centre);
-        if (!(apart < best_.distance)) return;
-        best_.distance = apart;
-        best_.point_a = pair.a->point;
-        best_.point_b = pair.b->point;
+        if (!(pair.gap < std::min(best_.distance, goal_.limit))) return;
+        best_.distance = pair.gap;
+        best_.points = {pair.a->point, pair.b->point};
         best_.witness_a = pair.a->centre;
-        best_.witness_b = pair.b_centre;
+        best_.at = nearest_time(pair.a->centre - pair.b_centre, goal_.sweep);
+        best_.witness_b = pair.b_centre + best_.at * goal_.sweep;
     }
 
     void split(const Pair& pair) {
@@ -87,6 +101,8 @@ private:
     }
 
     const Transform& a_from_b_;
+    const PairGoal& goal_;
+    bool moves_;
     double rounding_;
     const Node* a_root_;
     const Node* b_root_;
@@ -98,9 +114,15 @@ private:
 
 } // namespace
 
-ClosestPair closest_pair(const SphereTree& a, const SphereTree& b, const Transform& a_from_b) {
+ClosestPair closest_pair(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
+                         const PairGoal& goal) {
     assert(!a.nodes.empty() && !b.nodes.empty());
-    return Search(a, b, a_from_b).run();
+    const auto leaf = [](const SphereTree& tree, uint32_t point) {
+        return &tree.nodes[tree.leaf_of_point[point]];
+    };
+    return goal.first
+               ? Search(a, b, a_from_b, goal).run(leaf(a, goal.first->a), leaf(b, goal.first->b))
+               : Search(a, b, a_from_b, goal).run(nullptr, nullptr);
 }
 
 } // namespace core

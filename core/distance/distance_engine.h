@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "core/base/transform.h"
+#include "core/distance/closest_pair.h"
+
+namespace core {
+
+/// Counts the bodies that an engine holds, from 0.
+enum class PointBody : uint32_t {};
+
+/// Finds closest pairs among bodies given by their points. All engines give the same distance, to
+/// the last bit; of pairs equally near each may name another.
+class DistanceEngine {
+public:
+    virtual ~DistanceEngine() = default;
+
+    virtual std::string_view name() const = 0;
+
+    /// Takes in a body.
+    ///
+    /// Errors: no points; a coordinate that is not finite or beyond 1e12 mm; too many points, or
+    ///         more than fit into memory (what it would need is said, and not tried).
+    virtual Result<PointBody> add(std::span<const Vec3> points) = 0;
+
+    /// The closest pair of points of two bodies.
+    ///
+    /// Frame:  the result is in that of A.
+    /// Errors: a transform that is not rigid, a sweep or a goal that is no number.
+    Result<ClosestPair> closest_pair(PointBody a, PointBody b, const Transform& a_from_b,
+                                     const PairGoal& goal = {}) const;
+
+private:
+    virtual ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
+                               const PairGoal& goal) const = 0;
+};
+
+/// The search of the paper: spheres, one point to a leaf.
+std::unique_ptr<DistanceEngine> paper_engine();
+
+} // namespace core
