@@ -7,10 +7,11 @@
 
 namespace core {
 
-/// A point of each body, by its index among the points the body was built from.
+/// A point of each body, by its index among the points the body was built from; of a body in tiles,
+/// by tile * 2^32 and the index in the tile.
 struct PointPair {
-    uint32_t a = 0;
-    uint32_t b = 0;
+    uint64_t a = 0;
+    uint64_t b = 0;
 
     bool operator==(const PointPair&) const = default;
 };

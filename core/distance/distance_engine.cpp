@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/distance/point_search.h"
 #include "core/distance/sphere_search.h"
 
 namespace core {
@@ -20,26 +21,41 @@ bool is_rigid(const Transform& t) {
 
 bool is_near(const Vec3& v) { return glm::length(v) <= farthest; }
 
-class PaperEngine final : public DistanceEngine {
+/// An engine that keeps a tree of each body.
+template <typename Tree, Result<Tree> build(std::span<const Vec3>)>
+class TreeEngine final : public DistanceEngine {
 public:
-    std::string_view name() const override { return "paper"; }
+    explicit TreeEngine(std::string_view name) : name_(name) {}
+
+    std::string_view name() const override { return name_; }
 
     Result<PointBody> add(std::span<const Vec3> points) override {
-        FEELER_TRY(SphereTree tree, sphere_tree(points));
+        FEELER_TRY(Tree tree, build(points));
         trees_.push_back(std::move(tree));
         return PointBody(trees_.size() - 1);
     }
 
 private:
-    const SphereTree& tree(PointBody body) const { return trees_[static_cast<size_t>(body)]; }
+    const Tree& tree(PointBody body) const { return trees_[static_cast<size_t>(body)]; }
+
+    size_t points_of(PointBody body) const override {
+        const auto i = static_cast<size_t>(body);
+        return i < trees_.size() ? point_count(trees_[i]) : 0;
+    }
 
     ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
                        const PairGoal& goal) const override {
         return core::closest_pair(tree(a), tree(b), a_from_b, goal);
     }
 
-    std::vector<SphereTree> trees_;
+    static size_t point_count(const SphereTree& tree) { return tree.leaf_of_point.size(); }
+    static size_t point_count(const PointTree& tree) { return tree.points.size(); }
+
+    std::string_view name_;
+    std::vector<Tree> trees_;
 };
+
+Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_tree(points); }
 
 } // namespace
 
@@ -56,9 +72,20 @@ Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
     if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0))
         return fail(ErrorCode::invalid_value,
                     "the limit and the tolerance of a search must be lengths of 0 or more");
+    const size_t points_a = points_of(a), points_b = points_of(b);
+    if (points_a == 0 || points_b == 0)
+        return fail(ErrorCode::invalid_value, "the engine holds no body of that number");
+    if (goal.first && (goal.first->a >= points_a || goal.first->b >= points_b))
+        return fail(ErrorCode::invalid_value, "the first pair names a point that is not there");
     return search(a, b, a_from_b, goal);
 }
 
-std::unique_ptr<DistanceEngine> paper_engine() { return std::make_unique<PaperEngine>(); }
+std::unique_ptr<DistanceEngine> paper_engine() {
+    return std::make_unique<TreeEngine<SphereTree, sphere_tree>>("paper");
+}
+
+std::unique_ptr<DistanceEngine> fast_engine() {
+    return std::make_unique<TreeEngine<PointTree, whole_point_tree>>("fast");
+}
 
 } // namespace core

@@ -117,7 +117,7 @@ private:
 ClosestPair closest_pair(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
                          const PairGoal& goal) {
     assert(!a.nodes.empty() && !b.nodes.empty());
-    const auto leaf = [](const SphereTree& tree, uint32_t point) {
+    const auto leaf = [](const SphereTree& tree, uint64_t point) {
         return &tree.nodes[tree.leaf_of_point[point]];
     };
     return goal.first

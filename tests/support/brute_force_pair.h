@@ -4,17 +4,21 @@
 #include <vector>
 
 #include "core/base/transform.h"
+#include "core/distance/closest_pair.h"
 
 namespace test_support {
 
-/// The least distance of two sets of points: every pair is tried.
+/// The least distance of two sets of points while those of B move on by `sweep`: every pair is
+/// tried.
 inline double brute_force_distance(const std::vector<core::Vec3>& a,
                                    const std::vector<core::Vec3>& b,
-                                   const core::Transform& a_from_b) {
+                                   const core::Transform& a_from_b,
+                                   const core::Vec3& sweep = core::Vec3(0.0)) {
     double least = core::infinity;
     for (const core::Vec3& q : b) {
         const core::Vec3 mapped = a_from_b * q;
-        for (const core::Vec3& p : a) least = std::min(least, glm::distance(p, mapped));
+        for (const core::Vec3& p : a)
+            least = std::min(least, core::swept_distance(p - mapped, sweep));
     }
     return least;
 }
