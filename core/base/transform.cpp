@@ -42,4 +42,16 @@ Mat3 rotation_xyz_deg(const Vec3& angles_deg) {
     return about_z * about_y * about_x;
 }
 
+double distortion(const Mat3& rotation) {
+    const Mat3 product = glm::transpose(rotation) * rotation;
+    double most = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const double off = std::abs(product[i][j] - (i == j));
+            if (std::isnan(off)) return off;
+            most = std::max(most, off);
+        }
+    return most;
+}
+
 } // namespace core

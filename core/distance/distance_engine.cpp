@@ -12,11 +12,7 @@ constexpr double farthest = 1e12; // mm, as for points
 constexpr double rigid_to = 1e-9; // how far the columns may be from unit length and right angles
 
 bool is_rigid(const Transform& t) {
-    const Mat3 product = glm::transpose(t.rotation) * t.rotation;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (!(std::abs(product[i][j] - (i == j)) <= rigid_to)) return false;
-    return glm::determinant(t.rotation) > 0.0;
+    return distortion(t.rotation) <= rigid_to && glm::determinant(t.rotation) > 0.0;
 }
 
 bool is_near(const Vec3& v) { return glm::length(v) <= farthest; }
@@ -62,11 +58,15 @@ Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_
 Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
                                                  const Transform& a_from_b,
                                                  const PairGoal& goal) const {
-    if (!is_rigid(a_from_b))
+    if (!is_rigid(a_from_b) || (goal.end && !is_rigid(*goal.end)))
         return fail(ErrorCode::invalid_value,
                     "the transform between the bodies is not a rotation: its columns must be at "
                     "right angles, of length 1, and not mirror");
-    if (!is_near(a_from_b.translation) || !is_near(goal.sweep))
+    if (goal.end && goal.sweep != Vec3(0.0))
+        return fail(ErrorCode::invalid_value,
+                    "a body either moves on by a sweep or goes to an end, not both");
+    if (!is_near(a_from_b.translation) || !is_near(goal.sweep)
+        || (goal.end && !is_near(goal.end->translation)))
         return fail(ErrorCode::invalid_value,
                     "the bodies are moved by a length that is no number or beyond 1e12 mm");
     if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0))
