@@ -1,6 +1,7 @@
 #include "core/distance/distance_engine.h"
 
 #include <cmath>
+#include <deque>
 
 #include "core/distance/point_search.h"
 #include "core/distance/sphere_search.h"
@@ -27,16 +28,28 @@ public:
 
     Result<PointBody> add(std::span<const Vec3> points) override {
         FEELER_TRY(Tree tree, build(points));
-        trees_.push_back(std::move(tree));
-        return PointBody(trees_.size() - 1);
+        Aabb box;
+        for (const Vec3& p : points) box.extend(p);
+        bodies_.push_back({std::move(tree), box});
+        return PointBody(bodies_.size() - 1);
+    }
+
+    Aabb box_of(PointBody body) const override {
+        const auto i = static_cast<size_t>(body);
+        return i < bodies_.size() ? bodies_[i].box : Aabb();
     }
 
 private:
-    const Tree& tree(PointBody body) const { return trees_[static_cast<size_t>(body)]; }
+    struct Body {
+        Tree tree;
+        Aabb box;
+    };
+
+    const Tree& tree(PointBody body) const { return bodies_[static_cast<size_t>(body)].tree; }
 
     size_t points_of(PointBody body) const override {
         const auto i = static_cast<size_t>(body);
-        return i < trees_.size() ? point_count(trees_[i]) : 0;
+        return i < bodies_.size() ? point_count(bodies_[i].tree) : 0;
     }
 
     ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
@@ -44,20 +57,29 @@ private:
         return core::closest_pair(tree(a), tree(b), a_from_b, goal);
     }
 
+    Vec3 position(PointBody body, uint64_t point) const override {
+        return point_at(tree(body), point);
+    }
+
+    static const Vec3& point_at(const SphereTree& tree, uint64_t point) {
+        return tree.nodes[tree.leaf_of_point[point]].centre;
+    }
+    static const Vec3& point_at(const PointTree& tree, uint64_t point) {
+        return tree.points[tree.place[point]];
+    }
     static size_t point_count(const SphereTree& tree) { return tree.leaf_of_point.size(); }
     static size_t point_count(const PointTree& tree) { return tree.points.size(); }
 
     std::string_view name_;
-    std::vector<Tree> trees_;
+    std::deque<Body> bodies_; // stay where they are
 };
 
 Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_tree(points); }
 
 } // namespace
 
-Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
-                                                 const Transform& a_from_b,
-                                                 const PairGoal& goal) const {
+Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_from_b,
+                                   const PairGoal& goal) const {
     if (!is_rigid(a_from_b) || (goal.end && !is_rigid(*goal.end)))
         return fail(ErrorCode::invalid_value,
                     "the transform between the bodies is not a rotation: its columns must be at "
@@ -76,8 +98,26 @@ Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
     if (points_a == 0 || points_b == 0)
         return fail(ErrorCode::invalid_value, "the engine holds no body of that number");
     if (goal.first && (goal.first->a >= points_a || goal.first->b >= points_b))
-        return fail(ErrorCode::invalid_value, "the first pair names a point that is not there");
+        return fail(ErrorCode::invalid_value, "the pair given names a point that is not there");
+    return {};
+}
+
+Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
+                                                 const Transform& a_from_b,
+                                                 const PairGoal& goal) const {
+    if (auto checked = check(a, b, a_from_b, goal); !checked)
+        return tl::unexpected(std::move(checked).error());
     return search(a, b, a_from_b, goal);
+}
+
+Result<ClosestPair> DistanceEngine::pair_at(PointBody a, PointBody b, const PointPair& points,
+                                            const Transform& a_from_b) const {
+    if (auto checked = check(a, b, a_from_b, {.first = points}); !checked)
+        return tl::unexpected(std::move(checked).error());
+    ClosestPair pair{.points = points, .witness_a = position(a, points.a)};
+    pair.witness_b = a_from_b * position(b, points.b);
+    pair.distance = glm::distance(pair.witness_a, pair.witness_b);
+    return pair;
 }
 
 std::unique_ptr<DistanceEngine> paper_engine() {

@@ -32,13 +32,24 @@ public:
     ///
     /// Frame:  the result is in that of A.
     /// Errors: a transform that is not rigid, a sweep or a goal that is no number, a body or a
-    /// point
-    ///         that is not there.
+    ///         point that is not there.
     Result<ClosestPair> closest_pair(PointBody a, PointBody b, const Transform& a_from_b,
                                      const PairGoal& goal = {}) const;
 
+    /// How far apart two points are.
+    ///
+    /// Errors: those of closest_pair().
+    Result<ClosestPair> pair_at(PointBody a, PointBody b, const PointPair& points,
+                                const Transform& a_from_b) const;
+
+    /// The box of a body's points; empty if there is no such body.
+    virtual Aabb box_of(PointBody body) const = 0;
+
 private:
     virtual size_t points_of(PointBody body) const = 0; // 0: no such body
+    virtual Vec3 position(PointBody body, uint64_t point) const = 0;
+    Result<void> check(PointBody a, PointBody b, const Transform& a_from_b,
+                       const PairGoal& goal) const;
     virtual ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
                                const PairGoal& goal) const = 0;
 };
