@@ -52,9 +52,19 @@ private:
         return i < bodies_.size() ? point_count(bodies_[i].tree) : 0;
     }
 
-    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
-                       const PairGoal& goal) const override {
-        return core::closest_pair(tree(a), tree(b), a_from_b, goal);
+    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b, const PairGoal& goal,
+                       SearchMemory* memory) const override {
+        return search(tree(a), tree(b), a_from_b, goal, memory);
+    }
+
+    static ClosestPair search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
+                              const PairGoal& goal, SearchMemory*) {
+        return core::closest_pair(a, b, a_from_b, goal);
+    }
+    static ClosestPair search(const PointTree& a, const PointTree& b, const Transform& a_from_b,
+                              const PairGoal& goal, SearchMemory* memory) {
+        if (!memory) return core::closest_pair(a, b, a_from_b, goal);
+        return core::closest_pair({&a, {}}, {&b, {}}, a_from_b, goal, *memory);
     }
 
     Vec3 position(PointBody body, uint64_t point) const override {
@@ -103,11 +113,11 @@ Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_
 }
 
 Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
-                                                 const Transform& a_from_b,
-                                                 const PairGoal& goal) const {
+                                                 const Transform& a_from_b, const PairGoal& goal,
+                                                 SearchMemory* memory) const {
     if (auto checked = check(a, b, a_from_b, goal); !checked)
         return tl::unexpected(std::move(checked).error());
-    return search(a, b, a_from_b, goal);
+    return search(a, b, a_from_b, goal, memory);
 }
 
 Result<ClosestPair> DistanceEngine::pair_at(PointBody a, PointBody b, const PointPair& points,

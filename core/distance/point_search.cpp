@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/distance/lane_kernels.h"
-#include "core/distance/search_side.h"
+#include "core/geom/rigid_motion.h"
 
 namespace core {
 namespace {
@@ -15,22 +15,12 @@ namespace {
 constexpr uint32_t width = PointTree::width;
 constexpr size_t beam_width = 2; // pairs followed down to the leaves before the search proper
 
-/// A pair of boxes still to be searched: visited node * width + lane.
-struct Pair {
-    float squared; // lower bound of their squared distance; in the beam, how far the middles are
-    uint32_t a, b;
-};
-
-/// Memory that is kept from search to search.
-struct Workspace {
-    SearchSide a, b;
-    std::vector<Pair> stack, beam;
-};
-
-Workspace& workspace() {
-    static thread_local Workspace space;
-    return space;
-}
+// A front is made for so many queries like the last ones, or to hold so many pairs of points; where
+// it would serve fewer than the least, it is not made.
+constexpr double most_steps = 16.0, least_steps = 3.0;
+constexpr double wanted_pairs = 300.0;
+constexpr size_t most_pairs = 1000;
+constexpr int long_rest = 64; // searches
 
 /// The square of a length in single precision, not less than it was.
 float squared_above(double length) {
@@ -44,20 +34,25 @@ Float3 single(const Vec3& v) {
 
 Vec3 wide(const Float3& v) { return {v[0], v[1], v[2]}; }
 
+bool nearer(const BoxPair& x, const BoxPair& y) {
+    if (x.squared != y.squared) return x.squared < y.squared;
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
 class Search {
 public:
     Search(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
-           const PairGoal& goal, Workspace& space)
+           const PairGoal& goal, SearchMemory& memory)
         : kernels_(lane_kernels()),
           body_a_(a),
           body_b_(b),
           motion_(a_from_b, goal),
           goal_(goal),
           moves_(motion_.moves()),
-          a_(space.a),
-          b_(space.b),
-          stack_(space.stack),
-          beam_(space.beam) {
+          a_(memory.a),
+          b_(memory.b),
+          stack_(memory.stack),
+          beam_(memory.beam) {
         const double squared = glm::dot(goal.sweep, goal.sweep);
         per_length_ = squared > 1e-30 ? static_cast<float>(1.0 / squared) : 0.0F;
     }
@@ -68,25 +63,115 @@ public:
         if (near_squared_ == infinity) follow_the_middles();
         start();
         search();
+        return finished();
+    }
+
+    /// The same, only with the pairs of the front; nothing if the answer may be elsewhere.
+    std::optional<ClosestPair> run_along(const PairFront& front) {
+        const double moved = displacement(front.pose, motion_.start, body_b_.top->box) + rounding();
+        const double reach = front.limit - moved;
+        if (!(reach > 0.0)) return {};
+        for (const FrontPair& pair : front.pairs) {
+            if (done() || pair.distance - moved >= worth()) break;
+            ++best_.point_tests;
+            compare(pair.a, pair.b);
+        }
+        if (!done() && worth() > reach) return {};
+        return finished();
+    }
+
+    /// After run(): the pairs of points nearer than `limit`, but no more than `most`.
+    void fill(PairFront& front, std::vector<BoxPair>& leaves, double limit, size_t most) {
+        const double near_leaf = collect_leaves(leaves, limit, most);
+        front.pairs.clear();
+        for (const BoxPair& pair : leaves) collect_points(front, pair, near_leaf);
+        front.limit = near_leaf;
+        const auto nearer_points = [](const FrontPair& x, const FrontPair& y) {
+            return x.distance < y.distance;
+        };
+        if (front.pairs.size() > most) {
+            const auto end = front.pairs.begin() + static_cast<std::ptrdiff_t>(most);
+            std::nth_element(front.pairs.begin(), end, front.pairs.end(), nearer_points);
+            front.limit = end->distance;
+            front.pairs.erase(end, front.pairs.end());
+        }
+        std::sort(front.pairs.begin(), front.pairs.end(), nearer_points);
+        front.pose = motion_.start;
+    }
+
+private:
+    ClosestPair finished() {
         best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
         return best_;
     }
 
-private:
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
 
     /// Only what is nearer than this is still of interest.
     double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
 
+    /// What double precision may add to the distances of points at two poses: some ten operations.
+    double rounding() const {
+        const auto reach = [](const PointTreeView& body) {
+            const PointTree::Node& root = body.top->nodes[0];
+            return glm::length(root.origin) + static_cast<double>(root.reach);
+        };
+        return 64.0 * std::numeric_limits<double>::epsilon()
+               * (reach(body_a_) + reach(body_b_) + glm::length(motion_.start.translation));
+    }
+
+    // --- the front ---
+
+    /// The pairs of leaves nearer than `limit`, or about `most` of them; returns how near all
+    /// others are at least.
+    double collect_leaves(std::vector<BoxPair>& leaves, double limit, size_t most) {
+        leaves.clear();
+        limit_squared_ = squared_above(limit);
+        start_from_roots();
+        while (!stack_.empty()) {
+            const BoxPair pair = stack_.back();
+            stack_.pop_back();
+            if (!(pair.squared < limit_squared_)) continue;
+            if (!are_leaves(pair)) {
+                open(pair);
+                continue;
+            }
+            leaves.push_back(pair);
+            if (leaves.size() < 2 * most) continue;
+            const auto end = leaves.begin() + static_cast<std::ptrdiff_t>(most);
+            std::nth_element(leaves.begin(), end, leaves.end(), nearer);
+            limit_squared_ = end->squared;
+            leaves.erase(end, leaves.end());
+            limit = std::sqrt(static_cast<double>(limit_squared_)) * (1.0 - 2e-6);
+        }
+        return limit;
+    }
+
+    void collect_points(PairFront& front, const BoxPair& leaves, double limit) {
+        const VisitedLeaf& a = a_.child_leaf(leaves.a / width, leaves.a % width);
+        const VisitedLeaf& b = b_.child_leaf(leaves.b / width, leaves.b % width);
+        const float squared = squared_above(limit + 8.0 * static_cast<double>(a.margin + b.margin));
+        const uint32_t rows = ((1U << b.leaf->count) - 1U)
+                              & rows_near(b, a_.box(leaves.a / width, leaves.a % width), squared);
+        for_near(a, b, rows, squared, [&](const PointPlace& of_a, const PointPlace& of_b) {
+            const double apart = glm::distance(of_a.position(), motion_.start * of_b.position());
+            if (apart < limit) front.pairs.push_back({apart, of_a, of_b});
+        });
+    }
+
     // --- the frame ---
 
     /// Begins afresh at the roots, in the best frame known by now.
     void start() {
-        const SearchFrame frame = next_frame();
-        sweep_ = single(motion_.end ? Vec3(0.0) : frame.along(motion_.sweep));
+        frame_ = next_frame();
+        sweep_ = single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
         limit_squared_ = squared_above(std::max(worth(), 0.0));
-        a_.begin(body_a_, frame, nullptr);
-        b_.begin(body_b_, frame, &motion_);
+        a_.begin(body_a_, frame_, nullptr);
+        b_.begin(body_b_, frame_, &motion_);
+        start_from_roots();
+    }
+
+    void start_from_roots() {
         stack_.clear();
         const uint32_t lanes = b_.nodes[0].node->used;
         for (uint32_t left = lanes; left != 0; left &= left - 1)
@@ -124,7 +209,7 @@ private:
 
     void search() {
         while (!stack_.empty() && !done()) {
-            const Pair pair = stack_.back();
+            const BoxPair pair = stack_.back();
             stack_.pop_back();
             if (pair.squared < limit_squared_) open(pair);
         }
@@ -135,21 +220,22 @@ private:
     void follow_the_middles() {
         by_middles_ = true;
         start();
-        const auto nearer = [](const Pair& x, const Pair& y) {
-            if (x.squared != y.squared) return x.squared < y.squared;
-            return x.a != y.a ? x.a < y.a : x.b < y.b;
-        };
         while (!stack_.empty() && !done()) {
             const auto count = static_cast<std::ptrdiff_t>(std::min(beam_width, stack_.size()));
             std::partial_sort(stack_.begin(), stack_.begin() + count, stack_.end(), nearer);
             beam_.assign(stack_.begin(), stack_.begin() + count);
             stack_.clear();
-            for (const Pair& pair : beam_) open(pair);
+            for (const BoxPair& pair : beam_) open(pair);
         }
         by_middles_ = false;
     }
 
-    void open(const Pair& pair) {
+    bool are_leaves(const BoxPair& pair) const {
+        return a_.nodes[pair.a / width].size[pair.a % width] < 0.0F
+               && b_.nodes[pair.b / width].size[pair.b % width] < 0.0F;
+    }
+
+    void open(const BoxPair& pair) {
         const uint32_t at_a = pair.a / width, lane_a = pair.a % width;
         const uint32_t at_b = pair.b / width, lane_b = pair.b % width;
         const float size_a = a_.nodes[at_a].size[lane_a], size_b = b_.nodes[at_b].size[lane_b];
@@ -167,7 +253,7 @@ private:
         const FrameBox facing = other.box(box / width, box % width);
         PointTree::Lanes squared;
         uint32_t lanes = node.node->used;
-        best_.node_tests += static_cast<uint64_t>(std::popcount(lanes));
+        best_.node_tests += node.count;
         if (by_middles_)
             kernels_.middles_apart(node.boxes, facing, squared);
         else
@@ -179,7 +265,7 @@ private:
         }
     }
 
-    void compare_leaves(const Pair& pair) {
+    void compare_leaves(const BoxPair& pair) {
         const VisitedLeaf& a = a_.child_leaf(pair.a / width, pair.a % width);
         const VisitedLeaf& b = b_.child_leaf(pair.b / width, pair.b % width);
         const float limit = limit_for(a, b);
@@ -189,7 +275,6 @@ private:
                 ? all
                 : all & rows_near(b, a_.box(pair.a / width, pair.a % width), limit);
         if (rows == 0) return;
-        best_.point_tests += static_cast<uint64_t>(std::popcount(rows)) * a.leaf->count;
         const double before = near_squared_;
         if (near_squared_ < infinity)
             compare_rows(a, b, rows, limit);
@@ -215,6 +300,14 @@ private:
     }
 
     void compare_rows(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit) {
+        for_near(a, b, rows, limit,
+                 [&](const PointPlace& of_a, const PointPlace& of_b) { compare(of_a, of_b); });
+    }
+
+    /// Calls act(point of A, point of B) for the pairs no farther apart than the limit.
+    template <typename Act>
+    void for_near(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit,
+                  const Act& act) {
         std::array<uint16_t, PointTree::leaf_size> columns;
         if (motion_.end)
             kernels_.near_paths(a.points, b.points, b.end, rows, limit, columns);
@@ -223,10 +316,11 @@ private:
         const uint32_t used = (1U << a.leaf->count) - 1U;
         for (; rows != 0; rows &= rows - 1) {
             const auto row = static_cast<uint32_t>(std::countr_zero(rows));
+            best_.point_tests += a.leaf->count;
             for (uint32_t near = columns[row] & used; near != 0; near &= near - 1) {
                 const auto column = static_cast<uint32_t>(std::countr_zero(near));
-                compare({a.tree, a.leaf, a.leaf->first + column},
-                        {b.tree, b.leaf, b.leaf->first + row});
+                act(PointPlace{a.tree, a.leaf, a.leaf->first + column},
+                    PointPlace{b.tree, b.leaf, b.leaf->first + row});
             }
         }
     }
@@ -265,10 +359,11 @@ private:
     bool by_middles_ = false;
     float per_length_ = 0.0F;
     Float3 sweep_{};
+    SearchFrame frame_;
     SearchSide& a_;
     SearchSide& b_;
-    std::vector<Pair>& stack_;
-    std::vector<Pair>& beam_;
+    std::vector<BoxPair>& stack_;
+    std::vector<BoxPair>& beam_;
     ClosestPair best_;
     float limit_squared_ = 0.0F;
     // The nearest pair compared so far, also if beyond the limit.
@@ -277,11 +372,43 @@ private:
     PointPlace near_a_, near_b_;
 };
 
+/// Fills the front after a search, if that will be of use.
+void fill_front(SearchMemory& memory, Search& search, double distance, double step) {
+    const double for_pairs = std::sqrt(wanted_pairs / memory.pairs_per_square);
+    const double slack = std::min(for_pairs, most_steps * step);
+    if (slack < least_steps * step && memory.resting++ < long_rest) return;
+    memory.resting = 0;
+    search.fill(memory.front, memory.near_leaves, distance + slack, most_pairs);
+    const double reached = memory.front.limit - distance;
+    if (reached > 0.0)
+        memory.pairs_per_square =
+            std::max(double(memory.front.pairs.size()), 1.0) / (reached * reached);
+}
+
 } // namespace
 
 ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
                          const PairGoal& goal) {
-    return Search(a, b, a_from_b, goal, workspace()).run();
+    static thread_local SearchMemory memory;
+    return Search(a, b, a_from_b, goal, memory).run();
+}
+
+ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+                         const PairGoal& goal, SearchMemory& memory) {
+    const std::optional<Transform> last = std::exchange(memory.last_pose, a_from_b);
+    if (goal.sweep != Vec3(0.0) || goal.end) {
+        memory.forget_front(); // the search overwrites what it refers to
+        return Search(a, b, a_from_b, goal, memory).run();
+    }
+    if (memory.front.limit >= 0.0)
+        if (const auto found = Search(a, b, a_from_b, goal, memory).run_along(memory.front))
+            return *found;
+    memory.forget_front();
+    Search search(a, b, a_from_b, goal, memory);
+    const ClosestPair found = search.run();
+    if (last && found.found() && !goal.any)
+        fill_front(memory, search, found.distance, displacement(*last, a_from_b, b.top->box));
+    return found;
 }
 
 } // namespace core

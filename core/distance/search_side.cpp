@@ -1,6 +1,7 @@
 #include "core/distance/search_side.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -59,7 +60,7 @@ void SearchSide::begin(const PointTreeView& of, const SearchFrame& frame,
     spreads_ = motion && motion->end;
     if (spreads_) end_ = pose_in(frame, *motion->end);
     sweep_ = motion && !spreads_ ? frame.along(motion->sweep) : Vec3(0.0);
-    coarse_ = coarse(of, frame.origin, motion);
+    coarse_ = coarse(body, frame.origin, motion);
     visit(body.top, 0);
 }
 
@@ -98,6 +99,7 @@ uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
     const PointTree::Node& node = tree->nodes[number];
     visited.tree = tree;
     visited.node = &node;
+    visited.count = static_cast<uint32_t>(std::popcount(node.used));
     visited.below.fill(none);
     for (uint32_t lane = 0; lane < width; ++lane) {
         const bool leaf = (node.child[lane] & PointTree::leaf_flag) != 0;
@@ -125,27 +127,27 @@ uint32_t SearchSide::child_node(uint32_t at, uint32_t lane) {
 
 const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
     VisitedNode& parent = nodes[at];
-    if (parent.below[lane] != none) return leaves[parent.below[lane]];
-    parent.below[lane] = static_cast<uint32_t>(leaves.size());
-    return leaves.emplace_back(
-        seen(parent.tree, parent.tree->leaves[parent.node->child[lane] & ~PointTree::leaf_flag]));
+    uint32_t& id = parent.below[lane];
+    if (id != none) return leaves[id];
+    id = static_cast<uint32_t>(leaves.size());
+    VisitedLeaf& leaf = leaves.emplace_back();
+    leaf.tree = parent.tree;
+    leaf.leaf = &parent.tree->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
+    look_at(leaf);
+    return leaf;
 }
 
-VisitedLeaf SearchSide::seen(const PointTree* tree, const PointTree::Leaf& leaf) const {
-    VisitedLeaf visited;
-    visited.tree = tree;
-    visited.leaf = &leaf;
-    visited.margin = 0.0F;
+void SearchSide::look_at(VisitedLeaf& leaf) const {
+    leaf.margin = 0.0F;
     const auto project = [&](const Pose& pose, PointLanes& points) {
-        Sight seen = sight(pose, leaf.origin, leaf.reach);
+        Sight seen = sight(pose, leaf.leaf->origin, leaf.leaf->reach);
         seen.view.lower = seen.base;
-        visited.margin =
-            std::max(visited.margin, *std::max_element(seen.margin.begin(), seen.margin.end()));
-        kernels_->project_points(leaf, seen.view, points);
+        leaf.margin =
+            std::max(leaf.margin, *std::max_element(seen.margin.begin(), seen.margin.end()));
+        kernels_->project_points(*leaf.leaf, seen.view, points);
     };
-    project(start_, visited.points);
-    if (spreads_) project(end_, visited.end);
-    return visited;
+    project(start_, leaf.points);
+    if (spreads_) project(end_, leaf.end);
 }
 
 FrameBox SearchSide::box(uint32_t at, uint32_t lane) const {

@@ -14,6 +14,7 @@ struct VisitedNode {
     BoxLanes boxes;
     PointTree::Lanes size; // of the children: the larger one is opened; -1: a leaf
     std::array<uint32_t, PointTree::width> below; // their numbers among the visited, or `none`
+    uint32_t count;                               // of the children
     const PointTree* tree;
     const PointTree::Node* node;
 };
@@ -55,9 +56,6 @@ public:
     uint32_t child_node(uint32_t at, uint32_t lane);
     const VisitedLeaf& child_leaf(uint32_t at, uint32_t lane);
 
-    /// A leaf in the frame.
-    VisitedLeaf seen(const PointTree* tree, const PointTree::Leaf& leaf) const;
-
     FrameBox box(uint32_t at, uint32_t lane) const;
 
 private:
@@ -75,6 +73,7 @@ private:
     static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
     Sight sight(const Pose& pose, const Vec3& origin, float reach) const;
     uint32_t visit(const PointTree* tree, uint32_t number);
+    void look_at(VisitedLeaf& leaf) const;
 
     const LaneKernels* kernels_ = nullptr;
     Pose start_, end_;

@@ -62,6 +62,20 @@ RigidMotion turning_motion(const Transform& start, const Vec3& centre, const Vec
     return {start, {turned, place - turned * centre}, centre, unit, angle};
 }
 
+// The lengths below are convex over the box, so that a corner has the largest.
+
+double displacement(const Transform& from, const Transform& to, const Aabb& box) {
+    const Mat3 turn = to.rotation - from.rotation;
+    const Vec3 middle = turn * box.center() + (to.translation - from.translation);
+    const Vec3 half = 0.5 * box.size();
+    const Vec3 x = half.x * turn[0], y = half.y * turn[1], z = half.z * turn[2];
+    double most = 0.0;
+    for (const Vec3& corner : {x + y + z, x + y - z, x - y + z, x - y - z})
+        for (const Vec3& way : {middle + corner, middle - corner})
+            most = std::max(most, glm::dot(way, way));
+    return std::sqrt(most);
+}
+
 double reach_from_axis(const RigidMotion& motion, const Aabb& box) {
     const Vec3 axis_in_b = glm::transpose(motion.start.rotation) * motion.axis;
     double reach = 0.0;

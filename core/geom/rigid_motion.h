@@ -29,6 +29,9 @@ RigidMotion motion_between(const Transform& start, const Transform& end,
 RigidMotion turning_motion(const Transform& start, const Vec3& centre, const Vec3& axis,
                            double angle, const Vec3& travel = Vec3(0.0));
 
+/// The largest distance between where two poses put a point of the box (B's frame).
+double displacement(const Transform& from, const Transform& to, const Aabb& box);
+
 /// The largest distance of a point of the box (B's frame) from the line that B turns about.
 double reach_from_axis(const RigidMotion& motion, const Aabb& box);
 

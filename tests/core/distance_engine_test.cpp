@@ -108,6 +108,21 @@ TEST_P(AnyEngine, AgreesWithBruteForceWhenOneBodyIsTinyOrFar) {
     }
 }
 
+TEST_P(AnyEngine, AgreesWithBruteForceWhereLargeBodiesAlmostTouch) {
+    std::mt19937 rng(36);
+    for (int i = 0; i < 40; ++i) {
+        // Every point of A has one of B next to it: single precision tells none of them apart.
+        const Transform pose = random_pose(rng, 500.0);
+        const Points a = random_cloud(rng, 300, 1000.0), off = random_cloud(rng, 300, 1e-6);
+        Points b;
+        for (size_t k = 0; k < a.size(); ++k) b.push_back(pose.inverse() * (a[k] + off[k]));
+        expect_least(a, b, pose);
+        const Vec3 sweep(0.0, 3e-7, 0.0);
+        expect_least(a, b, pose, {.sweep = sweep});
+        expect_least(a, b, pose, {.end = translation(sweep) * pose});
+    }
+}
+
 TEST_P(AnyEngine, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
     std::mt19937 rng(25);
     for (int i = 0; i < 100; ++i) {
