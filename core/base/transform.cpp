@@ -1,35 +1,8 @@
 #include "core/base/transform.h"
 
-#include <numbers>
+#include "core/base/angle.h"
 
 namespace core {
-namespace {
-
-struct SinCos {
-    double sin;
-    double cos;
-};
-
-/// Reduced to the first octant pair first, so that quarter turns give 0 and 1 without residue.
-SinCos sin_cos_deg(double angle_deg) {
-    const double turn = std::remainder(angle_deg, 360.0);
-    const double quarter = std::nearbyint(turn / 90.0);
-    const double rest = (turn - 90.0 * quarter) * (std::numbers::pi / 180.0);
-    const double s = std::sin(rest);
-    const double c = std::cos(rest);
-    switch ((static_cast<int>(quarter) + 4) % 4) {
-    case 0:
-        return {s, c};
-    case 1:
-        return {c, -s};
-    case 2:
-        return {-s, -c};
-    default:
-        return {-c, s};
-    }
-}
-
-} // namespace
 
 Mat3 rotation_xyz_deg(const Vec3& angles_deg) {
     const auto [sx, cx] = sin_cos_deg(angles_deg.x);
