@@ -1,0 +1,190 @@
+#include "core/geom/mesh_separation.h"
+
+#include <algorithm>
+
+#include "core/geom/triangle_distance.h"
+
+namespace core {
+namespace {
+
+double smallest(const Triangle& t, const Vec3& u) {
+    return std::min({glm::dot(t.a, u), glm::dot(t.b, u), glm::dot(t.c, u)});
+}
+
+double greatest(const Triangle& t, const Vec3& u) {
+    return std::max({glm::dot(t.a, u), glm::dot(t.b, u), glm::dot(t.c, u)});
+}
+
+Aabb bounds_of(const Triangle& t) {
+    return {glm::min(glm::min(t.a, t.b), t.c), glm::max(glm::max(t.a, t.b), t.c)};
+}
+
+Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * t.b, by * t.c}; }
+
+/// Best first through pairs of boxes. Every pair that is nearer than the answer has to be opened,
+/// in whatever order; so the order is chosen to open no other.
+class Search {
+public:
+    Search(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b, const Vec3& sweep,
+           const SeparationGoal& goal)
+        : a_(a), b_(b), a_from_b_(a_from_b), sweep_(sweep), goal_(goal) {}
+
+    Separation run() {
+        if (a_.nodes.empty() || b_.nodes.empty()) return {};
+        descend();
+        put({distance_bound(a_.oriented[0], moved(b_.oriented[0], a_from_b_), sweep_), 0, 0});
+        while (!queue_.empty() && best_.upper > 0.0) {
+            std::pop_heap(queue_.begin(), queue_.end(), comes_after);
+            const Pair pair = queue_.back();
+            queue_.pop_back();
+            if (pair.bound >= enough()) {
+                least_ = std::min(least_, pair.bound);
+                break;
+            }
+            if (!skipped(gap_along_witness(pair))) open(pair);
+        }
+        const double lower = std::min({least_, best_.upper, goal_.limit});
+        Separation found = best_.upper < goal_.limit ? best_ : Separation{};
+        found.lower = lower;
+        return found;
+    }
+
+private:
+    struct Pair {
+        double bound;
+        uint32_t a, b; // a node of each tree
+        uint32_t number = 0;
+    };
+
+    /// Of equal bounds the younger pair first: where everything overlaps, this goes straight down.
+    static bool comes_after(const Pair& x, const Pair& y) {
+        return x.bound != y.bound ? x.bound > y.bound : x.number < y.number;
+    }
+
+    /// At this bound or beyond, nothing is worth a look.
+    double enough() const { return std::min(goal_.limit, best_.upper - goal_.tolerance); }
+
+    bool skipped(double bound) {
+        if (bound < enough()) return false;
+        least_ = std::min(least_, bound);
+        return true;
+    }
+
+    /// The gap along the way between the nearest points so far: next to them it is tighter than
+    /// what the boxes say alone.
+    double gap_along_witness(const Pair& pair) const {
+        const OrientedBox& a = a_.oriented[pair.a];
+        const OrientedBox& b = b_.oriented[pair.b];
+        return glm::dot(a_from_b_ * b.center - a.center, along_) + sweep_start_
+               - a.half_along(along_) - b.half_along(along_in_b_);
+    }
+
+    /// A first pair of triangles, for the way between them.
+    void descend() {
+        Pair pair{0.0, 0, 0};
+        for (;;) {
+            const TriangleBvh::Node& node_a = a_.nodes[pair.a];
+            const TriangleBvh::Node& node_b = b_.nodes[pair.b];
+            if (node_a.is_leaf() && node_b.is_leaf()) return compare(node_a, node_b);
+            const bool split_a = splits_a(pair);
+            const uint32_t first = split_a ? node_a.first : node_b.first;
+            Pair best{infinity, 0, 0};
+            for (const uint32_t child : {first, first + 1}) {
+                Pair next = pair;
+                (split_a ? next.a : next.b) = child;
+                const Vec3 apart =
+                    a_from_b_ * b_.oriented[next.b].center - a_.oriented[next.a].center;
+                next.bound = glm::dot(apart, apart);
+                if (next.bound < best.bound) best = next;
+            }
+            pair = best;
+        }
+    }
+
+    bool splits_a(const Pair& pair) const {
+        if (a_.nodes[pair.a].is_leaf()) return false;
+        if (b_.nodes[pair.b].is_leaf()) return true;
+        const Vec3& half_a = a_.oriented[pair.a].half;
+        const Vec3& half_b = b_.oriented[pair.b].half;
+        return glm::dot(half_a, half_a) > glm::dot(half_b, half_b);
+    }
+
+    void put(Pair pair) {
+        if (skipped(pair.bound)) return;
+        pair.number = ++count_;
+        queue_.push_back(pair);
+        std::push_heap(queue_.begin(), queue_.end(), comes_after);
+    }
+
+    void open(const Pair& pair) {
+        const TriangleBvh::Node& node_a = a_.nodes[pair.a];
+        const TriangleBvh::Node& node_b = b_.nodes[pair.b];
+        if (node_a.is_leaf() && node_b.is_leaf()) return compare(node_a, node_b);
+        if (splits_a(pair)) {
+            const OrientedBox box = moved(b_.oriented[pair.b], a_from_b_);
+            for (const uint32_t a : {node_a.first, node_a.first + 1})
+                put({distance_bound(a_.oriented[a], box, sweep_), a, pair.b});
+        } else {
+            for (const uint32_t b : {node_b.first, node_b.first + 1})
+                put({distance_bound(a_.oriented[pair.a], moved(b_.oriented[b], a_from_b_), sweep_),
+                     pair.a, b});
+        }
+    }
+
+    void compare(const TriangleBvh::Node& node_a, const TriangleBvh::Node& node_b) {
+        for (uint32_t j = node_b.first; j < node_b.first + node_b.count; ++j) {
+            const Triangle b = moved(b_.triangles[j], a_from_b_);
+            Aabb box = bounds_of(b);
+            box.extend({box.min + sweep_, box.max + sweep_});
+            for (uint32_t i = node_a.first; i < node_a.first + node_a.count; ++i) {
+                const Triangle& a = a_.triangles[i];
+                const double gap = smallest(b, along_) + sweep_start_ - greatest(a, along_);
+                if (skipped(gap) || skipped(distance(bounds_of(a), box))) continue;
+                offer(separation_of(a, b));
+                if (best_.upper == 0.0) return;
+            }
+        }
+    }
+
+    Separation separation_of(const Triangle& a, const Triangle& b) const {
+        const SeparationGoal goal{goal_.tolerance, enough()};
+        if (sweep_ == Vec3(0.0)) return separation(a, b, goal);
+        const Vec3 places[] = {Vec3(0.0), sweep_};
+        Separation found = separation(swept(convex(b), places), convex(a), goal);
+        std::swap(found.point_a, found.point_b);
+        return found;
+    }
+
+    void offer(const Separation& found) {
+        least_ = std::min(least_, found.lower);
+        if (found.upper >= best_.upper) return;
+        best_ = found;
+        const Vec3 way = found.point_b - found.point_a;
+        if (!(glm::length(way) > 0.0)) return;
+        along_ = glm::normalize(way);
+        along_in_b_ = along_ * a_from_b_.rotation;
+        sweep_start_ = std::min(0.0, glm::dot(sweep_, along_));
+    }
+
+    const TriangleBvh& a_;
+    const TriangleBvh& b_;
+    Transform a_from_b_;
+    Vec3 sweep_;
+    SeparationGoal goal_;
+    std::vector<Pair> queue_;
+    uint32_t count_ = 0;
+    Separation best_;
+    double least_ = infinity;     // of the lower bounds of all that was decided
+    Vec3 along_ = Vec3(0.0);      // from A to B; zero before a pair was found
+    Vec3 along_in_b_ = Vec3(0.0); // the same in the frame of B
+    double sweep_start_ = 0.0;    // how far B comes back along it
+};
+
+} // namespace
+
+Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
+                      const Vec3& sweep_of_b, const SeparationGoal& goal) {
+    return Search(a, b, a_from_b, sweep_of_b, goal).run();
+}
+
+} // namespace core
