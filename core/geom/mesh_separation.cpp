@@ -1,6 +1,7 @@
 #include "core/geom/mesh_separation.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/geom/triangle_distance.h"
 
@@ -19,6 +20,21 @@ Aabb bounds_of(const Triangle& t) {
     return {glm::min(glm::min(t.a, t.b), t.c), glm::max(glm::max(t.a, t.b), t.c)};
 }
 
+/// The length of the longest vector to a point of the tree.
+double reach(const TriangleBvh& tree) {
+    const Aabb& box = tree.nodes[0].box;
+    return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
+}
+
+/// What a bound of the search can be off by: see README.md, "Two meshes".
+double rounding_of(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
+                   const Vec3& sweep) {
+    const double lengths =
+        reach(a) + reach(b) + glm::length(a_from_b.translation) + glm::length(sweep);
+    const double angles = 2.0 * box_lean + lean(a_from_b.rotation);
+    return (64.0 * std::numeric_limits<double>::epsilon() + 4.0 * angles) * lengths;
+}
+
 Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * t.b, by * t.c}; }
 
 /// Best first through pairs of boxes. Every pair that is nearer than the answer has to be opened,
@@ -31,6 +47,7 @@ public:
 
     Separation run() {
         if (a_.nodes.empty() || b_.nodes.empty()) return {};
+        rounding_ = rounding_of(a_, b_, a_from_b_, sweep_);
         descend();
         put({distance_bound(a_.oriented[0], moved(b_.oriented[0], a_from_b_), sweep_), 0, 0});
         while (!queue_.empty() && best_.upper > 0.0) {
@@ -43,10 +60,7 @@ public:
             }
             if (!skipped(gap_along_witness(pair))) open(pair);
         }
-        const double lower = std::min({least_, best_.upper, goal_.limit});
-        Separation found = best_.upper < goal_.limit ? best_ : Separation{};
-        found.lower = lower;
-        return found;
+        return result();
     }
 
 private:
@@ -62,7 +76,18 @@ private:
     }
 
     /// At this bound or beyond, nothing is worth a look.
-    double enough() const { return std::min(goal_.limit, best_.upper - goal_.tolerance); }
+    double enough() const {
+        return std::min(goal_.limit + rounding_, best_.upper - goal_.tolerance);
+    }
+
+    Separation result() const {
+        Separation found = best_;
+        if (found.upper > 0.0) found.upper += rounding_;
+        if (!(found.upper < goal_.limit)) found = {};
+        const double lower = std::min(least_, best_.upper) - rounding_;
+        found.lower = std::min(std::max(lower, 0.0), goal_.limit);
+        return found;
+    }
 
     bool skipped(double bound) {
         if (bound < enough()) return false;
@@ -171,6 +196,7 @@ private:
     Transform a_from_b_;
     Vec3 sweep_;
     SeparationGoal goal_;
+    double rounding_ = 0.0;
     std::vector<Pair> queue_;
     uint32_t count_ = 0;
     Separation best_;

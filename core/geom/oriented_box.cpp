@@ -1,12 +1,12 @@
 #include "core/geom/oriented_box.h"
 
+#include <array>
 #include <cmath>
-#include <optional>
 
 namespace core {
 namespace {
 
-/// Covers rounding in the box and in what is later computed from it, as a share of the coordinates.
+/// Covers rounding in the box, as a share of the coordinates: see README.md, "Boxes".
 constexpr double rounding = 1e-14;
 
 Aabb bounds_of(std::span<const Triangle> triangles) {
@@ -56,8 +56,9 @@ Mat3 eigenvectors(Mat3 m) {
     return vectors;
 }
 
-/// Axes along the normal and the longest side of the triangle with the longest side.
-std::optional<Mat3> axes_along_side(std::span<const Triangle> triangles) {
+/// Axes along the longest side and the normal of the triangle that has the longest side; anything
+/// at all when it has no area.
+Mat3 axes_along_side(std::span<const Triangle> triangles) {
     Vec3 longest(0.0), normal(0.0);
     for (const Triangle& t : triangles)
         for (const Vec3& side : {t.b - t.a, t.c - t.b, t.a - t.c}) {
@@ -65,17 +66,18 @@ std::optional<Mat3> axes_along_side(std::span<const Triangle> triangles) {
             longest = side;
             normal = glm::cross(t.b - t.a, t.c - t.a);
         }
-    if (!(glm::length(normal) > 0.0)) return std::nullopt;
-    const Vec3 along = glm::normalize(longest), up = glm::normalize(normal);
-    const Vec3 across = glm::normalize(glm::cross(up, along));
-    return Mat3(along, across, glm::cross(along, across));
+    return Mat3(longest, normal, Vec3(0.0));
 }
 
-/// Gram-Schmidt, so that rounding does not add up.
-Mat3 at_right_angles(const Mat3& m) {
-    const Vec3 x = glm::normalize(m[0]);
-    const Vec3 y = glm::normalize(m[1] - glm::dot(m[1], x) * x);
-    return {x, y, glm::cross(x, y)};
+/// Gram-Schmidt on the first two columns, twice: after the first pass what is left of a short
+/// second column may still lean.
+Mat3 at_right_angles(Mat3 m) {
+    for (int pass = 0; pass < 2; ++pass) {
+        const Vec3 x = glm::normalize(m[0]);
+        const Vec3 y = glm::normalize(m[1] - glm::dot(m[1], x) * x);
+        m = Mat3(x, y, glm::cross(x, y));
+    }
+    return m;
 }
 
 OrientedBox box_along(const Mat3& axes, std::span<const Triangle> triangles, const Vec3& about) {
@@ -92,14 +94,24 @@ double surface(const OrientedBox& box) {
 
 } // namespace
 
+double lean(const Mat3& m) {
+    const Mat3 off = glm::transpose(m) * m - Mat3(1.0);
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) sum += std::abs(off[i][j]);
+    return sum;
+}
+
 OrientedBox fitted_box(std::span<const Triangle> triangles) {
     const Aabb bounds = bounds_of(triangles);
     const Vec3 about = bounds.center();
     OrientedBox best{about, Mat3(1.0), 0.5 * bounds.size()};
-    const Mat3 principal = at_right_angles(eigenvectors(moments(triangles, about)));
-    for (const auto& axes : {std::optional(principal), axes_along_side(triangles)}) {
-        if (!axes) continue;
-        const OrientedBox box = box_along(*axes, triangles, about);
+    const std::array<Mat3, 2> guesses = {eigenvectors(moments(triangles, about)),
+                                         axes_along_side(triangles)};
+    for (const Mat3& guess : guesses) {
+        const Mat3 axes = at_right_angles(guess);
+        if (!(lean(axes) <= box_lean)) continue; // not a number where a column had no length
+        const OrientedBox box = box_along(axes, triangles, about);
         if (surface(box) < surface(best)) best = box;
     }
     const Vec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));

@@ -19,6 +19,12 @@ struct OrientedBox {
     }
 };
 
+/// How far the columns are from unit length and right angles: the entries of M'M - 1, added up.
+double lean(const Mat3& m);
+
+/// No fitted box leans more.
+constexpr double box_lean = 2e-15;
+
 /// A box round the triangles, rounding included: along their principal axes, along the longest side
 /// of one of them, or along the axes of the frame, whichever has the least surface.
 OrientedBox fitted_box(std::span<const Triangle> triangles);
@@ -28,7 +34,7 @@ inline OrientedBox moved(const OrientedBox& box, const Transform& target_from_bo
 }
 
 /// A lower bound of the distance of two boxes while the second moves on straight by `sweep`: exact
-/// where their faces are parallel.
+/// where their faces are parallel. Rounding is not subtracted.
 double distance_bound(const OrientedBox& a, const OrientedBox& b, const Vec3& sweep);
 
 } // namespace core
