@@ -37,8 +37,8 @@ double rounding_of(const TriangleBvh& a, const TriangleBvh& b, const Transform& 
 
 Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * t.b, by * t.c}; }
 
-/// Best first through pairs of boxes. Every pair that is nearer than the answer has to be opened,
-/// in whatever order; so the order is chosen to open no other.
+/// Depth first through pairs of boxes, the nearer first. Nearest of all first would open a third
+/// fewer, but keeping them in order costs more than that.
 class Search {
 public:
     Search(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b, const Vec3& sweep,
@@ -49,16 +49,11 @@ public:
         if (a_.nodes.empty() || b_.nodes.empty()) return {};
         rounding_ = rounding_of(a_, b_, a_from_b_, sweep_);
         descend();
-        put({distance_bound(a_.oriented[0], moved(b_.oriented[0], a_from_b_), sweep_), 0, 0});
-        while (!queue_.empty() && best_.upper > 0.0) {
-            std::pop_heap(queue_.begin(), queue_.end(), comes_after);
-            const Pair pair = queue_.back();
-            queue_.pop_back();
-            if (pair.bound >= enough()) {
-                least_ = std::min(least_, pair.bound);
-                break;
-            }
-            if (!skipped(gap_along_witness(pair))) open(pair);
+        put({bound(0, 0), 0, 0});
+        while (!stack_.empty() && best_.upper > 0.0) {
+            const Pair pair = stack_.back();
+            stack_.pop_back();
+            if (!skipped(pair.bound) && !skipped(gap_along_witness(pair))) open(pair);
         }
         return result();
     }
@@ -67,13 +62,7 @@ private:
     struct Pair {
         double bound;
         uint32_t a, b; // a node of each tree
-        uint32_t number = 0;
     };
-
-    /// Of equal bounds the younger pair first: where everything overlaps, this goes straight down.
-    static bool comes_after(const Pair& x, const Pair& y) {
-        return x.bound != y.bound ? x.bound > y.bound : x.number < y.number;
-    }
 
     /// At this bound or beyond, nothing is worth a look.
     double enough() const {
@@ -134,26 +123,34 @@ private:
         return glm::dot(half_a, half_a) > glm::dot(half_b, half_b);
     }
 
-    void put(Pair pair) {
-        if (skipped(pair.bound)) return;
-        pair.number = ++count_;
-        queue_.push_back(pair);
-        std::push_heap(queue_.begin(), queue_.end(), comes_after);
+    double bound(uint32_t a, uint32_t b) const {
+        return distance_bound(a_.oriented[a], moved(b_.oriented[b], a_from_b_), sweep_);
+    }
+
+    void put(const Pair& pair) {
+        if (!skipped(pair.bound)) stack_.push_back(pair);
     }
 
     void open(const Pair& pair) {
         const TriangleBvh::Node& node_a = a_.nodes[pair.a];
         const TriangleBvh::Node& node_b = b_.nodes[pair.b];
         if (node_a.is_leaf() && node_b.is_leaf()) return compare(node_a, node_b);
+        Pair first = pair, second = pair;
         if (splits_a(pair)) {
             const OrientedBox box = moved(b_.oriented[pair.b], a_from_b_);
-            for (const uint32_t a : {node_a.first, node_a.first + 1})
-                put({distance_bound(a_.oriented[a], box, sweep_), a, pair.b});
+            first.a = node_a.first;
+            second.a = node_a.first + 1;
+            first.bound = distance_bound(a_.oriented[first.a], box, sweep_);
+            second.bound = distance_bound(a_.oriented[second.a], box, sweep_);
         } else {
-            for (const uint32_t b : {node_b.first, node_b.first + 1})
-                put({distance_bound(a_.oriented[pair.a], moved(b_.oriented[b], a_from_b_), sweep_),
-                     pair.a, b});
+            first.b = node_b.first;
+            second.b = node_b.first + 1;
+            first.bound = bound(first.a, first.b);
+            second.bound = bound(second.a, second.b);
         }
+        if (second.bound < first.bound) std::swap(first, second);
+        put(second);
+        put(first);
     }
 
     void compare(const TriangleBvh::Node& node_a, const TriangleBvh::Node& node_b) {
@@ -197,8 +194,7 @@ private:
     Vec3 sweep_;
     SeparationGoal goal_;
     double rounding_ = 0.0;
-    std::vector<Pair> queue_;
-    uint32_t count_ = 0;
+    std::vector<Pair> stack_;
     Separation best_;
     double least_ = infinity;     // of the lower bounds of all that was decided
     Vec3 along_ = Vec3(0.0);      // from A to B; zero before a pair was found

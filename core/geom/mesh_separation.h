@@ -9,7 +9,7 @@ namespace core {
 ///
 /// Frame:  that of A.
 /// Result: both bounds hold, rounding included; they are goal.tolerance and twice the rounding
-///         apart at most (1e-10 mm for coordinates up to 1 m). Surfaces nearer than 1e-10 mm
+///         apart at most (some 1e-10 mm within 1 m). Surfaces nearer than 1e-10 mm
 ///         touch: 0. `upper` is infinite when nothing is found within `goal.limit`, and `lower` at
 ///         most the limit. The inside of the meshes does not count.
 /// Cost:   some thousand pairs of boxes and some ten pairs of triangles; ends at once where the
