@@ -1,0 +1,29 @@
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/guarantee_tally.h"
+
+namespace core {
+namespace {
+
+/// A million pairs in eight parts, each with a generator of its own.
+class GuaranteeSoak : public testing::TestWithParam<unsigned> {};
+
+TEST_P(GuaranteeSoak, HoldsForRandomBodiesOfKnownDistance) {
+    test_support::PairGenerator pairs(GetParam());
+    test_support::GuaranteeTally tally;
+    for (int i = 0; i < 125'000; ++i) {
+        const test_support::KnownPair pair = pairs.next();
+        tally.measure(pair, pairs.engine());
+    }
+    std::cout << tally.report();
+    for (size_t i = 0; i < std::min<size_t>(tally.failures.size(), 20); ++i)
+        ADD_FAILURE() << tally.failures[i];
+    EXPECT_TRUE(tally.is_representative());
+}
+
+INSTANTIATE_TEST_SUITE_P(OneMillion, GuaranteeSoak, testing::Range(100U, 108U));
+
+} // namespace
+} // namespace core
