@@ -1,5 +1,7 @@
 #include "core/geom/gjk.h"
 
+#include <algorithm>
+
 #include "core/geom/simplex.h"
 
 namespace core {
@@ -58,7 +60,7 @@ void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, doubl
     const Simplex::Vertex nearest = nearest_vertex(simplex);
     found.point_a = nearest.on_a;
     found.point_b = nearest.on_b;
-    found.time_a = nearest.time_a;
+    found.time_a = std::clamp(nearest.time_a, 0.0, 1.0); // the weights sum to 1 but for rounding
     const double length = glm::length(v);
     if (length <= margin_a + margin_b) { // overlap: any point between the cores is in both
         const double share = margin_a + margin_b > 0.0 ? margin_a / (margin_a + margin_b) : 0.0;

@@ -1,5 +1,3 @@
-#include <iostream>
-
 #include <gtest/gtest.h>
 
 #include "tests/support/guarantee_tally.h"
@@ -17,10 +15,12 @@ TEST_P(GuaranteeSoak, HoldsForRandomBodiesOfKnownDistance) {
         const test_support::KnownPair pair = pairs.next();
         tally.measure(pair, pairs.engine());
     }
-    std::cout << tally.report();
+    RecordProperty("report", tally.report());
     for (size_t i = 0; i < std::min<size_t>(tally.failures.size(), 20); ++i)
         ADD_FAILURE() << tally.failures[i];
-    EXPECT_TRUE(tally.is_representative());
+    EXPECT_TRUE(tally.is_representative()) << tally.report();
+    EXPECT_GT(tally.tight_share(), 0.995) << tally.report();
+    EXPECT_GT(tally.share_closed_at_zero(), 0.999) << tally.report();
 }
 
 INSTANTIATE_TEST_SUITE_P(OneMillion, GuaranteeSoak, testing::Range(100U, 108U));
