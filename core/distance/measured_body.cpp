@@ -163,11 +163,35 @@ bool is_of_grid(const OuterModel& model, const ScanGrid& grid) {
            && model.grid.half_count == grid.half_count;
 }
 
-Result<BoxTree> checked_outer(const OuterModel& model, const Dbm& lines, double error) {
-    if (model.families.empty() || !is_of_grid(model, lines.grid))
+/// Whether the columns are as many as the grid has cells, one family to an axis, and all finite.
+bool is_sound(const OuterModel& model) {
+    bool sound = is_finite(model.box.min) && is_finite(model.box.max) && !model.families.empty();
+    unsigned axes_seen = 0;
+    for (const ScanLines& family : model.families) {
+        const int axis = family.axis();
+        const unsigned bit = 1U << static_cast<unsigned>(axis);
+        sound = sound && (axes_seen & bit) == 0
+                && family.u_count() == model.grid.count(u_axis(axis)) + 1
+                && family.v_count() == model.grid.count(v_axis(axis)) + 1;
+        axes_seen |= bit;
+        for (int v = 0; sound && v < family.v_count(); ++v)
+            for (int u = 0; u < family.u_count(); ++u)
+                for (const Interval& i : family.line(u, v))
+                    sound = sound && std::isfinite(i.lower) && std::isfinite(i.upper);
+    }
+    return sound;
+}
+
+Result<BoxTree> checked_outer(const OuterModel& model, const Dbm& lines, const Aabb& matter,
+                              double error) {
+    if (!is_of_grid(model, lines.grid) || !is_sound(model))
         return fail(ErrorCode::invalid_value,
-                    "the outer model has no columns, or those of another grid than the scan lines");
-    if (!holds(model, lines, error))
+                    "the outer model has no columns, or those of another grid than the scan "
+                    "lines, or some that are not finite");
+    const Aabb box = model.box.grown(error);
+    const bool in_box = glm::all(glm::lessThanEqual(box.min, matter.min))
+                        && glm::all(glm::lessThanEqual(matter.max, box.max));
+    if (!in_box || !holds(model, lines, error))
         return fail(ErrorCode::invalid_value,
                     "the outer model does not hold the matter on the scan lines");
     return box_tree(boxes_of(model));
@@ -184,7 +208,7 @@ Result<MeasuredBody> measured_body(const Dbm& lines, const std::optional<OuterMo
                                    double memory_limit) {
     FEELER_TRY([[maybe_unused]] const double spacing, checked_grid(lines));
     std::vector<Aabb> matter = stretches(lines);
-    Aabb box = outer ? outer->box : Aabb{};
+    Aabb box;
     for (const Aabb& stretch : matter) {
         if (!is_finite(stretch.min) || !is_finite(stretch.max))
             return fail(ErrorCode::invalid_value, "matter on a scan line ends at no number");
@@ -194,6 +218,8 @@ Result<MeasuredBody> measured_body(const Dbm& lines, const std::optional<OuterMo
         return fail(ErrorCode::missing_value,
                     "no scan line holds matter, it is an empty body or one that is smaller than "
                     "the mesh size");
+    const Aabb on_lines = box;
+    if (outer) box.extend(outer->box);
     MeasuredBody body;
     FEELER_TRY(body.reach, checked_reach(box));
     FEELER_TRY(
@@ -201,7 +227,8 @@ Result<MeasuredBody> measured_body(const Dbm& lines, const std::optional<OuterMo
         checked_memory(box, lines.grid.spacing, outer ? outer_share : scanned_share, memory_limit));
     body.scanned.emplace();
     if (outer) {
-        FEELER_TRY(body.scanned->outer, checked_outer(*outer, lines, scan_rounding(body.reach)));
+        FEELER_TRY(body.scanned->outer,
+                   checked_outer(*outer, lines, on_lines, scan_rounding(body.reach)));
     }
     body.points = boundary_points(lines);
     body.scanned->lines = box_tree(std::move(matter));
