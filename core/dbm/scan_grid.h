@@ -13,6 +13,8 @@ struct ScanGrid {
     double spacing = 1.0;               // h, mm
     std::array<int, 3> half_count = {}; // lines on each side of the centre, along X, Y, Z
 
+    bool operator==(const ScanGrid&) const = default;
+
     int count(int axis) const { return 2 * half_count[static_cast<size_t>(axis)]; }
 
     /// Position of line `i` along `axis`; any integer, also outside 0 .. count - 1.

@@ -3,14 +3,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/base/vec.h"
+#include "core/base/transform.h"
 
 namespace core {
 
-/// A point of each body, by its index among the points the body was built from.
+/// A point of each body, by its index among the points the body was built from; of a body in tiles,
+/// by tile * 2^32 and the index in the tile.
 struct PointPair {
-    uint32_t a = 0;
-    uint32_t b = 0;
+    uint64_t a = 0;
+    uint64_t b = 0;
 
     bool operator==(const PointPair&) const = default;
 };
@@ -21,6 +22,7 @@ struct PairGoal {
     bool any = false;               // any pair below the limit will do: "closer than m?"
     double tolerance = 0.0;         // mm: how much nearer than the pair found another one may be
     Vec3 sweep = Vec3(0.0);         // B moves on by this; the least distance on the way counts
+    std::optional<Transform> end;   // or every point of B goes straight to where this puts it
     std::optional<PointPair> first; // compared before all others: the last answer is a good guess
 };
 

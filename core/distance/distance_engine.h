@@ -31,16 +31,33 @@ public:
     /// The closest pair of points of two bodies.
     ///
     /// Frame:  the result is in that of A.
-    /// Errors: a transform that is not rigid, a sweep or a goal that is no number.
+    /// Errors: a transform that is not rigid, a sweep or a goal that is no number, a body or a
+    ///         point that is not there.
     Result<ClosestPair> closest_pair(PointBody a, PointBody b, const Transform& a_from_b,
                                      const PairGoal& goal = {}) const;
 
+    /// How far apart two points are.
+    ///
+    /// Errors: those of closest_pair().
+    Result<ClosestPair> pair_at(PointBody a, PointBody b, const PointPair& points,
+                                const Transform& a_from_b) const;
+
+    /// The box of a body's points; empty if there is no such body.
+    virtual Aabb box_of(PointBody body) const = 0;
+
 private:
+    virtual size_t points_of(PointBody body) const = 0; // 0: no such body
+    virtual Vec3 position(PointBody body, uint64_t point) const = 0;
+    Result<void> check(PointBody a, PointBody b, const Transform& a_from_b,
+                       const PairGoal& goal) const;
     virtual ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
                                const PairGoal& goal) const = 0;
 };
 
 /// The search of the paper: spheres, one point to a leaf.
 std::unique_ptr<DistanceEngine> paper_engine();
+
+/// Turned boxes, eight at a time, sixteen points to a leaf.
+std::unique_ptr<DistanceEngine> fast_engine();
 
 } // namespace core

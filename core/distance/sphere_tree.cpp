@@ -1,14 +1,13 @@
 #include "core/distance/sphere_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <string>
+
+#include "core/distance/point_check.h"
 
 namespace core {
 namespace {
-
-constexpr double farthest_coordinate = 1e12;     // squares and sums stay far from overflow
-constexpr size_t most_points = size_t{1} << 31U; // 2 n - 1 nodes are counted in 32 bits
 
 int longest_axis(const Vec3& size) {
     if (size.x >= size.y && size.x >= size.z) return 0;
@@ -77,16 +76,7 @@ private:
 } // namespace
 
 Result<SphereTree> sphere_tree(std::span<const Vec3> points) {
-    if (points.empty())
-        return fail(ErrorCode::missing_value, "a body without boundary points has no distance");
-    if (points.size() > most_points)
-        return fail(ErrorCode::invalid_value, "a body of more than 2^31 points is too large");
-    for (size_t i = 0; i < points.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(std::abs(points[i][axis]) <= farthest_coordinate))
-                return fail(ErrorCode::invalid_value,
-                            "point " + std::to_string(i)
-                                + " has a coordinate that is not finite or beyond 1e12 mm");
+    FEELER_TRY([[maybe_unused]] const size_t count, checked_points(points));
     return Builder(points).build();
 }
 

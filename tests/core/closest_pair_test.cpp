@@ -6,32 +6,20 @@
 #include "core/distance/sphere_search.h"
 #include "tests/support/brute_force_pair.h"
 #include "tests/support/meshes.h"
+#include "tests/support/point_clouds.h"
 
 namespace core {
 namespace {
 
+using test_support::block_of_points;
 using test_support::brute_force_distance;
+using test_support::random_cloud;
 using test_support::random_pose;
 
 SphereTree tree_of(const std::vector<Vec3>& points) { return sphere_tree(points).value(); }
 
 SphereTree paper_sphere(double spacing) {
     return tree_of(boundary_points(scan(Sphere{25.0}, spacing).value()));
-}
-
-std::vector<Vec3> random_cloud(std::mt19937& rng, int count, double reach) {
-    std::uniform_real_distribution<double> place(-reach, reach);
-    std::vector<Vec3> cloud;
-    for (int i = 0; i < count; ++i) cloud.emplace_back(place(rng), place(rng), place(rng));
-    return cloud;
-}
-
-std::vector<Vec3> lattice(int nx, int ny, int nz) {
-    std::vector<Vec3> points;
-    for (int x = 0; x < nx; ++x)
-        for (int y = 0; y < ny; ++y)
-            for (int z = 0; z < nz; ++z) points.emplace_back(x, y, z);
-    return points;
 }
 
 /// The result must be a real pair, and the least one to the last bit.
@@ -117,7 +105,7 @@ TEST(ClosestPair, AgreesWithBruteForceFarFromTheOrigin) {
 }
 
 TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
-    const auto plate = lattice(12, 12, 2);
+    const auto plate = block_of_points(12, 12, 2);
     for (const double lift : {1.5, 2.0, 3.0, 7.25}) // every column is equally near
         expect_least(plate, plate, translation({0.0, 0.0, lift}));
     expect_least(plate, plate, {rotation_xyz_deg({0.0, 0.0, 90.0}), Vec3(3.0, -2.0, 4.0)});
@@ -131,7 +119,7 @@ TEST(ClosestPair, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
         // points. Spheres of a column touch its end points, so their gaps are off by the last bits
         // too.
         const Transform turned = random_pose(rng, 40.0);
-        std::vector<Vec3> a = lattice(5, 5, 8), b = a;
+        std::vector<Vec3> a = block_of_points(5, 5, 8), b = a;
         for (Vec3& p : a) p = turned * p;
         for (Vec3& p : b) p = turned * (p + Vec3(0.0, 0.0, 8.0 + i % 7));
         expect_least(a, b, {});
@@ -149,7 +137,7 @@ TEST(ClosestPair, TakesDuplicatesAndSinglePoints) {
 }
 
 TEST(ClosestPair, EndsAtTheFirstPointsThatCoincide) {
-    const auto block = lattice(20, 20, 20);
+    const auto block = block_of_points(20, 20, 20);
     const ClosestPair found = closest_pair(tree_of(block), tree_of(block), {});
     EXPECT_EQ(found.distance, 0.0);
     EXPECT_LT(found.point_tests, 1000u);

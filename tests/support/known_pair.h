@@ -67,7 +67,7 @@ public:
 private:
     void change_bodies() {
         poses_left_ = 24;
-        engine_ = core::paper_engine();
+        engine_ = one_in(rng_, 2) ? core::paper_engine() : core::fast_engine();
         do {
             a_ = random_body(rng_, *engine_);
             b_ = random_body(rng_, *engine_);

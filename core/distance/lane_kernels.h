@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/distance/point_tree.h"
+
+namespace core {
+
+using Float3 = std::array<float, 3>;
+
+/// How a body's directions and places become coordinates in the frame of a search.
+struct FrameView {
+    std::array<Float3, 3> direction{}; // the frame's three directions, in the body's own frame
+    Float3 lower{}, upper{};           // added to lower and upper bounds: place, sweep, rounding
+};
+
+/// Eight boxes along the axes of a search's frame.
+struct alignas(64) BoxLanes {
+    std::array<PointTree::Lanes, 3> lower, upper;
+};
+
+/// One of them.
+struct FrameBox {
+    Float3 lower, upper;
+};
+
+/// Sixteen points in a search's frame.
+struct alignas(64) PointLanes {
+    std::array<std::array<float, PointTree::leaf_size>, 3> at;
+};
+
+/// The inner loops of the fast search, for the best instruction set of this processor. Each does
+/// the same operations in the same order in every lane, without fused multiply-add: all of them
+/// give the same bits.
+struct LaneKernels {
+    /// The boxes of a node's children in the frame.
+    void (*project_boxes)(const PointTree::Node& node, const FrameView& view, BoxLanes& out);
+
+    /// The points of a leaf in the frame; `view.lower` is added.
+    void (*project_points)(const PointTree::Leaf& leaf, const FrameView& view, PointLanes& out);
+
+    /// Squared distances of eight boxes to one, and in which lanes they are below the limit.
+    uint32_t (*near_boxes)(const BoxLanes& boxes, const FrameBox& box, float limit_squared,
+                           PointTree::Lanes& squared);
+
+    /// Four times the squared distances of the middles of eight boxes to that of one.
+    void (*middles_apart)(const BoxLanes& boxes, const FrameBox& box, PointTree::Lanes& squared);
+
+    /// In which lanes the points are no farther from the box than the limit.
+    uint32_t (*near_box)(const PointLanes& points, const FrameBox& box, float limit_squared);
+
+    /// For each of the rows (points of B): which points of A are no farther than the limit. B's
+    /// move on by the sweep; `per_length` is 1 / its squared length, 0 when there is none.
+    void (*near_points)(const PointLanes& a, const PointLanes& b, uint32_t rows,
+                        const Float3& sweep, float per_length, float limit_squared,
+                        std::array<uint16_t, PointTree::leaf_size>& columns);
+
+    /// The same while each point of B goes straight to where `end` has it.
+    void (*near_paths)(const PointLanes& a, const PointLanes& b, const PointLanes& end,
+                       uint32_t rows, float limit_squared,
+                       std::array<uint16_t, PointTree::leaf_size>& columns);
+};
+
+/// The kernels to use now.
+const LaneKernels& lane_kernels();
+
+} // namespace core

@@ -1,0 +1,287 @@
+#include "core/distance/point_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/distance/lane_kernels.h"
+#include "core/distance/search_side.h"
+
+namespace core {
+namespace {
+
+constexpr uint32_t width = PointTree::width;
+constexpr size_t beam_width = 2; // pairs followed down to the leaves before the search proper
+
+/// A pair of boxes still to be searched: visited node * width + lane.
+struct Pair {
+    float squared; // lower bound of their squared distance; in the beam, how far the middles are
+    uint32_t a, b;
+};
+
+/// Memory that is kept from search to search.
+struct Workspace {
+    SearchSide a, b;
+    std::vector<Pair> stack, beam;
+};
+
+Workspace& workspace() {
+    static thread_local Workspace space;
+    return space;
+}
+
+/// The square of a length in single precision, not less than it was.
+float squared_above(double length) {
+    const double squared = length * length * (1.0 + 2e-6) + 1e-37;
+    return squared < 1e38 ? static_cast<float>(squared) : std::numeric_limits<float>::infinity();
+}
+
+Float3 single(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+Vec3 wide(const Float3& v) { return {v[0], v[1], v[2]}; }
+
+class Search {
+public:
+    Search(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+           const PairGoal& goal, Workspace& space)
+        : kernels_(lane_kernels()),
+          body_a_(a),
+          body_b_(b),
+          motion_(a_from_b, goal),
+          goal_(goal),
+          moves_(motion_.moves()),
+          a_(space.a),
+          b_(space.b),
+          stack_(space.stack),
+          beam_(space.beam) {
+        const double squared = glm::dot(goal.sweep, goal.sweep);
+        per_length_ = squared > 1e-30 ? static_cast<float>(1.0 / squared) : 0.0F;
+    }
+
+    ClosestPair run() {
+        if (goal_.first)
+            compare_first(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
+        if (near_squared_ == infinity) follow_the_middles();
+        start();
+        search();
+        best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
+        return best_;
+    }
+
+private:
+    bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
+
+    /// Only what is nearer than this is still of interest.
+    double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
+
+    // --- the frame ---
+
+    /// Begins afresh at the roots, in the best frame known by now.
+    void start() {
+        const SearchFrame frame = next_frame();
+        sweep_ = single(motion_.end ? Vec3(0.0) : frame.along(motion_.sweep));
+        limit_squared_ = squared_above(std::max(worth(), 0.0));
+        a_.begin(body_a_, frame, nullptr);
+        b_.begin(body_b_, frame, &motion_);
+        stack_.clear();
+        const uint32_t lanes = b_.nodes[0].node->used;
+        for (uint32_t left = lanes; left != 0; left &= left - 1)
+            compare_boxes(a_, 0, b_, static_cast<uint32_t>(std::countr_zero(left)));
+    }
+
+    /// Across the gap of the nearest pair so far: along the normals of the patches it lies on,
+    /// which tell better than the pair itself where the surfaces face each other.
+    SearchFrame next_frame() const {
+        const Vec3& middle_of_a = body_a_.top->nodes[0].origin;
+        const MovingPoint middle_of_b = motion_.of(body_b_.top->nodes[0].origin);
+        if (!(near_squared_ > 0.0) || near_squared_ == infinity)
+            return search_frame(middle_of_b.at - middle_of_a, Vec3(0.0), middle_of_a,
+                                middle_of_b.sweep);
+        const Vec3 between = near_apart_ / std::sqrt(near_squared_);
+        return search_frame(across(between), wide(near_a_.leaf->along), near_a_.position(),
+                            middle_of_b.sweep);
+    }
+
+    Vec3 across(const Vec3& between) const {
+        constexpr float curved = 0.3F, flat = 1e-3F; // thickness of a patch
+        const auto normal = [&](const PointPlace& place, const Vec3& n) {
+            const double facing = glm::dot(n, between);
+            if (place.leaf->thickness > curved || std::abs(facing) < 0.5) return Vec3(0.0);
+            return facing > 0.0 ? n : -n;
+        };
+        const Vec3 of_a = normal(near_a_, wide(near_a_.leaf->normal));
+        const Vec3 of_b = normal(near_b_, motion_.start.rotation * wide(near_b_.leaf->normal));
+        if (of_a != Vec3(0.0) && near_a_.leaf->thickness < flat) return of_a;
+        if (of_b != Vec3(0.0) && near_b_.leaf->thickness < flat) return of_b;
+        return of_a + of_b != Vec3(0.0) ? of_a + of_b : between;
+    }
+
+    // --- searching ---
+
+    void search() {
+        while (!stack_.empty() && !done()) {
+            const Pair pair = stack_.back();
+            stack_.pop_back();
+            if (pair.squared < limit_squared_) open(pair);
+        }
+    }
+
+    /// Follows the pairs whose middles are nearest down to the leaves: the search proper then
+    /// begins with a good pair, and in a good frame.
+    void follow_the_middles() {
+        by_middles_ = true;
+        start();
+        const auto nearer = [](const Pair& x, const Pair& y) {
+            if (x.squared != y.squared) return x.squared < y.squared;
+            return x.a != y.a ? x.a < y.a : x.b < y.b;
+        };
+        while (!stack_.empty() && !done()) {
+            const auto count = static_cast<std::ptrdiff_t>(std::min(beam_width, stack_.size()));
+            std::partial_sort(stack_.begin(), stack_.begin() + count, stack_.end(), nearer);
+            beam_.assign(stack_.begin(), stack_.begin() + count);
+            stack_.clear();
+            for (const Pair& pair : beam_) open(pair);
+        }
+        by_middles_ = false;
+    }
+
+    void open(const Pair& pair) {
+        const uint32_t at_a = pair.a / width, lane_a = pair.a % width;
+        const uint32_t at_b = pair.b / width, lane_b = pair.b % width;
+        const float size_a = a_.nodes[at_a].size[lane_a], size_b = b_.nodes[at_b].size[lane_b];
+        if (size_a < 0.0F && size_b < 0.0F)
+            compare_leaves(pair);
+        else if (size_a >= size_b)
+            compare_boxes(a_, a_.child_node(at_a, lane_a), b_, pair.b);
+        else
+            compare_boxes(b_, b_.child_node(at_b, lane_b), a_, pair.a);
+    }
+
+    /// Compares the children of a node with one box of the other body.
+    void compare_boxes(const SearchSide& side, uint32_t at, const SearchSide& other, uint32_t box) {
+        const VisitedNode& node = side.nodes[at];
+        const FrameBox facing = other.box(box / width, box % width);
+        PointTree::Lanes squared;
+        uint32_t lanes = node.node->used;
+        best_.node_tests += static_cast<uint64_t>(std::popcount(lanes));
+        if (by_middles_)
+            kernels_.middles_apart(node.boxes, facing, squared);
+        else
+            lanes &= kernels_.near_boxes(node.boxes, facing, limit_squared_, squared);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const auto lane = static_cast<uint32_t>(std::countr_zero(lanes));
+            const uint32_t mine = at * width + lane;
+            stack_.push_back({squared[lane], &side == &a_ ? mine : box, &side == &a_ ? box : mine});
+        }
+    }
+
+    void compare_leaves(const Pair& pair) {
+        const VisitedLeaf& a = a_.child_leaf(pair.a / width, pair.a % width);
+        const VisitedLeaf& b = b_.child_leaf(pair.b / width, pair.b % width);
+        const float limit = limit_for(a, b);
+        const uint32_t all = (1U << b.leaf->count) - 1U;
+        const uint32_t rows =
+            near_squared_ == infinity || motion_.end
+                ? all
+                : all & rows_near(b, a_.box(pair.a / width, pair.a % width), limit);
+        if (rows == 0) return;
+        best_.point_tests += static_cast<uint64_t>(std::popcount(rows)) * a.leaf->count;
+        const double before = near_squared_;
+        if (near_squared_ < infinity)
+            compare_rows(a, b, rows, limit);
+        else // each row lowers the limit of the next
+            for (uint32_t left = rows; left != 0; left &= left - 1)
+                compare_rows(a, b, left & (0U - left), limit_for(a, b));
+        if (near_squared_ < before) limit_squared_ = squared_above(std::max(worth(), 0.0));
+    }
+
+    /// The points of B that come near a box of A.
+    uint32_t rows_near(const VisitedLeaf& b, FrameBox box, float limit) const {
+        for (size_t k = 0; k < 3; ++k) { // B's points are where they start
+            box.lower[k] -= std::max(sweep_[k], 0.0F);
+            box.upper[k] -= std::min(sweep_[k], 0.0F);
+        }
+        return kernels_.near_box(b.points, box, limit);
+    }
+
+    /// No pair of points that is farther apart than this in the frame can be of interest.
+    float limit_for(const VisitedLeaf& a, const VisitedLeaf& b) const {
+        const double worth_of = by_middles_ ? std::sqrt(near_squared_) : std::max(worth(), 0.0);
+        return squared_above(worth_of + 8.0 * static_cast<double>(a.margin + b.margin));
+    }
+
+    void compare_rows(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit) {
+        std::array<uint16_t, PointTree::leaf_size> columns;
+        if (motion_.end)
+            kernels_.near_paths(a.points, b.points, b.end, rows, limit, columns);
+        else
+            kernels_.near_points(a.points, b.points, rows, sweep_, per_length_, limit, columns);
+        const uint32_t used = (1U << a.leaf->count) - 1U;
+        for (; rows != 0; rows &= rows - 1) {
+            const auto row = static_cast<uint32_t>(std::countr_zero(rows));
+            for (uint32_t near = columns[row] & used; near != 0; near &= near - 1) {
+                const auto column = static_cast<uint32_t>(std::countr_zero(near));
+                compare({a.tree, a.leaf, a.leaf->first + column},
+                        {b.tree, b.leaf, b.leaf->first + row});
+            }
+        }
+    }
+
+    /// The exact comparison, in double precision; the same operations as brute force does.
+    void compare(const PointPlace& a, const PointPlace& b) {
+        const Vec3 p = a.position();
+        const MovingPoint q = motion_.of(b.position());
+        const Vec3 apart = p - q.at;
+        const double at = moves_ ? nearest_time(apart, q.sweep) : 0.0;
+        const Vec3 then = moves_ ? apart - at * q.sweep : apart;
+        const double squared = glm::dot(then, then);
+        if (!(squared < near_squared_)) return;
+        near_squared_ = squared;
+        near_apart_ = -then;
+        near_a_ = a, near_b_ = b;
+        const double distance = std::sqrt(squared);
+        if (!(distance < std::min(best_.distance, goal_.limit))) return;
+        best_.distance = distance;
+        best_.points = {a.index(), b.index()};
+        best_.witness_a = p;
+        best_.witness_b = q.at + at * q.sweep;
+        best_.at = at;
+    }
+
+    void compare_first(const PointPlace& a, const PointPlace& b) {
+        if (a.leaf != nullptr && b.leaf != nullptr) compare(a, b);
+    }
+
+    const LaneKernels& kernels_;
+    const PointTreeView& body_a_;
+    const PointTreeView& body_b_;
+    const StraightMotion motion_;
+    const PairGoal& goal_;
+    bool moves_;
+    bool by_middles_ = false;
+    float per_length_ = 0.0F;
+    Float3 sweep_{};
+    SearchSide& a_;
+    SearchSide& b_;
+    std::vector<Pair>& stack_;
+    std::vector<Pair>& beam_;
+    ClosestPair best_;
+    float limit_squared_ = 0.0F;
+    // The nearest pair compared so far, also if beyond the limit.
+    double near_squared_ = infinity;
+    Vec3 near_apart_ = Vec3(0.0);
+    PointPlace near_a_, near_b_;
+};
+
+} // namespace
+
+ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+                         const PairGoal& goal) {
+    return Search(a, b, a_from_b, goal, workspace()).run();
+}
+
+} // namespace core

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/base/transform.h"
+#include "core/distance/closest_pair.h"
+#include "core/distance/point_tree.h"
+
+namespace core {
+
+/// Finds the closest pair of points by boxes in the frame of the best pair so far, eight at a time.
+///
+/// Frame:  the result is in that of A.
+/// Result: the same distance as brute force, to the last bit, unless the goal asks for less; the
+///         same pair and counts on every processor.
+ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+                         const PairGoal& goal = {});
+
+inline ClosestPair closest_pair(const PointTree& a, const PointTree& b, const Transform& a_from_b,
+                                const PairGoal& goal = {}) {
+    return closest_pair(PointTreeView{&a, {}}, PointTreeView{&b, {}}, a_from_b, goal);
+}
+
+} // namespace core

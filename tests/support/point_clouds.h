@@ -1,0 +1,32 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "core/base/vec.h"
+
+namespace test_support {
+
+using Points = std::vector<core::Vec3>;
+
+/// Points anywhere in a cube of half size `reach`.
+inline Points random_cloud(std::mt19937& rng, int count, double reach) {
+    std::uniform_real_distribution<double> place(-reach, reach);
+    Points cloud;
+    for (int i = 0; i < count; ++i) {
+        const double x = place(rng), y = place(rng), z = place(rng);
+        cloud.emplace_back(x, y, z);
+    }
+    return cloud;
+}
+
+/// Points 1 mm apart in rows, from the origin on.
+inline Points block_of_points(int nx, int ny, int nz) {
+    Points points;
+    for (int x = 0; x < nx; ++x)
+        for (int y = 0; y < ny; ++y)
+            for (int z = 0; z < nz; ++z) points.emplace_back(x, y, z);
+    return points;
+}
+
+} // namespace test_support
