@@ -193,6 +193,8 @@ TEST(Guarantee, IsOpenUpwardsBeyondTheLimit) {
     EXPECT_EQ(beyond.upper, infinity);
     EXPECT_LE(beyond.lower, 19.0);
     EXPECT_GT(beyond.lower, 19.0 - 1e-6);
+    pair.goal.limit = 20.0 + 1e-12; // nearer than rounding lets anyone say
+    EXPECT_EQ(measured(*engine, pair).upper, infinity);
     pair.goal.limit = 21.0;
     EXPECT_NEAR(measured(*engine, pair).upper, 20.0, 1e-6);
 }

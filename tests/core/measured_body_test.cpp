@@ -87,6 +87,7 @@ TEST(MeasuredBody, TakesWhatTheRefusalSaidWouldDo) {
         const double would_do = std::stod(said.substr(at + 2));
         EXPECT_GT(would_do, 0.1);
         EXPECT_EQ(refusal(measured_body(shape, 1.01 * would_do, limit)), "taken");
+        EXPECT_FALSE(measured_body(shape, 0.85 * would_do, limit));
     }
     const Dbm lines = scan(Primitive(Box{{40.0, 30.0, 20.0}}), 0.2).value();
     EXPECT_THAT(refusal(measured_body(lines, {}, limit)), HasSubstr("GiB of memory"));
@@ -144,11 +145,13 @@ TEST(MeasuredBody, RefusesAnOuterModelThatIsNone) {
 
 TEST(MeasuredBody, RefusesAnOuterModelThatDoesNotHoldTheLines) {
     const ScannedBox box;
-    for (size_t family = 0; family < 3; ++family) {
-        OuterModel outer = box.outer;
-        outer.families[family].edit(4, 4) = IntervalList({-5.0, 4.9});
-        EXPECT_THAT(refusal(measured_body(box.lines, outer)), HasSubstr("does not hold"));
-    }
+    for (size_t family = 0; family < 3; ++family)
+        for (const int u : {0, 4, box.outer.families[family].u_count() - 1})
+            for (const int v : {0, 4, box.outer.families[family].v_count() - 1}) {
+                OuterModel outer = box.outer;
+                outer.families[family].edit(u, v) = IntervalList({-5.0, 4.9});
+                EXPECT_THAT(refusal(measured_body(box.lines, outer)), HasSubstr("does not hold"));
+            }
     OuterModel outer = box.outer;
     outer.box.max.x = 4.9;
     EXPECT_THAT(refusal(measured_body(box.lines, outer)), HasSubstr("does not hold"));

@@ -20,7 +20,8 @@ struct GuaranteeTally {
     std::array<std::vector<double>, footings> widths; // exact: mm, within 1 m; else over h
     std::vector<std::string> failures;
     size_t swept = 0, limited = 0, huge = 0, apart = 0, closed_at_zero = 0, common = 0;
-    size_t tight = 0; // exact ones that closed to a ten thousand millionth of their reach
+    size_t to_the_bit = 0; // judged without an allowance for the pose
+    size_t tight = 0;      // exact ones that closed to a ten thousand millionth of their reach
 
     size_t count(Footing footing) const {
         size_t sum = 0;
@@ -35,7 +36,7 @@ struct GuaranteeTally {
     /// Whether every way to meet, on every footing, and every extra came up often enough to say
     /// something.
     bool is_representative() const {
-        size_t least = std::min({4 * swept, 4 * limited, 4 * huge, 4 * apart});
+        size_t least = std::min({4 * swept, 4 * limited, 4 * huge, 4 * apart, 4 * to_the_bit});
         size_t all = 0;
         for (const auto& of : counts)
             for (const size_t n : of) {
@@ -95,8 +96,10 @@ private:
     }
 
     /// Twice what the pose's own rounding leaves open: the bodies are where the doubles say, and
-    /// the transform is a rotation to within that.
-    static double pose_error(const KnownPair& pair) { return 2e-15 * pair.reach(); }
+    /// the transform is a rotation to within that; quarter turns are exact.
+    static double pose_error(const KnownPair& pair) {
+        return (pair.is_to_the_bit ? 2e-18 : 2e-15) * pair.reach();
+    }
 
     void judge(const KnownPair& pair, const core::Measurement& found) {
         const Real error = pose_error(pair), truth = pair.truth;
@@ -156,6 +159,7 @@ private:
         limited += pair.goal.limit < core::infinity;
         huge += pair.reach() > 1e6;
         apart += found.lower > 0.0;
+        to_the_bit += pair.is_to_the_bit && pair.truth > 0;
         tight +=
             on == Footing::exact
             && (found.upper == core::infinity

@@ -19,6 +19,7 @@ struct KnownPair {
     core::MeasureGoal goal;
     Meeting meeting = Meeting::near;
     Real truth = 0;
+    bool is_to_the_bit = false; // the truth is that of the very doubles of the pose
 
     /// How large the lengths are that enter it.
     double reach() const {
@@ -60,6 +61,7 @@ public:
             place(pair);
         else
             approach(pair);
+        pair.is_to_the_bit = !placed_ && is_quarter_turns(pair.a_from_b.rotation);
         if (one_in(rng_, 20)) pair.goal.limit = std::pow(10.0, uniform(rng_, -3.0, 1.5));
         return pair;
     }
@@ -85,6 +87,13 @@ private:
         for (const TruePart& p : a_->parts)
             for (const TruePart& q : b_->parts)
                 if (!is_known(p, q)) return false;
+        return true;
+    }
+
+    static bool is_quarter_turns(const core::Mat3& turn) {
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                if (turn[i][j] != 0.0 && std::abs(turn[i][j]) != 1.0) return false;
         return true;
     }
 
