@@ -8,15 +8,6 @@
 namespace core {
 namespace {
 
-/// How far the columns of a rotation are from unit length and right angles.
-double distortion(const Mat3& rotation) {
-    const Mat3 product = glm::transpose(rotation) * rotation;
-    double most = 0.0;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) most = std::max(most, std::abs(product[i][j] - (i == j)));
-    return most;
-}
-
 bool is_mesh(const MeasuredBody& body) {
     return !body.parts.empty() && std::holds_alternative<SolidMesh>(body.parts[0].body);
 }
