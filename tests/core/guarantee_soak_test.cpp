@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/guarantee_tally.h"
+#include "tests/support/pair_generator.h"
 
 namespace core {
 namespace {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/guarantee_tally.h"
+#include "tests/support/pair_generator.h"
 
 namespace core {
 namespace {
@@ -75,7 +76,7 @@ Measurement measured(const DistanceEngine& engine, const KnownPair& pair) {
     return measure(engine, pair.a->body, pair.b->body, pair.a_from_b, pair.goal).value();
 }
 
-TEST(Guarantee, ClosesToAMillionthForSpheres) {
+TEST(Guarantee, ClosesToAHundredMillionthForSpheres) {
     const auto engine = paper_engine();
     const KnownBody ball =
         taken(*engine, {test_support::ball_at(Vec3(0.0), 25.0)}, BodyForm::primitive, 1.0);
@@ -85,7 +86,7 @@ TEST(Guarantee, ClosesToAMillionthForSpheres) {
         const Vec3 at = (50.0 + gap) * test_support::random_direction(rng);
         const KnownPair pair = pair_at(ball, ball, translation(at));
         const Measurement found = measured(*engine, pair);
-        EXPECT_LT(found.upper - found.lower, 1e-6);
+        EXPECT_LT(found.upper - found.lower, 1e-8);
         EXPECT_LE(found.lower, double(pair.truth) + 1e-12);
         EXPECT_GE(found.upper, double(pair.truth) - 1e-12);
         EXPECT_GE(found.scan.distance, found.lower);
