@@ -155,10 +155,12 @@ TEST(ConvexSeparation, ClosesWhereRimsTouch) {
     double widest = 0.0;
     for (int i = 0; i < 6000; ++i) {
         const double r = size(rng), h = size(rng);
-        const ConvexShape rod = convex(ProfileElement{-h, r, h, 0.5 * r, 0.0});
+        const ConvexShape rod = convex(ProfileElement{-h, r, h, r, 0.0});
         const Vec3 half(size(rng), size(rng), 0.3 * size(rng));
         const ConvexShape other = i % 2 == 0 ? convex(Aabb{-half, half}) : rod;
-        const Mat3 turn = random_pose(rng, 1.0).rotation;
+        const Mat3 turn = i % 5 == 0
+                              ? rotation_xyz_deg(90.0 * Vec3(rng() % 4, rng() % 4, rng() % 4))
+                              : random_pose(rng, 1.0).rotation;
         const Vec3 n = i % 3 == 0 ? Vec3(0.0, 0.0, 1.0) : random_direction(rng);
         const Vec3 at = farthest(other, n) - farthest(posed(rod, {turn, Vec3(0.0)}), -n);
         const Separation found = separation(other, posed(rod, {turn, at}));
