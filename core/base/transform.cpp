@@ -1,35 +1,8 @@
 #include "core/base/transform.h"
 
-#include <numbers>
+#include "core/base/angle.h"
 
 namespace core {
-namespace {
-
-struct SinCos {
-    double sin;
-    double cos;
-};
-
-/// Reduced to the first octant pair first, so that quarter turns give 0 and 1 without residue.
-SinCos sin_cos_deg(double angle_deg) {
-    const double turn = std::remainder(angle_deg, 360.0);
-    const double quarter = std::nearbyint(turn / 90.0);
-    const double rest = (turn - 90.0 * quarter) * (std::numbers::pi / 180.0);
-    const double s = std::sin(rest);
-    const double c = std::cos(rest);
-    switch ((static_cast<int>(quarter) + 4) % 4) {
-    case 0:
-        return {s, c};
-    case 1:
-        return {c, -s};
-    case 2:
-        return {-s, -c};
-    default:
-        return {-c, s};
-    }
-}
-
-} // namespace
 
 Mat3 rotation_xyz_deg(const Vec3& angles_deg) {
     const auto [sx, cx] = sin_cos_deg(angles_deg.x);
@@ -40,6 +13,18 @@ Mat3 rotation_xyz_deg(const Vec3& angles_deg) {
     const Mat3 about_y(cy, 0.0, -sy, 0.0, 1.0, 0.0, sy, 0.0, cy);
     const Mat3 about_z(cz, sz, 0.0, -sz, cz, 0.0, 0.0, 0.0, 1.0);
     return about_z * about_y * about_x;
+}
+
+double distortion(const Mat3& rotation) {
+    const Mat3 product = glm::transpose(rotation) * rotation;
+    double most = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const double off = std::abs(product[i][j] - (i == j));
+            if (std::isnan(off)) return off;
+            most = std::max(most, off);
+        }
+    return most;
 }
 
 } // namespace core

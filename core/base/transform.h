@@ -30,6 +30,10 @@ struct Transform {
 
 inline Transform translation(const Vec3& by) { return {Mat3(1.0), by}; }
 
+/// How far a matrix is from a rotation: the largest entry of R^T R - 1, so that no vector becomes
+/// longer than by 1.5 times this share; not a number if any entry is none.
+double distortion(const Mat3& rotation);
+
 /// Rotation about X, then Y, then Z, fixed axes. Multiples of 90 degrees are exact.
 Mat3 rotation_xyz_deg(const Vec3& angles_deg);
 

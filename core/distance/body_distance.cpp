@@ -1,5 +1,7 @@
 #include "core/distance/body_distance.h"
 
+#include "core/geom/mesh_separation.h"
+
 namespace core {
 namespace {
 
@@ -33,8 +35,7 @@ Separation between_meshes(const SolidMesh& a, const SolidMesh& b, const Transfor
     const Transform b_from_a = a_from_b.inverse();
     for (const Vec3& p : a.shell_points)
         if (holds(b, b_from_a * p)) return overlapping_at(p);
-    const Vec3 places[] = {Vec3(0.0), sweep};
-    return separation(*a.bvh, *b.bvh, a_from_b, places, goal);
+    return separation(*a.bvh, *b.bvh, a_from_b, sweep, goal);
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/base/vec.h"
+#include "core/base/transform.h"
 
 namespace core {
 
@@ -22,6 +22,7 @@ struct PairGoal {
     bool any = false;               // any pair below the limit will do: "closer than m?"
     double tolerance = 0.0;         // mm: how much nearer than the pair found another one may be
     Vec3 sweep = Vec3(0.0);         // B moves on by this; the least distance on the way counts
+    std::optional<Transform> end;   // or every point of B goes straight to where this puts it
     std::optional<PointPair> first; // compared before all others: the last answer is a good guess
 };
 

@@ -1,6 +1,7 @@
 #include "core/distance/distance_engine.h"
 
 #include <cmath>
+#include <deque>
 
 #include "core/distance/point_search.h"
 #include "core/distance/sphere_search.h"
@@ -12,11 +13,7 @@ constexpr double farthest = 1e12; // mm, as for points
 constexpr double rigid_to = 1e-9; // how far the columns may be from unit length and right angles
 
 bool is_rigid(const Transform& t) {
-    const Mat3 product = glm::transpose(t.rotation) * t.rotation;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (!(std::abs(product[i][j] - (i == j)) <= rigid_to)) return false;
-    return glm::determinant(t.rotation) > 0.0;
+    return distortion(t.rotation) <= rigid_to && glm::determinant(t.rotation) > 0.0;
 }
 
 bool is_near(const Vec3& v) { return glm::length(v) <= farthest; }
@@ -31,42 +28,77 @@ public:
 
     Result<PointBody> add(std::span<const Vec3> points) override {
         FEELER_TRY(Tree tree, build(points));
-        trees_.push_back(std::move(tree));
-        return PointBody(trees_.size() - 1);
+        Aabb box;
+        for (const Vec3& p : points) box.extend(p);
+        bodies_.push_back({std::move(tree), box});
+        return PointBody(bodies_.size() - 1);
+    }
+
+    Aabb box_of(PointBody body) const override {
+        const auto i = static_cast<size_t>(body);
+        return i < bodies_.size() ? bodies_[i].box : Aabb();
     }
 
 private:
-    const Tree& tree(PointBody body) const { return trees_[static_cast<size_t>(body)]; }
+    struct Body {
+        Tree tree;
+        Aabb box;
+    };
+
+    const Tree& tree(PointBody body) const { return bodies_[static_cast<size_t>(body)].tree; }
 
     size_t points_of(PointBody body) const override {
         const auto i = static_cast<size_t>(body);
-        return i < trees_.size() ? point_count(trees_[i]) : 0;
+        return i < bodies_.size() ? point_count(bodies_[i].tree) : 0;
     }
 
-    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
-                       const PairGoal& goal) const override {
-        return core::closest_pair(tree(a), tree(b), a_from_b, goal);
+    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b, const PairGoal& goal,
+                       SearchMemory* memory) const override {
+        return search(tree(a), tree(b), a_from_b, goal, memory);
     }
 
+    static ClosestPair search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
+                              const PairGoal& goal, SearchMemory*) {
+        return core::closest_pair(a, b, a_from_b, goal);
+    }
+    static ClosestPair search(const PointTree& a, const PointTree& b, const Transform& a_from_b,
+                              const PairGoal& goal, SearchMemory* memory) {
+        if (!memory) return core::closest_pair(a, b, a_from_b, goal);
+        return core::closest_pair({&a, {}}, {&b, {}}, a_from_b, goal, *memory);
+    }
+
+    Vec3 position(PointBody body, uint64_t point) const override {
+        return point_at(tree(body), point);
+    }
+
+    static const Vec3& point_at(const SphereTree& tree, uint64_t point) {
+        return tree.nodes[tree.leaf_of_point[point]].centre;
+    }
+    static const Vec3& point_at(const PointTree& tree, uint64_t point) {
+        return tree.points[tree.place[point]];
+    }
     static size_t point_count(const SphereTree& tree) { return tree.leaf_of_point.size(); }
     static size_t point_count(const PointTree& tree) { return tree.points.size(); }
 
     std::string_view name_;
-    std::vector<Tree> trees_;
+    std::deque<Body> bodies_; // stay where they are
 };
 
 Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_tree(points); }
 
 } // namespace
 
-Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
-                                                 const Transform& a_from_b,
-                                                 const PairGoal& goal) const {
-    if (!is_rigid(a_from_b))
+Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_from_b,
+                                   const PairGoal& goal) const {
+    if (!is_rigid(a_from_b) || (goal.end && !is_rigid(*goal.end)))
         return fail(ErrorCode::invalid_value,
                     "the transform between the bodies is not a rotation: its columns must be at "
                     "right angles, of length 1, and not mirror");
-    if (!is_near(a_from_b.translation) || !is_near(goal.sweep))
+    if (goal.end && goal.sweep != Vec3(0.0))
+        return fail(ErrorCode::invalid_value,
+                    "a body either moves on by a sweep or goes to an end, not both");
+    if (!is_near(a_from_b.translation) || !is_near(goal.sweep)
+        || (goal.end && !is_near(goal.end->translation)))
         return fail(ErrorCode::invalid_value,
                     "the bodies are moved by a length that is no number or beyond 1e12 mm");
     if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0))
@@ -76,8 +108,26 @@ Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
     if (points_a == 0 || points_b == 0)
         return fail(ErrorCode::invalid_value, "the engine holds no body of that number");
     if (goal.first && (goal.first->a >= points_a || goal.first->b >= points_b))
-        return fail(ErrorCode::invalid_value, "the first pair names a point that is not there");
-    return search(a, b, a_from_b, goal);
+        return fail(ErrorCode::invalid_value, "the pair given names a point that is not there");
+    return {};
+}
+
+Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
+                                                 const Transform& a_from_b, const PairGoal& goal,
+                                                 SearchMemory* memory) const {
+    if (auto checked = check(a, b, a_from_b, goal); !checked)
+        return tl::unexpected(std::move(checked).error());
+    return search(a, b, a_from_b, goal, memory);
+}
+
+Result<ClosestPair> DistanceEngine::pair_at(PointBody a, PointBody b, const PointPair& points,
+                                            const Transform& a_from_b) const {
+    if (auto checked = check(a, b, a_from_b, {.first = points}); !checked)
+        return tl::unexpected(std::move(checked).error());
+    ClosestPair pair{.points = points, .witness_a = position(a, points.a)};
+    pair.witness_b = a_from_b * position(b, points.b);
+    pair.distance = glm::distance(pair.witness_a, pair.witness_b);
+    return pair;
 }
 
 std::unique_ptr<DistanceEngine> paper_engine() {

@@ -18,6 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t width = PointTree::width;
 constexpr size_t leaf_size = PointTree::leaf_size;
 
+constexpr float least_squared = 1e-30F; // of a path that counts as one, mm2
+
 using BoxTag = hn::CappedTag<float, width>;
 using PointTag = hn::CappedTag<float, leaf_size>;
 
@@ -123,37 +125,57 @@ HWY_ATTR uint32_t near_box(const PointLanes& points, const FrameBox& box, float 
     return bits;
 }
 
+/// Which points of A are no farther from the path of one of B than the limit.
+HWY_INLINE HWY_ATTR uint16_t near_path(const PointLanes& a, const Float3& from, const Float3& sweep,
+                                       float per_length, float limit_squared) {
+    const PointTag d;
+    const auto sx = hn::Set(d, sweep[0]), sy = hn::Set(d, sweep[1]), sz = hn::Set(d, sweep[2]);
+    uint32_t bits = 0;
+    for (size_t i = 0; i < leaf_size; i += hn::Lanes(d)) {
+        auto x = hn::Sub(hn::Load(d, &a.at[0][i]), hn::Set(d, from[0]));
+        auto y = hn::Sub(hn::Load(d, &a.at[1][i]), hn::Set(d, from[1]));
+        auto z = hn::Sub(hn::Load(d, &a.at[2][i]), hn::Set(d, from[2]));
+        if (per_length > 0.0F) {
+            const auto share = hn::Mul(dot(d, x, y, z, sx, sy, sz), hn::Set(d, per_length));
+            const auto t = hn::Min(hn::Max(share, hn::Zero(d)), hn::Set(d, 1.0F));
+            x = hn::Sub(x, hn::Mul(t, sx));
+            y = hn::Sub(y, hn::Mul(t, sy));
+            z = hn::Sub(z, hn::Mul(t, sz));
+        }
+        bits |= bits_of(d, hn::Le(dot(d, x, y, z, x, y, z), hn::Set(d, limit_squared))) << i;
+    }
+    return static_cast<uint16_t>(bits);
+}
+
+Float3 point_of(const PointLanes& points, size_t row) {
+    return {points.at[0][row], points.at[1][row], points.at[2][row]};
+}
+
 HWY_ATTR void near_points(const PointLanes& a, const PointLanes& b, uint32_t rows,
                           const Float3& sweep, float per_length, float limit_squared,
                           std::array<uint16_t, leaf_size>& columns) {
-    const PointTag d;
-    const auto limit = hn::Set(d, limit_squared);
-    const auto sx = hn::Set(d, sweep[0]), sy = hn::Set(d, sweep[1]), sz = hn::Set(d, sweep[2]);
     for (; rows != 0; rows &= rows - 1) {
         const auto row = static_cast<size_t>(std::countr_zero(rows));
-        const auto bx = hn::Set(d, b.at[0][row]), by = hn::Set(d, b.at[1][row]),
-                   bz = hn::Set(d, b.at[2][row]);
-        uint32_t bits = 0;
-        for (size_t i = 0; i < leaf_size; i += hn::Lanes(d)) {
-            auto x = hn::Sub(hn::Load(d, &a.at[0][i]), bx);
-            auto y = hn::Sub(hn::Load(d, &a.at[1][i]), by);
-            auto z = hn::Sub(hn::Load(d, &a.at[2][i]), bz);
-            if (per_length > 0.0F) {
-                const auto share = hn::Mul(dot(d, x, y, z, sx, sy, sz), hn::Set(d, per_length));
-                const auto t = hn::Min(hn::Max(share, hn::Zero(d)), hn::Set(d, 1.0F));
-                x = hn::Sub(x, hn::Mul(t, sx));
-                y = hn::Sub(y, hn::Mul(t, sy));
-                z = hn::Sub(z, hn::Mul(t, sz));
-            }
-            bits |= bits_of(d, hn::Le(dot(d, x, y, z, x, y, z), limit)) << i;
-        }
-        columns[row] = static_cast<uint16_t>(bits);
+        columns[row] = near_path(a, point_of(b, row), sweep, per_length, limit_squared);
+    }
+}
+
+HWY_ATTR void near_paths(const PointLanes& a, const PointLanes& b, const PointLanes& end,
+                         uint32_t rows, float limit_squared,
+                         std::array<uint16_t, leaf_size>& columns) {
+    for (; rows != 0; rows &= rows - 1) {
+        const auto row = static_cast<size_t>(std::countr_zero(rows));
+        const Float3 from = point_of(b, row), to = point_of(end, row);
+        const Float3 sweep = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+        const float squared = sweep[0] * sweep[0] + sweep[1] * sweep[1] + sweep[2] * sweep[2];
+        const float per_length = squared > least_squared ? 1.0F / squared : 0.0F;
+        columns[row] = near_path(a, from, sweep, per_length, limit_squared);
     }
 }
 
 const LaneKernels* kernels() {
-    static constexpr LaneKernels table = {project_boxes, project_points, near_boxes,
-                                          middles_apart, near_box,       near_points};
+    static constexpr LaneKernels table = {project_boxes, project_points, near_boxes, middles_apart,
+                                          near_box,      near_points,    near_paths};
     return &table;
 }
 

@@ -55,6 +55,11 @@ struct LaneKernels {
     void (*near_points)(const PointLanes& a, const PointLanes& b, uint32_t rows,
                         const Float3& sweep, float per_length, float limit_squared,
                         std::array<uint16_t, PointTree::leaf_size>& columns);
+
+    /// The same while each point of B goes straight to where `end` has it.
+    void (*near_paths)(const PointLanes& a, const PointLanes& b, const PointLanes& end,
+                       uint32_t rows, float limit_squared,
+                       std::array<uint16_t, PointTree::leaf_size>& columns);
 };
 
 /// The kernels to use now.

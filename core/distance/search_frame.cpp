@@ -23,20 +23,13 @@ Vec3 any_beside(const Vec3& u) {
 } // namespace
 
 SearchFrame search_frame(const Vec3& across, const Vec3& along, const Vec3& origin,
-                         const Transform& a_from_b, const Vec3& sweep) {
+                         const Vec3& sweep) {
     const double length = glm::length(across);
     const Vec3 u = length > 0.0 ? across / length : Vec3(1.0, 0.0, 0.0);
     Vec3 v = beside(sweep, u);
     if (v == Vec3(0.0)) v = beside(along, u);
     if (v == Vec3(0.0)) v = any_beside(u);
-    SearchFrame frame{.in_a = {u, v, glm::cross(u, v)}, .origin = origin};
-    const Mat3 b_from_a = glm::transpose(a_from_b.rotation);
-    for (int k = 0; k < 3; ++k) {
-        const auto i = static_cast<size_t>(k);
-        frame.in_b[i] = b_from_a * frame.in_a[i];
-        frame.sweep[k] = glm::dot(frame.in_a[i], sweep);
-    }
-    return frame;
+    return {{u, v, glm::cross(u, v)}, origin};
 }
 
 } // namespace core

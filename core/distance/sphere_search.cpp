@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/distance/straight_motion.h"
+
 namespace core {
 namespace {
 
@@ -15,7 +17,7 @@ using Node = SphereTree::Node;
 struct Pair {
     const Node* a;
     const Node* b;
-    Vec3 b_centre;
+    MovingPoint b_centre;
     double gap; // lower bound of the distance between their points
 };
 
@@ -23,16 +25,16 @@ class Search {
 public:
     Search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
            const PairGoal& goal)
-        : a_from_b_(a_from_b),
+        : motion_(a_from_b, goal),
           goal_(goal),
-          moves_(goal.sweep != Vec3(0.0)),
-          rounding_(rounding_of(a.nodes[0], b.nodes[0], a_from_b, goal.sweep)),
+          moves_(motion_.moves()),
+          rounding_(rounding_of(a.nodes[0], b.nodes[0], motion_)),
           a_root_(&a.nodes[0]),
           b_root_(&b.nodes[0]) {}
 
     ClosestPair run(const Node* first_a, const Node* first_b) {
-        if (first_a) compare_points(tested(first_a, first_b, a_from_b_ * first_b->centre));
-        push(tested(a_root_, b_root_, a_from_b_ * b_root_->centre));
+        if (first_a) compare_points(tested(first_a, first_b, motion_.of(first_b->centre)));
+        push(tested(a_root_, b_root_, motion_.of(b_root_->centre)));
         while (size_ > 0 && !done()) {
             const Pair pair = stack_[--size_];
             if (pair.gap >= worth()) continue;
@@ -47,12 +49,15 @@ public:
 
 private:
     /// What rounding can add to a gap computed from radii and mapped centres: some 10 operations on
-    /// numbers up to the sum of all these lengths, and a rotation that is orthogonal to 1e-15.
-    static double rounding_of(const Node& a, const Node& b, const Transform& a_from_b,
-                              const Vec3& sweep) {
+    /// numbers up to the sum of all these lengths, and B's spheres becoming larger where its
+    /// transform is not quite a rotation.
+    static double rounding_of(const Node& a, const Node& b, const StraightMotion& motion) {
         const double reach = glm::length(a.centre) + a.radius + glm::length(b.centre) + b.radius
-                             + glm::length(a_from_b.translation) + glm::length(sweep);
-        return 64.0 * std::numeric_limits<double>::epsilon() * reach;
+                             + glm::length(motion.start.translation)
+                             + glm::length(motion.last().translation);
+        const double stretch =
+            std::max(distortion(motion.start.rotation), distortion(motion.last().rotation));
+        return 64.0 * std::numeric_limits<double>::epsilon() * reach + 2.0 * stretch * b.radius;
     }
 
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
@@ -60,11 +65,13 @@ private:
     /// Only what is nearer than this is still of interest.
     double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
 
-    double apart(const Vec3& a, const Vec3& b) const {
-        return moves_ ? swept_distance(a - b, goal_.sweep) : glm::distance(a, b);
+    double apart(const Vec3& a, const MovingPoint& b) const {
+        return moves_ ? swept_distance(a - b.at, b.sweep) : glm::distance(a, b.at);
     }
 
-    Pair tested(const Node* a, const Node* b, const Vec3& b_centre) {
+    /// A sphere whose points go straight from one pose to another stays a sphere of its size: half
+    /// way, the points are nearer together, if anything.
+    Pair tested(const Node* a, const Node* b, const MovingPoint& b_centre) {
         ++best_.node_tests;
         const double gap = apart(a->centre, b_centre);
         if (a->is_leaf() && b->is_leaf()) return {a, b, b_centre, gap};
@@ -82,25 +89,25 @@ private:
         best_.distance = pair.gap;
         best_.points = {pair.a->point, pair.b->point};
         best_.witness_a = pair.a->centre;
-        best_.at = nearest_time(pair.a->centre - pair.b_centre, goal_.sweep);
-        best_.witness_b = pair.b_centre + best_.at * goal_.sweep;
+        best_.at = nearest_time(pair.a->centre - pair.b_centre.at, pair.b_centre.sweep);
+        best_.witness_b = pair.b_centre.at + best_.at * pair.b_centre.sweep;
     }
 
     void split(const Pair& pair) {
         const bool split_a =
             !pair.a->is_leaf() && (pair.b->is_leaf() || pair.a->radius >= pair.b->radius);
         Pair near = split_a ? tested(pair.a + 1, pair.b, pair.b_centre)
-                            : tested(pair.a, pair.b + 1, a_from_b_ * (pair.b + 1)->centre);
+                            : tested(pair.a, pair.b + 1, motion_.of((pair.b + 1)->centre));
         const Node* const a_right = a_root_ + pair.a->right;
         const Node* const b_right = b_root_ + pair.b->right;
         Pair far = split_a ? tested(a_right, pair.b, pair.b_centre)
-                           : tested(pair.a, b_right, a_from_b_ * b_right->centre);
+                           : tested(pair.a, b_right, motion_.of(b_right->centre));
         if (far.gap < near.gap) std::swap(near, far);
         push(far);
         push(near);
     }
 
-    const Transform& a_from_b_;
+    const StraightMotion motion_;
     const PairGoal& goal_;
     bool moves_;
     double rounding_;

@@ -160,10 +160,11 @@ void TiledPoints::refit_above(uint32_t tile) {
         const uint32_t bit = 1U << place.lane;
         node.used = box.empty() ? node.used & ~bit : node.used | bit;
         if (!box.empty()) set_box(node, place.lane, turned_box(box, node.origin));
-        if (place.node == 0) return;
         box = box_of(node);
+        if (place.node == 0) break;
         place = layout_->above_node[place.node];
     }
+    top_->box = box;
 }
 
 } // namespace core

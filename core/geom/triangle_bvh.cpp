@@ -14,40 +14,68 @@ Aabb bounds_of(const Triangle& t) {
     return box;
 }
 
-struct Builder {
-    const Mesh& mesh;
-    std::vector<Aabb> boxes;
-    std::vector<uint32_t> order;
-    TriangleBvh bvh;
+class Builder {
+public:
+    explicit Builder(const Mesh& mesh) {
+        const auto count = static_cast<uint32_t>(mesh.triangles.size());
+        for (uint32_t i = 0; i < count; ++i) bvh_.triangles.push_back(mesh.triangle(i));
+        bvh_.ids.resize(count);
+        std::iota(bvh_.ids.begin(), bvh_.ids.end(), 0U);
+        if (count == 0) return;
+        bvh_.nodes.resize(1);
+        bvh_.oriented.resize(1);
+        build(0, 0, count);
+    }
 
+    TriangleBvh take() { return std::move(bvh_); }
+
+private:
     void build(uint32_t node, uint32_t first, uint32_t last) {
-        Aabb box;
-        for (uint32_t i = first; i < last; ++i) box.extend(boxes[order[i]]);
-        bvh.nodes[node].box = box;
+        const std::span triangles = std::span(bvh_.triangles).subspan(first, last - first);
+        for (const Triangle& t : triangles) bvh_.nodes[node].box.extend(bounds_of(t));
+        bvh_.oriented[node] = fitted_box(triangles);
         if (last - first <= leaf_size) {
-            bvh.nodes[node].first = first;
-            bvh.nodes[node].count = last - first;
+            bvh_.nodes[node].first = first;
+            bvh_.nodes[node].count = last - first;
             return;
         }
-        const uint32_t middle = split(box, first, last);
-        const auto child = static_cast<uint32_t>(bvh.nodes.size());
-        bvh.nodes[node].first = child;
-        bvh.nodes.resize(bvh.nodes.size() + 2);
+        const uint32_t middle = split(bvh_.oriented[node], first, last);
+        const auto child = static_cast<uint32_t>(bvh_.nodes.size());
+        bvh_.nodes[node].first = child;
+        bvh_.nodes.resize(bvh_.nodes.size() + 2);
+        bvh_.oriented.resize(bvh_.nodes.size());
         build(child, first, middle);
         build(child + 1, middle, last);
     }
 
-    /// Halves the range at the median along the longest axis; ties go by index.
-    uint32_t split(const Aabb& box, uint32_t first, uint32_t last) {
-        const Vec3 size = box.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const auto key = [&](uint32_t i) { return boxes[i].min[axis] + boxes[i].max[axis]; };
-        const uint32_t middle = first + (last - first) / 2;
-        std::nth_element(
-            order.begin() + first, order.begin() + middle, order.begin() + last,
-            [&](uint32_t i, uint32_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
-        return middle;
+    /// Halves the range at the median along the longest side of its box; ties go by index.
+    uint32_t split(const OrientedBox& box, uint32_t first, uint32_t last) {
+        const Vec3& h = box.half;
+        const Vec3 axis = box.axes[h.x >= h.y && h.x >= h.z ? 0 : h.y >= h.z ? 1 : 2];
+        struct Entry {
+            double key;
+            uint32_t id;
+            Triangle triangle;
+        };
+        std::vector<Entry> entries;
+        for (uint32_t i = first; i < last; ++i) {
+            const Triangle& t = bvh_.triangles[i];
+            const Aabb b = bounds_of(t);
+            entries.push_back({glm::dot(b.min + b.max, axis), bvh_.ids[i], t});
+        }
+        const uint32_t half = (last - first) / 2;
+        std::nth_element(entries.begin(), entries.begin() + half, entries.end(),
+                         [](const Entry& x, const Entry& y) {
+                             return x.key != y.key ? x.key < y.key : x.id < y.id;
+                         });
+        for (uint32_t i = first; i < last; ++i) {
+            bvh_.triangles[i] = entries[i - first].triangle;
+            bvh_.ids[i] = entries[i - first].id;
+        }
+        return first + half;
     }
+
+    TriangleBvh bvh_;
 };
 
 /// Keeps the best pair, and the least lower bound among all that was looked at.
@@ -102,18 +130,7 @@ struct ShapeSearch : Search {
 
 } // namespace
 
-TriangleBvh build_bvh(const Mesh& mesh) {
-    const auto count = static_cast<uint32_t>(mesh.triangles.size());
-    Builder builder{mesh, {}, std::vector<uint32_t>(count), {}};
-    if (count == 0) return {};
-    for (uint32_t i = 0; i < count; ++i) builder.boxes.push_back(bounds_of(mesh.triangle(i)));
-    std::iota(builder.order.begin(), builder.order.end(), 0U);
-    builder.bvh.nodes.resize(1);
-    builder.build(0, 0, count);
-    for (const uint32_t id : builder.order) builder.bvh.triangles.push_back(mesh.triangle(id));
-    builder.bvh.ids = std::move(builder.order);
-    return std::move(builder.bvh);
-}
+TriangleBvh build_bvh(const Mesh& mesh) { return Builder(mesh).take(); }
 
 Separation separation(const ConvexShape& shape, const TriangleBvh& mesh,
                       const SeparationGoal& goal) {
@@ -121,29 +138,6 @@ Separation separation(const ConvexShape& shape, const TriangleBvh& mesh,
     ShapeSearch search(shape, mesh, goal);
     if (search.worth(mesh.nodes[0])) search.visit(0);
     return search.result();
-}
-
-Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
-                      std::span<const Vec3> sweep_of_b, const SeparationGoal& goal) {
-    Search best{goal, {}, infinity};
-    // One triangle of B at a time against the tree of A, nearest boxes first, so that the limit
-    // tightens early.
-    std::vector<std::pair<double, ConvexShape>> queue;
-    if (a.nodes.empty()) return {};
-    for (const Triangle& t : b.triangles) {
-        const ConvexShape shape =
-            swept(convex(Triangle{a_from_b * t.a, a_from_b * t.b, a_from_b * t.c}), sweep_of_b);
-        queue.emplace_back(distance(bounds(shape), a.nodes[0].box), shape);
-    }
-    std::stable_sort(queue.begin(), queue.end(),
-                     [](const auto& x, const auto& y) { return x.first < y.first; });
-    for (const auto& [bound, shape] : queue) {
-        if (bound >= best.limit() || best.best.upper == 0.0) break;
-        Separation found = separation(shape, a, {goal.tolerance, best.limit()});
-        std::swap(found.point_a, found.point_b);
-        best.offer(found);
-    }
-    return best.result();
 }
 
 std::vector<uint32_t> triangles_in(const TriangleBvh& mesh, const Aabb& box) {

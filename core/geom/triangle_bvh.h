@@ -5,6 +5,7 @@
 
 #include "core/geom/gjk.h"
 #include "core/geom/mesh.h"
+#include "core/geom/oriented_box.h"
 
 namespace core {
 
@@ -18,7 +19,8 @@ struct TriangleBvh {
 
         bool is_leaf() const { return count > 0; }
     };
-    std::vector<Node> nodes; // root first; empty for an empty mesh
+    std::vector<Node> nodes;           // root first; empty for an empty mesh
+    std::vector<OrientedBox> oriented; // round each node as well, tighter
     std::vector<Triangle> triangles;
     std::vector<uint32_t> ids; // of `triangles` in the mesh
 };
@@ -33,10 +35,6 @@ TriangleBvh build_bvh(const Mesh& mesh);
 /// Cost:   O(log n) near the surface, O(n) at worst.
 Separation separation(const ConvexShape& shape, const TriangleBvh& mesh,
                       const SeparationGoal& goal = {});
-
-/// The distance between the surfaces of two meshes, B's being moved.
-Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
-                      std::span<const Vec3> sweep_of_b, const SeparationGoal& goal = {});
 
 /// The triangles whose boxes meet `box`, in the order of the mesh.
 std::vector<uint32_t> triangles_in(const TriangleBvh& mesh, const Aabb& box);

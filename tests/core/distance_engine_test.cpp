@@ -38,7 +38,7 @@ protected:
     ClosestPair expect_least(const Points& a, const Points& b, const Transform& pose,
                              const PairGoal& goal = {}) {
         const ClosestPair found = find(add(a), add(b), pose, goal);
-        const double least = brute_force_distance(a, b, pose, goal.sweep);
+        const double least = brute_force_distance(a, b, pose, goal);
         EXPECT_EQ(found.found(), least < goal.limit);
         EXPECT_LE(found.lower, std::min(least, goal.limit));
         if (!found.found()) {
@@ -53,12 +53,13 @@ protected:
 
     static void expect_real(const Points& a, const Points& b, const Transform& pose,
                             const PairGoal& goal, const ClosestPair& found) {
-        const Vec3 from = pose * b[found.points.b];
+        const Vec3& q = b[found.points.b];
+        const Vec3 from = pose * q, sweep = goal.end ? *goal.end * q - from : goal.sweep;
         EXPECT_EQ(found.witness_a, a[found.points.a]);
-        EXPECT_EQ(found.distance, swept_distance(found.witness_a - from, goal.sweep));
-        EXPECT_EQ(found.at, nearest_time(found.witness_a - from, goal.sweep));
-        EXPECT_LE(glm::distance(found.witness_b, from + found.at * goal.sweep),
-                  1e-15 * (glm::length(from) + glm::length(goal.sweep)));
+        EXPECT_EQ(found.distance, swept_distance(found.witness_a - from, sweep));
+        EXPECT_EQ(found.at, nearest_time(found.witness_a - from, sweep));
+        EXPECT_LE(glm::distance(found.witness_b, from + found.at * sweep),
+                  1e-15 * (glm::length(from) + glm::length(sweep)));
     }
 };
 
@@ -104,6 +105,21 @@ TEST_P(AnyEngine, AgreesWithBruteForceWhenOneBodyIsTinyOrFar) {
     for (const double reach : {0.0, 100.0, 1e6, 5e11}) {
         expect_least(dust, cloud, random_pose(rng, reach));
         expect_least(cloud, dust, random_pose(rng, reach));
+    }
+}
+
+TEST_P(AnyEngine, AgreesWithBruteForceWhereLargeBodiesAlmostTouch) {
+    std::mt19937 rng(36);
+    for (int i = 0; i < 40; ++i) {
+        // Every point of A has one of B next to it: single precision tells none of them apart.
+        const Transform pose = random_pose(rng, 500.0);
+        const Points a = random_cloud(rng, 300, 1000.0), off = random_cloud(rng, 300, 1e-6);
+        Points b;
+        for (size_t k = 0; k < a.size(); ++k) b.push_back(pose.inverse() * (a[k] + off[k]));
+        expect_least(a, b, pose);
+        const Vec3 sweep(0.0, 3e-7, 0.0);
+        expect_least(a, b, pose, {.sweep = sweep});
+        expect_least(a, b, pose, {.end = translation(sweep) * pose});
     }
 }
 
@@ -237,6 +253,45 @@ TEST_P(AnyEngine, FindsTheLeastDistanceOfAWholeTranslation) {
     EXPECT_GT(within, 25);
 }
 
+TEST_P(AnyEngine, FindsTheLeastDistanceWhereEveryPointGoesItsOwnWay) {
+    std::mt19937 rng(33);
+    int within = 0;
+    for (int i = 0; i < 150; ++i) {
+        const double size = std::pow(10.0, i % 5 - 2);
+        const Points a = random_cloud(rng, 200, 10.0 * size),
+                     b = random_cloud(rng, 200, 8.0 * size);
+        PairGoal goal;
+        goal.end = random_pose(rng, 30.0 * size);
+        const ClosestPair found = expect_least(a, b, random_pose(rng, 40.0 * size), goal);
+        within += found.at > 0.0 && found.at < 1.0;
+    }
+    EXPECT_GT(within, 50);
+}
+
+TEST_P(AnyEngine, TakesAWayToWhereItIsAndOneOfAHair) {
+    std::mt19937 rng(34);
+    for (const double length : {0.0, 1e-300, 1e-16, 1e-15, 1e-9}) {
+        const Points a = random_cloud(rng, 300, 10.0), b = random_cloud(rng, 200, 8.0);
+        const Transform pose = random_pose(rng, 30.0);
+        PairGoal goal{.sweep = Vec3(0.0, length, 0.0)};
+        expect_least(a, b, pose, goal);
+        goal = {.end = translation({0.0, length, 0.0}) * pose};
+        expect_least(a, b, pose, goal);
+    }
+}
+
+TEST_P(AnyEngine, KeepsTheLastBitWhenTheTransformIsOffByWhatIsAllowed) {
+    std::mt19937 rng(35);
+    for (int i = 0; i < 100; ++i) {
+        Points block = block_of_points(9, 5, 8);
+        Transform pose = {random_pose(rng, 1.0).rotation, Vec3(0.0)};
+        for (Vec3& p : block) p = pose.rotation * p;
+        pose = {Mat3(1.0), pose.rotation * Vec3(0.0, 0.0, 8.0 + i % 7)};
+        pose.rotation *= 1.0 + 4e-10;
+        expect_least(block, block, pose);
+    }
+}
+
 TEST_P(AnyEngine, SweepsNeverExceedDenseSamples) {
     const Points plate = boundary_points(scan(Box{{30.0, 20.0, 3.0}}, 1.0).value());
     const Points ball = boundary_points(scan(Sphere{9.0}, 1.0).value());
@@ -283,6 +338,9 @@ TEST_P(AnyEngine, RefusesWhatIsNoQuestion) {
     EXPECT_NE(message(translation({nan, 0, 0}), {}, body), "");
     EXPECT_NE(message(translation({1e13, 0, 0}), {}, body), "");
     EXPECT_NE(message({}, {.sweep = Vec3(0, infinity, 0)}, body), "");
+    EXPECT_NE(message({}, {.end = mirror}, body).find("not a rotation"), std::string::npos);
+    EXPECT_NE(message({}, {.end = translation({1e13, 0, 0})}, body), "");
+    EXPECT_NE(message({}, {.sweep = Vec3(1.0), .end = Transform{}}, body), "");
     EXPECT_NE(message({}, {.limit = -1.0}, body), "");
     EXPECT_NE(message({}, {.limit = nan}, body), "");
     EXPECT_NE(message({}, {.tolerance = -1e-9}, body), "");

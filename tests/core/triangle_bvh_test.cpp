@@ -94,39 +94,6 @@ TEST(TriangleBvh, SaysAtMostTheLimitWhenNothingIsNearer) {
     EXPECT_FALSE(separation(probe, build_bvh({})).found());
 }
 
-TEST(TriangleBvh, GivesTheLeastDistanceOfTwoMeshesOverASweep) {
-    std::mt19937 rng(32);
-    int near = 0, far = 0, overlapping = 0;
-    for (int i = 0; i < 60; ++i) {
-        const Mesh a = random_mesh(rng), b = random_mesh(rng);
-        const Transform pose = random_pose(rng, i % 2 ? 8.0 : 25.0);
-        const Vec3 sweep[] = {Vec3(0.0), i % 3 ? random_pose(rng, 10.0).translation : Vec3(0.0)};
-        double truth = infinity;
-        for (size_t k = 0; k < b.triangles.size(); ++k) {
-            const Triangle t = b.triangle(k);
-            const ConvexShape shape =
-                swept(convex(Triangle{pose * t.a, pose * t.b, pose * t.c}), sweep);
-            truth = std::min(truth, brute_force(shape, a));
-        }
-        const TriangleBvh bvh_a = build_bvh(a), bvh_b = build_bvh(b);
-        const Separation found = separation(bvh_a, bvh_b, pose, sweep);
-        EXPECT_LE(found.lower, truth + 1e-9);
-        EXPECT_GE(found.upper, truth - 2e-7);
-        EXPECT_LE(found.upper - found.lower, 1e-6);
-        EXPECT_LE(brute_force(convex_segment(found.point_a, found.point_a), a), 1e-6);
-        const Vec3 on_b = pose.inverse() * (found.point_b - found.time_a * sweep[1]);
-        EXPECT_LE(brute_force(convex_segment(on_b, on_b), b), 1e-6);
-        const double limit = 0.9 * truth;
-        const Separation none = separation(bvh_a, bvh_b, pose, sweep, {.limit = limit});
-        EXPECT_FALSE(none.found());
-        EXPECT_LE(none.lower, limit);
-        ++(truth == 0.0 ? overlapping : truth < 8.0 ? near : far);
-    }
-    EXPECT_GT(overlapping, 8);
-    EXPECT_GT(near, 8);
-    EXPECT_GT(far, 8);
-}
-
 TEST(TrianglesIn, AreThoseWhoseBoxesMeetTheBox) {
     std::mt19937 rng(33);
     size_t some = 0;

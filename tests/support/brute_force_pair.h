@@ -8,17 +8,17 @@
 
 namespace test_support {
 
-/// The least distance of two sets of points while those of B move on by `sweep`: every pair is
-/// tried.
+/// The least distance of two sets of points while each of B goes straight on: every pair is tried.
 inline double brute_force_distance(const std::vector<core::Vec3>& a,
                                    const std::vector<core::Vec3>& b,
                                    const core::Transform& a_from_b,
-                                   const core::Vec3& sweep = core::Vec3(0.0)) {
+                                   const core::PairGoal& goal = {}) {
     double least = core::infinity;
     for (const core::Vec3& q : b) {
-        const core::Vec3 mapped = a_from_b * q;
+        const core::Vec3 start = a_from_b * q;
+        const core::Vec3 sweep = goal.end ? *goal.end * q - start : goal.sweep;
         for (const core::Vec3& p : a)
-            least = std::min(least, core::swept_distance(p - mapped, sweep));
+            least = std::min(least, core::swept_distance(p - start, sweep));
     }
     return least;
 }

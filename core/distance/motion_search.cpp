@@ -1,0 +1,97 @@
+#include "core/distance/motion_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/distance/time_search.h"
+
+namespace core {
+namespace {
+
+/// What rounding adds to a place on the way, for each of these lengths: some ten operations.
+constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
+
+/// Searches parts of the motion and remembers the best pair.
+class Search {
+public:
+    Search(const DistanceEngine& engine, PointBody a, PointBody b, const RigidMotion& motion,
+           const PairGoal& goal)
+        : engine_(engine),
+          a_(a),
+          b_(b),
+          motion_(motion),
+          first_(goal.first),
+          reach_(reach_from_axis(motion, engine.box_of(b))),
+          lengths_(lengths_of(engine.box_of(b), motion)) {}
+
+    Result<ClosestPair> run(const PairGoal& goal) {
+        const double tolerance = std::max(goal.tolerance, least_motion_tolerance(lengths_));
+        const auto part = [&](double from, double to, double worth) {
+            return search(from, to, worth);
+        };
+        FEELER_TRY(const StretchBound least,
+                   least_over_time(part, {goal.limit, goal.any, tolerance}));
+        ClosestPair found = best_.distance < goal.limit ? best_ : ClosestPair{};
+        found.lower = least.lower;
+        found.node_tests = node_tests_;
+        found.point_tests = point_tests_;
+        return found;
+    }
+
+private:
+    /// The sum of all lengths from which places on the way are worked out.
+    static double lengths_of(const Aabb& box, const RigidMotion& motion) {
+        return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)))
+               + 2.0 * glm::length(motion.centre) + glm::length(motion.start.translation)
+               + glm::length(motion.end.translation);
+    }
+
+    Result<StretchBound> search(double from, double to, double worth) {
+        const Transform start = motion_.at(from);
+        const double allowance = bulge(motion_, reach_, to - from) + rounding * lengths_;
+        const PairGoal goal{.limit = worth + allowance, .end = motion_.at(to), .first = first_};
+        FEELER_TRY(const ClosestPair chords, engine_.closest_pair(a_, b_, start, goal));
+        node_tests_ += chords.node_tests;
+        point_tests_ += chords.point_tests;
+        StretchBound bound{std::max(chords.lower - allowance, 0.0), infinity};
+        if (!chords.found()) return bound;
+        first_ = chords.points;
+        const double time = from + chords.at * (to - from);
+        FEELER_TRY(ClosestPair pair, engine_.pair_at(a_, b_, chords.points, motion_.at(time)));
+        pair.at = time;
+        bound.upper = pair.distance;
+        if (pair.distance < best_.distance) best_ = pair;
+        return bound;
+    }
+
+    const DistanceEngine& engine_;
+    PointBody a_, b_;
+    const RigidMotion& motion_;
+    std::optional<PointPair> first_;
+    double reach_, lengths_;
+    ClosestPair best_;
+    uint64_t node_tests_ = 0, point_tests_ = 0;
+};
+
+} // namespace
+
+Result<ClosestPair> closest_pair(const DistanceEngine& engine, PointBody a, PointBody b,
+                                 const RigidMotion& motion, const PairGoal& goal) {
+    if (goal.sweep != Vec3(0.0) || goal.end)
+        return fail(ErrorCode::invalid_value,
+                    "a goal with a way of its own does not go with a motion");
+    if (motion.angle == 0.0) { // exactly, in one search
+        PairGoal straight = goal;
+        straight.sweep = motion.travel();
+        return engine.closest_pair(a, b, motion.start, straight);
+    }
+    if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0) || !std::isfinite(motion.angle)
+        || !(std::abs(glm::length(motion.axis) - 1.0) <= 1e-9))
+        return fail(ErrorCode::invalid_value,
+                    "the limit and the tolerance of a search must be lengths of 0 or more, and a "
+                    "motion must turn about an axis of length 1 by an angle that is a number");
+    return Search(engine, a, b, motion, goal).run(goal);
+}
+
+} // namespace core

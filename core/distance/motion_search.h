@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/distance/distance_engine.h"
+#include "core/geom/rigid_motion.h"
+
+namespace core {
+
+/// The tolerance of a search through a motion that turns is at least this, mm; no point of B, and
+/// none of the places it comes to, is farther than `reach` from its origin.
+constexpr double least_motion_tolerance(double reach) { return 1e-6 + 1e-8 * reach; }
+
+/// The closest pair of points of two bodies over a whole rigid motion of B, and when.
+///
+/// A part of the motion is searched with every point going straight, along its chord; the arcs
+/// bulge out from the chords by a length that is subtracted. Parts that stay in question are
+/// halved.
+///
+/// Frame:  the result is in that of A, at the time `at`, 0..1.
+/// Result: `distance` is that of the points named at the time `at`, and `lower` bounds that of all
+///         points at all times; unless any will do they are no more than the goal's tolerance apart
+///         (at least least_motion_tolerance(); exact if nothing turns).
+/// Errors: those of DistanceEngine::closest_pair; a goal with a sweep or an end.
+/// Cost:   a quarter turn of a 50 mm body to 1e-3 mm takes some ten searches where it comes near at
+///         one time, some hundred where it is equally near all the way.
+/// Proof:  README.md beside this file, "Motions".
+Result<ClosestPair> closest_pair(const DistanceEngine& engine, PointBody a, PointBody b,
+                                 const RigidMotion& motion, const PairGoal& goal = {});
+
+} // namespace core

@@ -1,0 +1,163 @@
+#include "core/distance/search_side.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace core {
+namespace {
+
+constexpr uint32_t width = PointTree::width;
+
+/// The single precision that the frame's coordinates are off by, per length: direction, products
+/// and sums take less than ten roundings.
+constexpr float rounding = 16.0F * std::numeric_limits<float>::epsilon();
+
+Float3 single(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// The boxes round two rows of boxes.
+void extend(BoxLanes& boxes, const BoxLanes& by) {
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t lane = 0; lane < width; ++lane) {
+            boxes.lower[k][lane] = std::min(boxes.lower[k][lane], by.lower[k][lane]);
+            boxes.upper[k][lane] = std::max(boxes.upper[k][lane], by.upper[k][lane]);
+        }
+}
+
+/// Coordinates in the frame, and the distances of points, take some ten operations on doubles as
+/// large as these lengths; a path of less than 1e-15 mm counts as none.
+float coarse(const PointTreeView& body, const Vec3& origin, const StraightMotion* motion) {
+    const PointTree::Node& root = body.top->nodes[0];
+    double reach = glm::length(root.origin) + static_cast<double>(root.reach) + glm::length(origin);
+    if (motion)
+        reach += glm::length(motion->start.translation) + glm::length(motion->last().translation);
+    return static_cast<float>(1e-14 + 32.0 * std::numeric_limits<double>::epsilon() * reach);
+}
+
+} // namespace
+
+PointPlace place_of(const PointTreeView& body, uint64_t index) {
+    const PointTree* tree = body.tree_of(index);
+    const size_t given = index & 0xFFFF'FFFFU;
+    if (tree == nullptr || given >= tree->place.size()) return {};
+    const uint32_t point = tree->place[given];
+    const auto after =
+        std::upper_bound(tree->leaves.begin(), tree->leaves.end(), point,
+                         [](uint32_t p, const PointTree::Leaf& leaf) { return p < leaf.first; });
+    return {tree, &*(after - 1), point};
+}
+
+void SearchSide::begin(const PointTreeView& of, const SearchFrame& frame,
+                       const StraightMotion* motion) {
+    kernels_ = &lane_kernels();
+    body = of;
+    nodes.clear();
+    leaves.clear();
+    start_ = pose_in(frame, motion ? motion->start : Transform{});
+    spreads_ = motion && motion->end;
+    if (spreads_) end_ = pose_in(frame, *motion->end);
+    sweep_ = motion && !spreads_ ? frame.along(motion->sweep) : Vec3(0.0);
+    coarse_ = coarse(body, frame.origin, motion);
+    visit(body.top, 0);
+}
+
+SearchSide::Pose SearchSide::pose_in(const SearchFrame& frame, const Transform& a_from_body) {
+    Pose pose;
+    const Mat3 body_from_a = glm::transpose(a_from_body.rotation);
+    for (size_t k = 0; k < 3; ++k) pose.directions[k] = body_from_a * frame.directions[k];
+    const Mat3 frame_from_a =
+        glm::transpose(Mat3(frame.directions[0], frame.directions[1], frame.directions[2]));
+    pose.frame_from_body = {frame_from_a * a_from_body.rotation,
+                            frame_from_a * (a_from_body.translation - frame.origin)};
+    return pose;
+}
+
+SearchSide::Sight SearchSide::sight(const Pose& pose, const Vec3& origin, float reach) const {
+    Sight sight;
+    const Vec3 from = pose.frame_from_body * origin;
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<size_t>(k);
+        sight.base[i] = static_cast<float>(from[k]);
+        sight.margin[i] =
+            coarse_
+            + rounding * (static_cast<float>(std::abs(from[k]) + std::abs(sweep_[k])) + reach);
+        sight.view.lower[i] =
+            static_cast<float>(from[k] + std::min(sweep_[k], 0.0)) - sight.margin[i];
+        sight.view.upper[i] =
+            static_cast<float>(from[k] + std::max(sweep_[k], 0.0)) + sight.margin[i];
+        sight.view.direction[i] = single(pose.directions[i]);
+    }
+    return sight;
+}
+
+uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
+    const auto id = static_cast<uint32_t>(nodes.size());
+    VisitedNode& visited = nodes.emplace_back();
+    const PointTree::Node& node = tree->nodes[number];
+    visited.tree = tree;
+    visited.node = &node;
+    visited.count = static_cast<uint32_t>(std::popcount(node.used));
+    visited.below.fill(none);
+    for (uint32_t lane = 0; lane < width; ++lane) {
+        const bool leaf = (node.child[lane] & PointTree::leaf_flag) != 0;
+        visited.size[lane] = leaf ? -1.0F : node.radius[lane];
+    }
+    kernels_->project_boxes(node, sight(start_, node.origin, node.reach).view, visited.boxes);
+    if (spreads_) {
+        BoxLanes end;
+        kernels_->project_boxes(node, sight(end_, node.origin, node.reach).view, end);
+        extend(visited.boxes, end);
+    }
+    return id;
+}
+
+uint32_t SearchSide::child_node(uint32_t at, uint32_t lane) {
+    const uint32_t known = nodes[at].below[lane];
+    if (known != none) return known;
+    const uint32_t child = nodes[at].node->child[lane];
+    const bool tile = (child & PointTree::tile_flag) != 0;
+    const uint32_t id =
+        tile ? visit(body.tile(child & ~PointTree::tile_flag), 0) : visit(nodes[at].tree, child);
+    nodes[at].below[lane] = id;
+    return id;
+}
+
+const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
+    VisitedNode& parent = nodes[at];
+    uint32_t& id = parent.below[lane];
+    if (id != none) return leaves[id];
+    id = static_cast<uint32_t>(leaves.size());
+    VisitedLeaf& leaf = leaves.emplace_back();
+    leaf.tree = parent.tree;
+    leaf.leaf = &parent.tree->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
+    look_at(leaf);
+    return leaf;
+}
+
+void SearchSide::look_at(VisitedLeaf& leaf) const {
+    leaf.margin = 0.0F;
+    const auto project = [&](const Pose& pose, PointLanes& points) {
+        Sight seen = sight(pose, leaf.leaf->origin, leaf.leaf->reach);
+        seen.view.lower = seen.base;
+        leaf.margin =
+            std::max(leaf.margin, *std::max_element(seen.margin.begin(), seen.margin.end()));
+        kernels_->project_points(*leaf.leaf, seen.view, points);
+    };
+    project(start_, leaf.points);
+    if (spreads_) project(end_, leaf.end);
+}
+
+FrameBox SearchSide::box(uint32_t at, uint32_t lane) const {
+    const VisitedNode& node = nodes[at];
+    FrameBox box;
+    for (size_t k = 0; k < 3; ++k) {
+        box.lower[k] = node.boxes.lower[k][lane];
+        box.upper[k] = node.boxes.upper[k][lane];
+    }
+    return box;
+}
+
+} // namespace core

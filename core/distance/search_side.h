@@ -1,0 +1,85 @@
+#pragma once
+
+#include <vector>
+
+#include "core/distance/lane_kernels.h"
+#include "core/distance/search_frame.h"
+#include "core/distance/straight_motion.h"
+
+namespace core {
+
+/// A node that a search came to, with its children's boxes in the search's frame, over all of B's
+/// motion.
+struct VisitedNode {
+    BoxLanes boxes;
+    PointTree::Lanes size; // of the children: the larger one is opened; -1: a leaf
+    std::array<uint32_t, PointTree::width> below; // their numbers among the visited, or `none`
+    uint32_t count;                               // of the children
+    const PointTree* tree;
+    const PointTree::Node* node;
+};
+
+/// A leaf that it came to.
+struct VisitedLeaf {
+    PointLanes points; // where they start
+    PointLanes end;    // and where they go; unused where that is the same for all of them
+    float margin;      // what rounding may add to a coordinate or take from it
+    const PointTree* tree;
+    const PointTree::Leaf* leaf;
+};
+
+/// Where a point is stored.
+struct PointPlace {
+    const PointTree* tree = nullptr;
+    const PointTree::Leaf* leaf = nullptr;
+    uint32_t point = 0; // in the tree's order
+
+    const Vec3& position() const { return tree->points[point]; }
+    uint64_t index() const { return tree->index[point]; }
+};
+
+/// Where the point with this index is; nowhere if it has been cut away.
+PointPlace place_of(const PointTreeView& body, uint64_t index);
+
+/// One body's part in a search: what was visited of it, in the frame of the search.
+class SearchSide {
+public:
+    static constexpr uint32_t none = 0xFFFF'FFFFU;
+
+    PointTreeView body;
+    std::vector<VisitedNode> nodes;
+    std::vector<VisitedLeaf> leaves;
+
+    /// Forgets what was visited, and visits the root. A stands still: `motion` is null.
+    void begin(const PointTreeView& of, const SearchFrame& frame, const StraightMotion* motion);
+
+    uint32_t child_node(uint32_t at, uint32_t lane);
+    const VisitedLeaf& child_leaf(uint32_t at, uint32_t lane);
+
+    FrameBox box(uint32_t at, uint32_t lane) const;
+
+private:
+    /// A pose of the body, and the frame's directions in its own frame.
+    struct Pose {
+        Transform frame_from_body;
+        std::array<Vec3, 3> directions;
+    };
+    /// How a node or leaf is seen in the frame, and what rounding may add, per axis.
+    struct Sight {
+        FrameView view;
+        Float3 base{}, margin{};
+    };
+
+    static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
+    Sight sight(const Pose& pose, const Vec3& origin, float reach) const;
+    uint32_t visit(const PointTree* tree, uint32_t number);
+    void look_at(VisitedLeaf& leaf) const;
+
+    const LaneKernels* kernels_ = nullptr;
+    Pose start_, end_;
+    bool spreads_ = false;   // the points do not all go the same way
+    Vec3 sweep_ = Vec3(0.0); // along the directions, when they do
+    float coarse_ = 0.0F;    // what double precision adds to a margin, for a body far away
+};
+
+} // namespace core
