@@ -95,10 +95,10 @@ TEST(PaperBench, TakesTestsInProportionToThePoints) {
 }
 
 TEST(PaperBench, TakesLongerForMorePoints) {
-    // Sixteen times as many; the bounds leave room for a great deal of noise.
-    const std::vector<BenchMeans> means = means_of(measured(paper_scene(), {0.5, 2.0}));
-    EXPECT_GT(means[0].paper_seconds, 4.0 * means[1].paper_seconds);
-    EXPECT_LT(means[0].paper_seconds, 100.0 * means[1].paper_seconds);
+    // Four times as many; the bounds leave room for a great deal of noise.
+    const std::vector<BenchMeans> means = means_of(measured(paper_scene(), {1.0, 2.0}));
+    EXPECT_GT(means[0].paper_seconds, 1.5 * means[1].paper_seconds);
+    EXPECT_LT(means[0].paper_seconds, 50.0 * means[1].paper_seconds);
 }
 
 TEST(Bench, FindsTheSameDistanceByBothEnginesNeverNearerThanTheTruth) {
@@ -230,17 +230,17 @@ TEST(BenchText, FitsIntoEightyColumnsAndSaysWhereTheFiguresAre) {
         row.paper.seconds = 1.2;
         row.fast.seconds = 0.123;
     }
-    const std::string text =
-        text_bench({paper_table(), turned, measured(bench_scenes()[5], {1.0})});
+    const std::string text = text_bench(
+        {measured(paper_scene(), {1.0, 1.5, 2.0}), turned, measured(bench_scenes()[5], {1.0})});
     for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), 80u) << line;
     EXPECT_THAT(text, HasSubstr("Figures 6, 7, 8   table 1.1"));
     EXPECT_THAT(text, HasSubstr("Figures 9, 10     table 1.2"));
     EXPECT_THAT(text, HasSubstr("1.1  Means over 8 gaps"));
-    EXPECT_THAT(text, HasSubstr("1.2  Mesh size 0.5 mm, 47160 points each"));
-    EXPECT_THAT(text, HasSubstr("1.5  Mesh size 2.0 mm, 2904 points each"));
+    EXPECT_THAT(text, HasSubstr("1.2  Mesh size 1.0 mm, 11856 points each"));
+    EXPECT_THAT(text, HasSubstr("1.4  Mesh size 2.0 mm, 2904 points each"));
     EXPECT_THAT(text, HasSubstr("3.1  Mesh size 1.0 mm, 32000 and 12800 points"));
     EXPECT_THAT(text, HasSubstr("grows linearly with the points"));
-    EXPECT_THAT(text, HasSubstr("same distance, to the last bit, in all 61 places"));
+    EXPECT_THAT(text, HasSubstr("same distance, to the last bit, in all 53 places"));
 }
 
 TEST(BenchText, SaysWhenTheEnginesDisagree) {
