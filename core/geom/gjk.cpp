@@ -1,5 +1,7 @@
 #include "core/geom/gjk.h"
 
+#include <algorithm>
+
 #include "core/geom/simplex.h"
 
 namespace core {
@@ -58,7 +60,7 @@ void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, doubl
     const Simplex::Vertex nearest = nearest_vertex(simplex);
     found.point_a = nearest.on_a;
     found.point_b = nearest.on_b;
-    found.time_a = nearest.time_a;
+    found.time_a = std::clamp(nearest.time_a, 0.0, 1.0); // the weights sum to 1 but for rounding
     const double length = glm::length(v);
     if (length <= margin_a + margin_b) { // overlap: any point between the cores is in both
         const double share = margin_a + margin_b > 0.0 ? margin_a / (margin_a + margin_b) : 0.0;
@@ -69,9 +71,7 @@ void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, doubl
     found.point_b += (margin_b / length) * v;
 }
 
-} // namespace
-
-Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal) {
+Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal) {
     const double margins = a.margin + b.margin;
     Separation found;
     found.lower = 0.0;
@@ -99,6 +99,46 @@ Separation separation(const ConvexShape& a, const ConvexShape& b, const Separati
         v = next;
     }
     found.lower = std::min(found.lower, found.upper);
+    return found;
+}
+
+/// Where bodies all but touch, the way between them is rounding and shows no direction. From a step
+/// back it does: the nearest points found there are points of the bodies here as well, and their
+/// direction gives a plane. Each round brings the direction nearer to the one across the contact:
+/// over a surface of radius R an angle is left step / R times as large.
+void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal,
+               Separation& found) {
+    const double step =
+        0.001 * std::min(glm::length(bounds(a).size()), glm::length(bounds(b).size()));
+    if (!(found.upper < 0.1 * step)) return;
+    Vec3 n = (found.point_a - found.point_b) / found.upper;
+    for (int round = 0; round < 30 && found.upper - found.lower > goal.tolerance; ++round) {
+        ConvexShape back = b;
+        for (size_t i = 0; i < back.place_count; ++i) back.places[i].at -= step * n;
+        Separation seen = search(a, back, {0.0, infinity});
+        if (seen.upper == 0.0) return;
+        const Vec3 from = n;
+        n = (seen.point_a - seen.point_b) / seen.upper;
+        seen.point_b += step * from;
+        const double upper = glm::distance(seen.point_a, seen.point_b);
+        const double lower = glm::dot(n, support_pair(a, b, n).difference) - a.margin - b.margin;
+        if (upper < found.upper) {
+            found.upper = upper <= touching ? 0.0 : upper;
+            found.point_a = seen.point_a;
+            found.point_b = found.upper == 0.0 ? seen.point_a : seen.point_b;
+            found.time_a = seen.time_a;
+        }
+        found.lower = std::min(std::max(found.lower, lower), found.upper);
+    }
+}
+
+} // namespace
+
+Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal) {
+    Separation found = search(a, b, goal);
+    const bool is_done = found.lower >= goal.limit
+                         || found.upper - found.lower <= std::max(goal.tolerance, touching);
+    if (!is_done) step_back(a, b, goal, found);
     return found;
 }
 

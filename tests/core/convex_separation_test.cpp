@@ -143,6 +143,36 @@ TEST(ConvexSeparation, HoldsForBodiesThatTouch) {
     EXPECT_GT(seen.near, 50);
 }
 
+Vec3 farthest(const ConvexShape& shape, const Vec3& n) {
+    return support(shape, n).point + shape.margin * n;
+}
+
+/// Where a curved rim touches a face or another rim, the way between them is rounding.
+TEST(ConvexSeparation, ClosesWhereRimsTouch) {
+    std::mt19937 rng(4);
+    std::uniform_real_distribution<double> size(0.01, 3.0);
+    int open = 0;
+    double widest = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+        const double r = size(rng), h = size(rng);
+        const ConvexShape rod = convex(ProfileElement{-h, r, h, r, 0.0});
+        const Vec3 half(size(rng), size(rng), 0.3 * size(rng));
+        const ConvexShape other = i % 2 == 0 ? convex(Aabb{-half, half}) : rod;
+        const Mat3 turn = i % 5 == 0
+                              ? rotation_xyz_deg(90.0 * Vec3(rng() % 4, rng() % 4, rng() % 4))
+                              : random_pose(rng, 1.0).rotation;
+        const Vec3 n = i % 3 == 0 ? Vec3(0.0, 0.0, 1.0) : random_direction(rng);
+        const Vec3 at = farthest(other, n) - farthest(posed(rod, {turn, Vec3(0.0)}), -n);
+        const Separation found = separation(other, posed(rod, {turn, at}));
+        EXPECT_LE(found.lower, 1e-12);
+        EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, 1e-9);
+        open += found.upper > 1e-7;
+        widest = std::max(widest, found.upper);
+    }
+    EXPECT_LE(open, 4);
+    EXPECT_LT(widest, 1e-6);
+}
+
 TEST(ConvexSeparation, HoldsFarFromTheOrigin) {
     std::mt19937 rng(13);
     Seen seen;

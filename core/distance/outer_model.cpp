@@ -1,0 +1,191 @@
+#include "core/distance/outer_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "core/distance/rounding.h"
+
+namespace core {
+namespace {
+
+double reach_of(const Aabb& box) {
+    return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
+}
+
+int cells_along(const OuterModel& model, int axis) { return model.grid.count(axis) + 1; }
+
+ScanLines empty_columns(const OuterModel& model, int axis) {
+    return {axis, cells_along(model, u_axis(axis)), cells_along(model, v_axis(axis))};
+}
+
+IntervalList grown(const IntervalList& list, double by) {
+    IntervalList wider;
+    for (const Interval& i : list) wider.add({i.lower - by, i.upper + by});
+    return wider;
+}
+
+/// The cells across `axis` that a stretch along it meets, first .. last.
+struct CellRange {
+    int first, last;
+};
+
+CellRange cells_met(const OuterModel& model, int axis, const Interval& stretch) {
+    const double first_line = model.grid.coordinate(axis, 0);
+    const auto near = [&](double x) {
+        return static_cast<int>(std::clamp(std::floor((x - first_line) / model.grid.spacing), -1.0,
+                                           model.grid.count(axis) - 1.0))
+               + 1;
+    };
+    // One more on either side: the estimate is rounded, and what a cell does not meet drops out.
+    return {std::max(0, near(stretch.lower) - 1),
+            std::min(cells_along(model, axis) - 1, near(stretch.upper) + 1)};
+}
+
+/// The parts of a list within a cell, both closed; a part may be a single point.
+void clip(const IntervalList& list, const Interval& cell, std::vector<Interval>& parts) {
+    parts.clear();
+    for (const Interval& i : list) {
+        const Interval part{std::max(i.lower, cell.lower), std::min(i.upper, cell.upper)};
+        if (part.lower <= part.upper) parts.push_back(part);
+    }
+}
+
+/// Puts the boxes of a model together, column by column of its first family.
+class BoxBuilder {
+public:
+    explicit BoxBuilder(const OuterModel& model)
+        : model_(model),
+          along_(model.families.front().axis()),
+          u_(u_axis(along_)),
+          v_(v_axis(along_)) {
+        for (const ScanLines& family : model.families)
+            families_[static_cast<size_t>(family.axis())] = &family;
+    }
+
+    std::vector<Aabb> run() {
+        const ScanLines& columns = model_.families.front();
+        for (int j = 0; j < columns.v_count(); ++j)
+            for (int i = 0; i < columns.u_count(); ++i) {
+                first_of_column_ = boxes_.size();
+                for (const Interval& stretch : columns.line(i, j)) add_stretch(i, j, stretch);
+            }
+        return std::move(boxes_);
+    }
+
+private:
+    void add_stretch(int i, int j, const Interval& stretch) {
+        const auto [first, last] = cells_met(model_, along_, stretch);
+        for (int k = first; k <= last; ++k) {
+            const Interval cell = cell_of(model_, along_, k);
+            const Interval part{std::max(stretch.lower, cell.lower),
+                                std::min(stretch.upper, cell.upper)};
+            if (part.lower > part.upper) continue;
+            // The family along u counts its cells by (v, along), that along v by (along, u).
+            clip_across(u_, j, k, cell_of(model_, u_, i), across_u_);
+            clip_across(v_, k, i, cell_of(model_, v_, j), across_v_);
+            for (const Interval& v : across_v_)
+                for (const Interval& u : across_u_) add_box(u, v, part);
+        }
+    }
+
+    void clip_across(int axis, int i, int j, const Interval& cell, std::vector<Interval>& parts) {
+        const ScanLines* family = families_[static_cast<size_t>(axis)];
+        if (family)
+            clip(family->line(i, j), cell, parts);
+        else
+            parts.assign(1, cell);
+    }
+
+    void add_box(const Interval& u, const Interval& v, const Interval& along) {
+        Aabb box;
+        box.min[u_] = u.lower, box.max[u_] = u.upper;
+        box.min[v_] = v.lower, box.max[v_] = v.upper;
+        box.min[along_] = along.lower, box.max[along_] = along.upper;
+        if (boxes_.size() > first_of_column_ && continues(boxes_.back(), box))
+            boxes_.back().max[along_] = along.upper;
+        else
+            boxes_.push_back(box);
+    }
+
+    bool continues(const Aabb& below, const Aabb& box) const {
+        return below.min[u_] == box.min[u_] && below.max[u_] == box.max[u_]
+               && below.min[v_] == box.min[v_] && below.max[v_] == box.max[v_]
+               && below.max[along_] == box.min[along_];
+    }
+
+    const OuterModel& model_;
+    int along_, u_, v_;
+    std::array<const ScanLines*, 3> families_{};
+    std::vector<Aabb> boxes_;
+    size_t first_of_column_ = 0;
+    std::vector<Interval> across_u_, across_v_;
+};
+
+/// Whether one interval of a column holds the stretch, up to `error`.
+bool holds(const IntervalList& column, const Interval& stretch, double error) {
+    return std::any_of(column.begin(), column.end(), [&](const Interval& i) {
+        return i.lower <= stretch.lower + error && i.upper >= stretch.upper - error;
+    });
+}
+
+} // namespace
+
+Interval cell_of(const OuterModel& model, int axis, int i) {
+    const double low = model.box.min[axis], high = model.box.max[axis];
+    const auto line = [&](int k) { return std::clamp(model.grid.coordinate(axis, k), low, high); };
+    return {i == 0 ? low : line(i - 1), i == model.grid.count(axis) ? high : line(i)};
+}
+
+OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFunction& column,
+                       std::initializer_list<int> axes) {
+    assert(axes.size() > 0);
+    const double error = scan_rounding(reach_of(bounds));
+    OuterModel model{grid, bounds.grown(error), {}};
+    for (const int axis : axes) {
+        ScanLines columns = empty_columns(model, axis);
+        for (int j = 0; j < columns.v_count(); ++j) {
+            const Interval v = cell_of(model, v_axis(axis), j);
+            for (int i = 0; i < columns.u_count(); ++i) {
+                const Interval u = cell_of(model, u_axis(axis), i);
+                const IntervalList found = column(
+                    axis, {u.lower - error, u.upper + error, v.lower - error, v.upper + error});
+                if (!found.empty()) columns.edit(i, j) = grown(found, error);
+            }
+        }
+        model.families.push_back(std::move(columns));
+    }
+    return model;
+}
+
+OuterModel outer_model(const CutModel& stock) {
+    const double error = scan_rounding(reach_of(stock.outer_box));
+    OuterModel model{stock.lines.grid, stock.outer_box, {}};
+    ScanLines columns = empty_columns(model, 2);
+    for (int j = 0; j < columns.v_count(); ++j)
+        for (int i = 0; i < columns.u_count(); ++i)
+            if (!stock.columns.line(i, j).empty())
+                columns.edit(i, j) = grown(stock.columns.line(i, j), error);
+    model.families.push_back(std::move(columns));
+    return model;
+}
+
+std::vector<Aabb> boxes_of(const OuterModel& model) {
+    if (model.families.empty()) return {};
+    return BoxBuilder(model).run();
+}
+
+bool holds(const OuterModel& model, const Dbm& lines, double error) {
+    for (const ScanLines& columns : model.families) {
+        const ScanLines& family = lines.families[static_cast<size_t>(columns.axis())];
+        for (int v = 0; v < family.v_count(); ++v)
+            for (int u = 0; u < family.u_count(); ++u)
+                for (const Interval& stretch : family.line(u, v))
+                    for (const auto& [i, j] : {std::pair(u, v), std::pair(u + 1, v),
+                                               std::pair(u, v + 1), std::pair(u + 1, v + 1)})
+                        if (!holds(columns.line(i, j), stretch, error)) return false;
+    }
+    return true;
+}
+
+} // namespace core
