@@ -129,6 +129,22 @@ TEST(MotionMeasurement, KnowsHowFarABallIsFromABallItIsTurnedRound) {
     EXPECT_LE(found->upper, found->lower + 0.05 + 1e-12);
 }
 
+TEST(MotionMeasurement, HoldsTheTruthWhereverABallOnAnArmPassesAPost) {
+    Bodies bodies;
+    const MeasuredBody small = bodies.taken(measured_body(Primitive(Sphere{1.0}), 0.7));
+    for (int i = 0; i < 40; ++i) {
+        // The post is 103 mm out, at an angle that the arm of 100 mm passes.
+        const double angle = 0.02 + 0.96 * i / 39.0;
+        const Vec3 post(103.0 * std::cos(angle), 103.0 * std::sin(angle), 0.0);
+        const RigidMotion past = turning_motion(translation(Vec3(100.0, 0.0, 0.0) - post),
+                                                Vec3(-100.0, 0.0, 0.0), Vec3(0, 0, 1), 1.0);
+        const auto found = measure(*bodies.engine, small, small, past, {.tolerance = 1e-3});
+        EXPECT_LE(found->lower, 1.0 + 1e-9);
+        EXPECT_GE(found->upper, 1.0 - 1e-9);
+        EXPECT_LE(found->upper, found->lower + 1e-3 + 1e-9);
+    }
+}
+
 TEST(MotionMeasurement, SeesABarSwingThroughAPost) {
     Bodies bodies;
     // The rod, laid flat, turns about its end; the post's axis is 38 mm out, half a radian on.
