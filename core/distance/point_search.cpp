@@ -60,7 +60,10 @@ public:
     ClosestPair run() {
         if (goal_.first)
             compare_first(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
-        if (near_squared_ == infinity) follow_the_middles();
+        if (near_squared_ == infinity) {
+            if (is_beyond_limit()) return finished();
+            follow_the_middles();
+        }
         start();
         search();
         return finished();
@@ -153,10 +156,21 @@ private:
         const float squared = squared_above(limit + 8.0 * static_cast<double>(a.margin + b.margin));
         const uint32_t rows = ((1U << b.leaf->count) - 1U)
                               & rows_near(b, a_.box(leaves.a / width, leaves.a % width), squared);
-        for_near(a, b, rows, squared, [&](const PointPlace& of_a, const PointPlace& of_b) {
+        for_near(a, b, rows, squared, [&](uint32_t i, uint32_t j) {
+            const PointPlace of_a = place_in(a, i), of_b = place_in(b, j);
             const double apart = glm::distance(of_a.position(), motion_.start * of_b.position());
             if (apart < limit) front.pairs.push_back({apart, of_a, of_b});
         });
+    }
+
+    /// Whether balls round the bodies say that nothing is near.
+    bool is_beyond_limit() const {
+        if (goal_.limit == infinity || motion_.end) return false;
+        const PointTree::Node& a = body_a_.top->nodes[0];
+        const PointTree::Node& b = body_b_.top->nodes[0];
+        const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
+        const double apart = swept_distance(a.origin - motion_.start * b.origin, motion_.sweep);
+        return apart - reach > goal_.limit + 1e-6 * reach + rounding();
     }
 
     // --- the frame ---
@@ -300,11 +314,23 @@ private:
     }
 
     void compare_rows(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit) {
-        for_near(a, b, rows, limit,
-                 [&](const PointPlace& of_a, const PointPlace& of_b) { compare(of_a, of_b); });
+        const Vec3* const of_a = &a.tree->points[a.leaf->first];
+        const Vec3* const of_b = &b.tree->points[b.leaf->first];
+        for_near(a, b, rows, limit, [&](uint32_t i, uint32_t j) {
+            if (!moves_) { // most pairs end here: where faces lie parallel, all are equally near
+                const Vec3 apart = of_a[i] - motion_.start * of_b[j];
+                if (!(glm::dot(apart, apart) < near_squared_)) return;
+            }
+            compare(place_in(a, i), place_in(b, j));
+        });
     }
 
-    /// Calls act(point of A, point of B) for the pairs no farther apart than the limit.
+    static PointPlace place_in(const VisitedLeaf& leaf, uint32_t i) {
+        return {leaf.tree, leaf.leaf, leaf.leaf->first + i};
+    }
+
+    /// Calls act(point of A, point of B), counted in their leaves, for the pairs no farther apart
+    /// than the limit.
     template <typename Act>
     void for_near(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit,
                   const Act& act) {
@@ -319,21 +345,38 @@ private:
             best_.point_tests += a.leaf->count;
             for (uint32_t near = columns[row] & used; near != 0; near &= near - 1) {
                 const auto column = static_cast<uint32_t>(std::countr_zero(near));
-                act(PointPlace{a.tree, a.leaf, a.leaf->first + column},
-                    PointPlace{b.tree, b.leaf, b.leaf->first + row});
+                act(column, row);
             }
         }
     }
 
     /// The exact comparison, in double precision; the same operations as brute force does.
     void compare(const PointPlace& a, const PointPlace& b) {
-        const Vec3 p = a.position();
-        const MovingPoint q = motion_.of(b.position());
+        const Vec3& p = a.position();
+        if (moves_) return compare_paths(a, b, p, motion_.of(b.position()));
+        const Vec3 q = motion_.start * b.position();
+        const Vec3 apart = p - q;
+        const double squared = glm::dot(apart, apart);
+        if (squared < near_squared_) take(a, b, {p, q, 0.0}, apart, squared);
+    }
+
+    void compare_paths(const PointPlace& a, const PointPlace& b, const Vec3& p,
+                       const MovingPoint& q) {
         const Vec3 apart = p - q.at;
-        const double at = moves_ ? nearest_time(apart, q.sweep) : 0.0;
-        const Vec3 then = moves_ ? apart - at * q.sweep : apart;
+        const double at = nearest_time(apart, q.sweep);
+        const Vec3 then = apart - at * q.sweep;
         const double squared = glm::dot(then, then);
-        if (!(squared < near_squared_)) return;
+        if (squared < near_squared_) take(a, b, {p, q.at + at * q.sweep, at}, then, squared);
+    }
+
+    /// Two points where they are nearest, and when.
+    struct Meeting {
+        Vec3 a, b;
+        double at;
+    };
+
+    void take(const PointPlace& a, const PointPlace& b, const Meeting& meeting, const Vec3& then,
+              double squared) {
         near_squared_ = squared;
         near_apart_ = -then;
         near_a_ = a, near_b_ = b;
@@ -341,9 +384,9 @@ private:
         if (!(distance < std::min(best_.distance, goal_.limit))) return;
         best_.distance = distance;
         best_.points = {a.index(), b.index()};
-        best_.witness_a = p;
-        best_.witness_b = q.at + at * q.sweep;
-        best_.at = at;
+        best_.witness_a = meeting.a;
+        best_.witness_b = meeting.b;
+        best_.at = meeting.at;
     }
 
     void compare_first(const PointPlace& a, const PointPlace& b) {
