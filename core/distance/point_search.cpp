@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/distance/lane_kernels.h"
+#include "core/distance/pair_comparison.h"
 #include "core/geom/rigid_motion.h"
 
 namespace core {
@@ -39,16 +40,14 @@ bool nearer(const BoxPair& x, const BoxPair& y) {
     return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-class Search {
+class Search : private PairComparison {
 public:
     Search(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
            const PairGoal& goal, SearchMemory& memory)
-        : kernels_(lane_kernels()),
+        : PairComparison(a_from_b, goal),
+          kernels_(lane_kernels()),
           body_a_(a),
           body_b_(b),
-          motion_(a_from_b, goal),
-          goal_(goal),
-          moves_(motion_.moves()),
           a_(memory.a),
           b_(memory.b),
           stack_(memory.stack),
@@ -59,7 +58,7 @@ public:
 
     ClosestPair run() {
         if (goal_.first)
-            compare_first(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
+            compare(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
         if (near_squared_ == infinity) {
             if (is_beyond_limit()) return finished();
             follow_the_middles();
@@ -103,16 +102,6 @@ public:
     }
 
 private:
-    ClosestPair finished() {
-        best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
-        return best_;
-    }
-
-    bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
-
-    /// Only what is nearer than this is still of interest.
-    double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
-
     /// What double precision may add to the distances of points at two poses: some ten operations.
     double rounding() const {
         const auto reach = [](const PointTreeView& body) {
@@ -317,11 +306,8 @@ private:
         const Vec3* const of_a = &a.tree->points[a.leaf->first];
         const Vec3* const of_b = &b.tree->points[b.leaf->first];
         for_near(a, b, rows, limit, [&](uint32_t i, uint32_t j) {
-            if (!moves_) { // most pairs end here: where faces lie parallel, all are equally near
-                const Vec3 apart = of_a[i] - motion_.start * of_b[j];
-                if (!(glm::dot(apart, apart) < near_squared_)) return;
-            }
-            compare(place_in(a, i), place_in(b, j));
+            // Most pairs end here: where faces lie parallel, all are equally near.
+            if (!is_no_nearer(of_a[i], of_b[j])) compare(place_in(a, i), place_in(b, j));
         });
     }
 
@@ -350,55 +336,9 @@ private:
         }
     }
 
-    /// The exact comparison, in double precision; the same operations as brute force does.
-    void compare(const PointPlace& a, const PointPlace& b) {
-        const Vec3& p = a.position();
-        if (moves_) return compare_paths(a, b, p, motion_.of(b.position()));
-        const Vec3 q = motion_.start * b.position();
-        const Vec3 apart = p - q;
-        const double squared = glm::dot(apart, apart);
-        if (squared < near_squared_) take(a, b, {p, q, 0.0}, apart, squared);
-    }
-
-    void compare_paths(const PointPlace& a, const PointPlace& b, const Vec3& p,
-                       const MovingPoint& q) {
-        const Vec3 apart = p - q.at;
-        const double at = nearest_time(apart, q.sweep);
-        const Vec3 then = apart - at * q.sweep;
-        const double squared = glm::dot(then, then);
-        if (squared < near_squared_) take(a, b, {p, q.at + at * q.sweep, at}, then, squared);
-    }
-
-    /// Two points where they are nearest, and when.
-    struct Meeting {
-        Vec3 a, b;
-        double at;
-    };
-
-    void take(const PointPlace& a, const PointPlace& b, const Meeting& meeting, const Vec3& then,
-              double squared) {
-        near_squared_ = squared;
-        near_apart_ = -then;
-        near_a_ = a, near_b_ = b;
-        const double distance = std::sqrt(squared);
-        if (!(distance < std::min(best_.distance, goal_.limit))) return;
-        best_.distance = distance;
-        best_.points = {a.index(), b.index()};
-        best_.witness_a = meeting.a;
-        best_.witness_b = meeting.b;
-        best_.at = meeting.at;
-    }
-
-    void compare_first(const PointPlace& a, const PointPlace& b) {
-        if (a.leaf != nullptr && b.leaf != nullptr) compare(a, b);
-    }
-
     const LaneKernels& kernels_;
     const PointTreeView& body_a_;
     const PointTreeView& body_b_;
-    const StraightMotion motion_;
-    const PairGoal& goal_;
-    bool moves_;
     bool by_middles_ = false;
     float per_length_ = 0.0F;
     Float3 sweep_{};
@@ -407,12 +347,7 @@ private:
     SearchSide& b_;
     std::vector<BoxPair>& stack_;
     std::vector<BoxPair>& beam_;
-    ClosestPair best_;
     float limit_squared_ = 0.0F;
-    // The nearest pair compared so far, also if beyond the limit.
-    double near_squared_ = infinity;
-    Vec3 near_apart_ = Vec3(0.0);
-    PointPlace near_a_, near_b_;
 };
 
 /// Fills the front after a search, if that will be of use.
