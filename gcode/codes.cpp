@@ -162,7 +162,7 @@ constexpr Code codes[] = {
     {'M', tenths(16), tool_change, "", haas, no_other_change},
     {'M', tenths(19), spindle, "RQPD", mills, {}},
     {'M', tenths(30), stopping, "", every, {}},
-    {'M', tenths(46), subprogram, "PQ", haas, no_jump},
+    {'M', tenths(46), other, "PQ", haas, no_jump},
     {'M', tenths(48), overrides, "", mills, {}},
     {'M', tenths(49), overrides, "", mills, {}},
     {'M', tenths(50), other, "P", haas, no_pallet},
