@@ -37,6 +37,8 @@ struct Dialect {
     bool axis_words_serve_one_code;           // G0 and G28 in one block are refused
     bool unused_words_are_errors;             // a K word where nothing uses it
     bool machine_move_is_rapid;               // G53 needs no G0
+    bool lone_h_is_length_offset;             // H without G43, while a length offset is on
+    bool p_names_more_places;                 // G54 P1, G30 P3
     bool local_offset_is_axis_offset;         // G52 and G92 write the same place
     bool p0_is_active_offset;                 // G10 L2 P0; else the external offset
     bool offset_writes_follow_g91;            // G10 L2 under G91 adds
