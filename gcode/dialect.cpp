@@ -42,6 +42,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .axis_words_serve_one_code = true,
                               .unused_words_are_errors = true,
                               .machine_move_is_rapid = false,
+                              .machine_move_needs_g90 = false,
                               .lone_h_is_length_offset = false,
                               .p_names_more_places = false,
                               .local_offset_is_axis_offset = true,
@@ -68,6 +69,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .axis_words_serve_one_code = false,
                            .unused_words_are_errors = false,
                            .machine_move_is_rapid = true,
+                           .machine_move_needs_g90 = true,
                            .lone_h_is_length_offset = true,
                            .p_names_more_places = true,
                            .local_offset_is_axis_offset = false,
@@ -84,6 +86,8 @@ constexpr Dialect haas = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::haas;
     entry.name = "haas";
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
     entry.repeats_with_k = false;
     return entry;
 }();

@@ -114,11 +114,23 @@ TEST(Offsets, ThePThatMakesG54AnotherOffsetIsRefused) {
 TEST(Offsets, G53MovesInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_EQ(in_shop("G43 H1\nG53 G0 Z-10"), "use_tool_length_offset number=1 length=95\n"
                                               "straight_traverse x=350 y=200 z=315\n");
-    // Under G91 as well.
-    EXPECT_EQ(in_shop("G91 G53 G0 X-350"), "straight_traverse x=0 y=200 z=420\n");
+    // Under G91 as well, except that Fanuc controls pass it over there.
+    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::haas})
+        EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", dialect), "straight_traverse x=0 y=200 z=420\n");
+    EXPECT_THAT(error_of("G91 G53 G0 X-350", DialectId::fanuc), HasSubstr("1:5: G53 under G91"));
     EXPECT_EQ(error_of("G53 X1", DialectId::linuxcnc), "1:1: G53 needs G0 or G1");
     EXPECT_EQ(error_of("G53 X1", DialectId::fanuc), "");
     EXPECT_EQ(error_of("G2 X10 I5 F100\nG53 X1", DialectId::linuxcnc), "2:1: G53 needs G0 or G1");
+}
+
+TEST(Offsets, G53IsAlwaysARapidInFanucAndFollowsTheMotionCodeElsewhere) {
+    const std::string text = "G21\nG1 X1 F100\nG53 X50";
+    EXPECT_THAT(trace(text, DialectId::fanuc), HasSubstr("straight_traverse x=50 y=0 z=0\n"));
+    EXPECT_THAT(trace("G2 X10 I5 F100\nG53 X50", DialectId::fanuc),
+                HasSubstr("straight_traverse x=50 y=0 z=0\n"));
+    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::haas})
+        EXPECT_THAT(trace(text, dialect), HasSubstr("straight_feed x=50 y=0 z=0 feed=100\n"));
+    EXPECT_EQ(error_of("G53 X1", DialectId::haas), "1:1: G53 needs G0 or G1");
 }
 
 TEST(LengthOffset, ComesFromTheTableElseFromTheTool) {
