@@ -93,17 +93,22 @@ TEST(RapidThroughTheStock, IsClearAboveIt) {
 }
 
 TEST(RapidThroughTheStock, IsACollisionForAPointAndForATinyTool) {
-    const std::string shank = "shank = [[6, 6, 40]]\n";
-    const std::pair<const char*, const char*> tools[] = {
-        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 5\nflute_length = 20\n", "-0.3"},
-        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 15\nflute_length = 10\n", "-0.12"},
-        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 30\nflute_length = 5\n", "-0.08"},
-        {"shape = \"flat\"\ndiameter = 0.1\nflute_length = 5\n", "-1."},
-        {"shape = \"flat\"\ndiameter = 0.05\nflute_length = 5\n", "-1."},
+    const std::pair<std::string, std::string> tools[] = {
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 5\nflute_length = 20\nshank = [[6, 6, "
+         "75]]\n",
+         "-0.3"},
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 15\nflute_length = 10\nshank = [[6, 6, "
+         "85]]\n",
+         "-0.12"},
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 30\nflute_length = 5\nshank = [[6, 6, "
+         "90]]\n",
+         "-0.08"},
+        {"shape = \"flat\"\ndiameter = 0.1\nflute_length = 5\nshank = [[6, 6, 90]]\n", "-1."},
+        {"shape = \"flat\"\ndiameter = 0.05\nflute_length = 5\nshank = [[6, 6, 90]]\n", "-1."},
     };
     for (const auto& [tool, depth] : tools) {
-        const SetupWriter setup = SetupWriter().tool("number = 1\n" + std::string(tool) + shank);
-        const std::string z = "Z" + std::string(depth);
+        const SetupWriter setup = SetupWriter().tool("number = 1\n" + tool);
+        const std::string z = "Z" + depth;
         const Checked rapid = check(setup, program({"G0 X-20. Y50.", z, "X120.", "Z60."}));
         EXPECT_EQ(rapid.verdict, "collision") << tool;
         EXPECT_EQ(rapid.errors(), "rapid-in-stock 8") << tool;
@@ -183,12 +188,12 @@ TEST(ShankInTheStock, CollidesWhereTheFlutesAreShorterThanTheCut) {
 
 TEST(ShankInTheStock, CollidesAboveARoundToolOfShortFlutes) {
     // At Z-8 the flutes end at Z-1 or Z-1.5; above them stands a shank that is wider than the slot.
-    const std::string upwards = "shank = [[24, 24, 30]]\nholder = [[40, 40, 50]]\n";
     for (const char* tool :
-         {"shape = \"ball\"\ndiameter = 12\nflute_length = 7\n",
-          "shape = \"bull\"\ndiameter = 20\ncorner_radius = 6\nflute_length = 6.5\n"}) {
+         {"shape = \"ball\"\ndiameter = 12\nflute_length = 7\nshank = [[24, 24, 88]]\n",
+          "shape = \"bull\"\ndiameter = 20\ncorner_radius = 6\nflute_length = 6.5\n"
+          "shank = [[24, 24, 88.5]]\n"}) {
         const Checked checked =
-            check(SetupWriter().tool("number = 1\n" + (tool + upwards)),
+            check(SetupWriter().tool("number = 1\n" + std::string(tool)),
                   program({"G0 X-20. Y50.", "Z-8.", "G1 X120. F800.", "G0 Z60."}));
         EXPECT_EQ(checked.verdict, "collision") << tool;
         EXPECT_EQ(checked.errors(), "collision 8") << tool;
