@@ -3,6 +3,8 @@
 #include <cmath>
 #include <deque>
 
+#include <fmt/format.h>
+
 #include "core/distance/point_search.h"
 #include "core/distance/sphere_search.h"
 
@@ -10,6 +12,7 @@ namespace core {
 namespace {
 
 constexpr double farthest = 1e12; // mm, as for points
+constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
 constexpr double rigid_to = 1e-9; // how far the columns may be from unit length and right angles
 
 bool is_rigid(const Transform& t) {
@@ -22,17 +25,10 @@ bool is_near(const Vec3& v) { return glm::length(v) <= farthest; }
 template <typename Tree, Result<Tree> build(std::span<const Vec3>)>
 class TreeEngine final : public DistanceEngine {
 public:
-    explicit TreeEngine(std::string_view name) : name_(name) {}
+    TreeEngine(std::string_view name, double bytes_per_point)
+        : name_(name), bytes_(bytes_per_point) {}
 
     std::string_view name() const override { return name_; }
-
-    Result<PointBody> add(std::span<const Vec3> points) override {
-        FEELER_TRY(Tree tree, build(points));
-        Aabb box;
-        for (const Vec3& p : points) box.extend(p);
-        bodies_.push_back({std::move(tree), box});
-        return PointBody(bodies_.size() - 1);
-    }
 
     Aabb box_of(PointBody body) const override {
         const auto i = static_cast<size_t>(body);
@@ -44,6 +40,16 @@ private:
         Tree tree;
         Aabb box;
     };
+
+    double bytes_per_point() const override { return bytes_; }
+
+    Result<PointBody> take_in(std::span<const Vec3> points) override {
+        FEELER_TRY(Tree tree, build(points));
+        Aabb box;
+        for (const Vec3& p : points) box.extend(p);
+        bodies_.push_back({std::move(tree), box});
+        return PointBody(bodies_.size() - 1);
+    }
 
     const Tree& tree(PointBody body) const { return bodies_[static_cast<size_t>(body)].tree; }
 
@@ -81,12 +87,24 @@ private:
     static size_t point_count(const PointTree& tree) { return tree.points.size(); }
 
     std::string_view name_;
+    double bytes_;
     std::deque<Body> bodies_; // stay where they are
 };
 
 Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_tree(points); }
 
 } // namespace
+
+Result<PointBody> DistanceEngine::add(std::span<const Vec3> points, double memory_limit) {
+    const double needed = bytes_per_point() * static_cast<double>(points.size());
+    if (needed > memory_limit)
+        return fail(
+            ErrorCode::invalid_value,
+            fmt::format("a body of {} points would take {:.1f} GiB of memory, more than the "
+                        "{:.1f} GiB that are allowed; a larger mesh size makes fewer points",
+                        points.size(), needed / gibibyte, memory_limit / gibibyte));
+    return take_in(points);
+}
 
 Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_from_b,
                                    const PairGoal& goal) const {
@@ -131,11 +149,11 @@ Result<ClosestPair> DistanceEngine::pair_at(PointBody a, PointBody b, const Poin
 }
 
 std::unique_ptr<DistanceEngine> paper_engine() {
-    return std::make_unique<TreeEngine<SphereTree, sphere_tree>>("paper");
+    return std::make_unique<TreeEngine<SphereTree, sphere_tree>>("paper", 90.0);
 }
 
 std::unique_ptr<DistanceEngine> fast_engine() {
-    return std::make_unique<TreeEngine<PointTree, whole_point_tree>>("fast");
+    return std::make_unique<TreeEngine<PointTree, whole_point_tree>>("fast", 100.0);
 }
 
 } // namespace core

@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/base/transform.h"
+#include "core/dbm/dbm.h"
 #include "core/distance/closest_pair.h"
 
 namespace core {
@@ -26,9 +27,9 @@ public:
 
     /// Takes in a body.
     ///
-    /// Errors: no points; a coordinate that is not finite or beyond 1e12 mm; too many points, or
-    ///         more than fit into memory (what it would need is said, and not tried).
-    virtual Result<PointBody> add(std::span<const Vec3> points) = 0;
+    /// Errors: no points; a coordinate that is not finite or beyond 1e12 mm; more points than fit
+    ///         into `memory_limit` bytes: it says what they would take, and nothing is tried.
+    Result<PointBody> add(std::span<const Vec3> points, double memory_limit = default_memory_limit);
 
     /// The closest pair of points of two bodies. A memory that was used for the same two before,
     /// and for no others, saves time when B has moved little since (see PairTracker).
@@ -54,6 +55,8 @@ public:
     virtual Aabb box_of(PointBody body) const = 0;
 
 private:
+    virtual Result<PointBody> take_in(std::span<const Vec3> points) = 0;
+    virtual double bytes_per_point() const = 0;
     virtual size_t points_of(PointBody body) const = 0; // 0: no such body
     virtual Vec3 position(PointBody body, uint64_t point) const = 0;
     virtual ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,

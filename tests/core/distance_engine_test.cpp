@@ -321,6 +321,15 @@ TEST_P(AnyEngine, RefusesWhatIsNoBody) {
     }
 }
 
+TEST_P(AnyEngine, SaysWhatMemoryABodyWouldTakeBeforeItTakesAny) {
+    const Points block = block_of_points(100, 100, 10);
+    const auto refused = engine->add(block, 1e6);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("100000 points would take"), std::string::npos);
+    EXPECT_TRUE(engine->box_of(PointBody(0)).empty());
+    EXPECT_TRUE(engine->add(block, 2e7));
+}
+
 TEST_P(AnyEngine, RefusesWhatIsNoQuestion) {
     const PointBody body = add(block_of_points(2, 2, 2));
     const auto message = [&](const Transform& pose, const PairGoal& goal, PointBody other) {
