@@ -1,3 +1,4 @@
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -154,12 +155,26 @@ TEST(PairTracker, KnowsHowFarBHasMovedAtMost) {
     EXPECT_NEAR(fullest, 1.0, 1e-12);
 }
 
+/// The squares of such lengths have lost most of their digits.
+TEST(PairTracker, BoundsDistancesWhoseSquaresUnderflow) {
+    const auto engine = fast_engine();
+    const PointBody one = engine->add(Points{Vec3(0.0)}).value();
+    PairTracker tracker(*engine, one, one);
+    for (int i = 0; i < 200; ++i) {
+        const Transform pose = translation({(3.0 + 0.01 * i) * 1e-162, 1e-162, 0.0});
+        const double exact = engine->closest_pair(one, one, pose)->distance;
+        EXPECT_LE(tracker.lower_bound(pose), exact);
+        EXPECT_EQ(tracker.closest_pair(pose)->distance, exact);
+    }
+}
+
 TEST(PairTracker, PassesOnWhatIsWrong) {
     const auto engine = fast_engine();
     const PointBody one = engine->add(Points{Vec3(0.0)}).value();
     PairTracker tracker(*engine, one, one), nobody(*engine, one, PointBody(5));
     EXPECT_FALSE(tracker.closest_pair({Mat3(2.0), Vec3(0.0)}));
     EXPECT_FALSE(tracker.is_nearer({Mat3(2.0), Vec3(0.0)}, 1.0));
+    EXPECT_FALSE(tracker.is_nearer({}, std::nan("")));
     EXPECT_FALSE(nobody.closest_pair({}));
     EXPECT_FALSE(nobody.is_nearer({}, 1.0));
 }
