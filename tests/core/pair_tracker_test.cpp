@@ -159,12 +159,13 @@ TEST(PairTracker, KnowsHowFarBHasMovedAtMost) {
 TEST(PairTracker, BoundsDistancesWhoseSquaresUnderflow) {
     const auto engine = fast_engine();
     const PointBody one = engine->add(Points{Vec3(0.0)}).value();
-    PairTracker tracker(*engine, one, one);
+    const auto pose = [](double tiny) { return translation(tiny * Vec3(1.0, 0.7, 0.3)); };
+    const double exact = engine->closest_pair(one, one, pose(3e-161))->distance;
     for (int i = 0; i < 200; ++i) {
-        const Transform pose = translation({(3.0 + 0.01 * i) * 1e-162, 1e-162, 0.0});
-        const double exact = engine->closest_pair(one, one, pose)->distance;
-        EXPECT_LE(tracker.lower_bound(pose), exact);
-        EXPECT_EQ(tracker.closest_pair(pose)->distance, exact);
+        PairTracker tracker(*engine, one, one);
+        ASSERT_TRUE(tracker.closest_pair(pose((30.0 + 0.3 * i) * 1e-162)));
+        EXPECT_LE(tracker.lower_bound(pose(3e-161)), exact);
+        EXPECT_EQ(tracker.closest_pair(pose(3e-161))->distance, exact);
     }
 }
 
