@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
     app::add_check(cli, exit_code);
     app::add_trace(cli, exit_code);
     app::add_distance(cli, exit_code);
+    app::add_bench(cli, exit_code);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

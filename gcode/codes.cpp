@@ -27,7 +27,18 @@ constexpr std::string_view no_lathe = "turning is not supported yet";
 constexpr std::string_view no_rotation =
     "rotated, scaled and polar coordinates are not supported yet";
 constexpr std::string_view no_macro = "macro calls are not supported yet";
-constexpr std::string_view no_subprogram = "subprograms are not supported yet";
+constexpr std::string_view no_subprogram =
+    "subprograms are not supported yet: write their blocks where they are called";
+constexpr std::string_view no_jump =
+    "jumps are not supported yet: write the blocks in the order they are run";
+constexpr std::string_view no_saved_modes =
+    "saved and restored modes are not supported yet: write the codes out";
+constexpr std::string_view no_tool_naming =
+    "naming the tool in the spindle is not supported yet: change it with T and M6";
+constexpr std::string_view no_other_change =
+    "this way to change a tool is not supported yet: write M6";
+constexpr std::string_view no_pallet =
+    "pallets are not supported yet: check the program of each pallet on its own";
 constexpr std::string_view no_five_axes = "motion of rotary axes is not supported yet";
 constexpr std::string_view no_surface_speed = "constant surface speed is not supported yet";
 constexpr std::string_view no_more_offsets = "extended work offsets are not supported yet";
@@ -148,14 +159,24 @@ constexpr Code codes[] = {
     {'M', tenths(7), coolant, "", every, {}},
     {'M', tenths(8), coolant, "", every, {}},
     {'M', tenths(9), coolant, "", every, {}},
+    {'M', tenths(16), tool_change, "", haas, no_other_change},
     {'M', tenths(19), spindle, "RQPD", mills, {}},
     {'M', tenths(30), stopping, "", every, {}},
+    {'M', tenths(46), other, "PQ", haas, no_jump},
     {'M', tenths(48), overrides, "", mills, {}},
     {'M', tenths(49), overrides, "", mills, {}},
+    {'M', tenths(50), other, "P", haas, no_pallet},
     {'M', tenths(60), stopping, "", linuxcnc, {}},
+    {'M', tenths(61), tool_change, "Q", linuxcnc, no_tool_naming},
+    {'M', tenths(70), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(71), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(72), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(73), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(96), subprogram, "PQ", haas, no_jump},
     {'M', tenths(97), subprogram, "PL", haas, no_subprogram},
     {'M', tenths(98), subprogram, "PLQ", mills, no_subprogram},
     {'M', tenths(99), subprogram, "P", mills, {}},
+    {'M', tenths(198), subprogram, "PLQ", fanuc, no_subprogram},
 };
 
 constexpr bool before(const Code& a, const Code& b) {

@@ -109,7 +109,8 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
         return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;
-    if (modal.retract == RetractMode::r_level || (clear && *clear < r)) clear = r;
+    const bool too_low = execution.dialect.cycle_stays_above_r && clear && *clear < r;
+    if (modal.retract == RetractMode::r_level || too_low) clear = r;
     FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
     return Drilling{execution,
                     cycle,
@@ -127,7 +128,8 @@ void peck(Drilling& hole, bool out_of_the_hole) {
     const double back = hole.execution.dialect.peck_clearance;
     for (double depth = hole.r - *hole.cycle.peck; depth > hole.bottom; depth -= *hole.cycle.peck) {
         hole.feed(depth);
-        if (out_of_the_hole) hole.traverse(hole.clear);
+        const bool too_low = hole.clear && *hole.clear < hole.r;
+        if (out_of_the_hole) hole.traverse(too_low ? hole.r : hole.clear);
         hole.traverse(std::min(depth + back, hole.r));
     }
     hole.feed(hole.bottom);
@@ -220,8 +222,10 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     if (repeats == 0) return {};
     FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
 
-    // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R.
-    if (modal.position[normal] && *modal.position[normal] < hole.r) hole.traverse(hole.r);
+    // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R. Elsewhere the way to the
+    // hole is made at the level the axis has.
+    const bool is_low = modal.position[normal] && *modal.position[normal] < hole.r;
+    if (is_low && execution.dialect.cycle_stays_above_r) hole.traverse(hole.r);
     const Position step = modal.distance == DistanceMode::incremental
                               ? step_between(modal.position, target)
                               : zero_position;

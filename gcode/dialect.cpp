@@ -42,11 +42,15 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .axis_words_serve_one_code = true,
                               .unused_words_are_errors = true,
                               .machine_move_is_rapid = false,
+                              .machine_move_needs_g90 = false,
+                              .lone_h_is_length_offset = false,
+                              .p_names_more_places = false,
                               .local_offset_is_axis_offset = true,
                               .p0_is_active_offset = true,
                               .offset_writes_follow_g91 = false,
                               .feed_before_units = true,
                               .g98_cycle_starts_high = true,
+                              .cycle_stays_above_r = true,
                               .repeats_with_k = false,
                               .tape_mark_ends_program = true,
                               .repeated_codes_are_errors = true};
@@ -65,11 +69,15 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .axis_words_serve_one_code = false,
                            .unused_words_are_errors = false,
                            .machine_move_is_rapid = true,
+                           .machine_move_needs_g90 = true,
+                           .lone_h_is_length_offset = true,
+                           .p_names_more_places = true,
                            .local_offset_is_axis_offset = false,
                            .p0_is_active_offset = false,
                            .offset_writes_follow_g91 = true,
                            .feed_before_units = false,
                            .g98_cycle_starts_high = false,
+                           .cycle_stays_above_r = false,
                            .repeats_with_k = true,
                            .tape_mark_ends_program = false,
                            .repeated_codes_are_errors = false};
@@ -78,6 +86,8 @@ constexpr Dialect haas = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::haas;
     entry.name = "haas";
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
     entry.repeats_with_k = false;
     return entry;
 }();

@@ -36,12 +36,16 @@ struct Dialect {
     bool cycles_are_motions;                  // G80-G89 share a modal group with G0-G3
     bool axis_words_serve_one_code;           // G0 and G28 in one block are refused
     bool unused_words_are_errors;             // a K word where nothing uses it
-    bool machine_move_is_rapid;               // G53 needs no G0
+    bool machine_move_is_rapid;               // G53 under any motion code, G1 as well
+    bool machine_move_needs_g90;              // G53 under G91 is not as under G90
+    bool lone_h_is_length_offset;             // H without G43, while a length offset is on
+    bool p_names_more_places;                 // G54 P1, G30 P3
     bool local_offset_is_axis_offset;         // G52 and G92 write the same place
     bool p0_is_active_offset;                 // G10 L2 P0; else the external offset
     bool offset_writes_follow_g91;            // G10 L2 under G91 adds
     bool feed_before_units;                   // F is read in the units of the blocks before
     bool g98_cycle_starts_high;     // under G98 the way to the hole climbs to the initial level
+    bool cycle_stays_above_r;       // from below R a cycle first climbs to R, and G98 ends there
     bool repeats_with_k;            // K repeats a canned cycle, as L does
     bool tape_mark_ends_program;    // a second % is as good as M2
     bool repeated_codes_are_errors; // the same G code twice in a block

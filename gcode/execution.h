@@ -36,6 +36,9 @@ const Word& moving_word(const Execution& execution);
 /// The length a word gives, in mm.
 double length_of(const Execution& execution, const Word& word);
 
+/// Whether the block's H word stands without G43 and changes the length offset that is on.
+bool changes_length_alone(const Execution& execution);
+
 /// Where the axis words lead, axis by axis, in program coordinates.
 ///
 /// Errors: unsupported when a rotary axis would turn.
@@ -62,7 +65,7 @@ core::Result<void> set_coolant(Execution& execution);       // M7 M8 M9
 core::Result<void> dwell(Execution& execution);             // G4
 core::Result<void> select_plane(Execution& execution);      // G17 G18 G19
 core::Result<void> set_units(Execution& execution);         // G20 G21
-core::Result<void> set_tool_length(Execution& execution);   // G43 G43.1 G44 G49
+core::Result<void> set_tool_length(Execution& execution);   // G43 G43.1 G44 G49, H
 core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);  // G98 G99

@@ -70,6 +70,7 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
     std::optional<core::OffsetNumber> length_number;
+    double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
     Offsets offsets;
 
     bool operator==(const ModalState&) const = default;

@@ -113,12 +113,17 @@ core::Result<void> refuse_without_mode(const Execution& execution) {
     return {};
 }
 
-/// RS274/NGC 3.5.14: G53 is for this block, and goes with G0 and G1 only.
+/// RS274/NGC 3.5.14: G53 is for this block, and goes with G0 and G1 only. On Fanuc controls it is a
+/// rapid whatever the motion code, and under G91 it is passed over.
 core::Result<void> move_to_machine_place(Execution& execution) {
     ModalState& modal = execution.modal();
     const CodeWord* action = execution.statement.of(ModalGroup::action);
-    if (execution.dialect.machine_move_is_rapid && modal.motion != MotionMode::feed)
-        return move_straight(execution, true);
+    const bool incremental = modal.distance == DistanceMode::incremental;
+    if (execution.dialect.machine_move_needs_g90 && incremental)
+        return core::fail(ErrorCode::unsupported,
+                          "G53 under G91 is not the same on all controls of this kind: say G90",
+                          action->word->span);
+    if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
     const bool straight = modal.motion == MotionMode::traverse || modal.motion == MotionMode::feed;
     if (modal.cycle || !straight)
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);

@@ -23,12 +23,38 @@ const CodeWord* rival_of(const Statement& statement, const Code& code, const Dia
     return is_cycle(code) ? statement.of(ModalGroup::motion) : nullptr;
 }
 
+/// Whether a control of another kind calls a subprogram, jumps or returns with this word.
+bool goes_elsewhere(const Word& word) {
+    for (const DialectId id :
+         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
+        if (const Code* code = find_code(word.letter, word.value, id))
+            if (code->group == ModalGroup::subprogram) return true;
+    return false;
+}
+
+/// An M code that the table does not have is passed over, unless the order of the blocks may hang
+/// on it or no control can read it.
+core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
+                                      const Dialect& dialect) {
+    if (word.value < 0.0 || std::abs(word.value - std::round(word.value)) > 1e-6)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: an M code is a whole number, not negative; take it out "
+                                      "or correct it",
+                                      written(word)),
+                          word.span);
+    if (goes_elsewhere(word))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: other controls jump or call with it, the dialect {} has "
+                                      "no such code; take it out or name the program's dialect",
+                                      written(word), dialect.name),
+                          word.span);
+    statement.unknown_m_codes.push_back(&word);
+    return {};
+}
+
 core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect) {
     const Code* code = find_code(word.letter, word.value, dialect.id);
-    if (!code && word.letter == 'M') {
-        statement.unknown_m_codes.push_back(&word);
-        return {};
-    }
+    if (!code && word.letter == 'M') return add_unknown_m_code(statement, word, dialect);
     if (!code)
         return core::fail(
             ErrorCode::unsupported,

@@ -32,8 +32,9 @@ struct Statement {
 
 /// What a block's words mean in a dialect.
 ///
-/// Errors: unsupported for a G code the dialect or this version does not have; syntax for two codes
-///         of one modal group.
+/// Errors: unsupported for a G code the dialect or this version does not have, and for an M code
+///         that moves the machine, changes its state or jumps; syntax for two codes of one modal
+///         group.
 core::Result<Statement> statement_from_block(const Block& block, const Dialect& dialect);
 
 /// The word as a person would write it, such as X10.5.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
@@ -39,13 +41,14 @@ core::Result<std::optional<int>> length_number(const Execution& execution) {
     return modal.length_number ? std::optional(value_of(*modal.length_number)) : std::nullopt;
 }
 
-core::Result<void> use_table_length(Execution& execution, const CodeWord& entry, double sign) {
+core::Result<void> use_table_length(Execution& execution, const Word& word, double sign) {
     FEELER_TRY(const std::optional<int> number, length_number(execution));
-    const core::SourceSpan where = entry.word->span;
+    execution.modal().length_sign = sign;
+    const core::SourceSpan where = word.span;
     if (!number) {
         execution.warn(where, fmt::format("{} has no H word and no tool to take it from: no length "
                                           "offset is applied",
-                                          written(*entry.word)));
+                                          written(word)));
         use_length(execution, std::nullopt, 0.0);
         return {};
     }
@@ -54,7 +57,7 @@ core::Result<void> use_table_length(Execution& execution, const CodeWord& entry,
     if (!length)
         execution.warn(where, fmt::format("{}: nothing is known about length offset H{}, taken as "
                                           "0",
-                                          written(*entry.word), *number));
+                                          written(word), *number));
     use_length(execution, OffsetNumber(*number), sign * length.value_or(0.0));
     return {};
 }
@@ -74,6 +77,14 @@ core::Result<void> use_given_length(Execution& execution) {
 }
 
 } // namespace
+
+bool changes_length_alone(const Execution& execution) {
+    const auto uses = [](const CodeWord& entry) { return entry.code->uses('H'); };
+    const std::vector<CodeWord>& codes = execution.statement.codes;
+    return execution.dialect.lone_h_is_length_offset && execution.modal().length_sign != 0.0
+           && execution.statement.word('H') && !execution.statement.of(ModalGroup::tool_length)
+           && std::none_of(codes.begin(), codes.end(), uses);
+}
 
 core::Result<void> select_tool(Execution& execution) {
     const Word* word = execution.statement.word('T');
@@ -105,15 +116,20 @@ core::Result<void> change_tool(Execution& execution) {
 
 core::Result<void> set_tool_length(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
+    ModalState& modal = execution.modal();
+    if (!entry && changes_length_alone(execution))
+        return use_table_length(execution, *execution.statement.word('H'), modal.length_sign);
     if (!entry) return {};
     switch (entry->code->tenths) {
     case tenths(43):
-        return use_table_length(execution, *entry, +1.0);
+        return use_table_length(execution, *entry->word, +1.0);
     case tenths(44):
-        return use_table_length(execution, *entry, -1.0);
+        return use_table_length(execution, *entry->word, -1.0);
     case tenths(43, 1):
+        modal.length_sign = 0.0;
         return use_given_length(execution);
     default:
+        modal.length_sign = 0.0;
         use_length(execution, std::nullopt, 0.0);
         return {}; // G49
     }

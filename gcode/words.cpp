@@ -20,9 +20,43 @@ const Code* going_on(const Execution& execution) {
     return nullptr;
 }
 
+/// G30 P2, the place that G30 means by itself.
+bool names_second_home(const Execution& execution) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const Word* place = execution.statement.word('P');
+    return execution.dialect.p_names_more_places && action && action->code->tenths == tenths(30)
+           && place && place->value == 2.0;
+}
+
+/// A P that makes G54 another offset, or G30 another place.
+core::Result<void> refuse_more_places(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const Word* place = statement.word('P');
+    if (!place || !execution.dialect.p_names_more_places) return {};
+    const CodeWord* action = statement.of(ModalGroup::action);
+    if (action && action->code->tenths == tenths(30) && !names_second_home(execution))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: G30 knows the second reference position only: go to "
+                                      "another one with G53",
+                                      written(*place)),
+                          place->span);
+    const CodeWord* offset = statement.of(ModalGroup::work_offset);
+    const auto uses = [](const CodeWord& entry) { return entry.code->uses('P'); };
+    if (offset && offset->code->tenths == tenths(54)
+        && std::none_of(statement.codes.begin(), statement.codes.end(), uses))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: G54 with P is an extended work offset, these are not "
+                                      "supported yet: use G54 to G59",
+                                      written(*place)),
+                          place->span);
+    return {};
+}
+
 bool is_used(const Execution& execution, char letter) {
     const Statement& statement = execution.statement;
     if (!statement.unknown_m_codes.empty()) return true;
+    if (letter == 'H' && changes_length_alone(execution)) return true;
+    if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
     if (std::any_of(statement.codes.begin(), statement.codes.end(), uses)) return true;
     if (statement.of(ModalGroup::motion) || statement.of(ModalGroup::cycle)) return false;
@@ -46,6 +80,7 @@ double length_of(const Execution& execution, const Word& word) {
 }
 
 core::Result<void> check_words(Execution& execution) {
+    if (auto checked = refuse_more_places(execution); !checked) return checked;
     for (const Word* word : execution.statement.unknown_m_codes)
         execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
                                                "builder; it is passed over",

@@ -15,5 +15,6 @@ enum class ExitCode : int {
 void add_check(CLI::App& cli, ExitCode& exit_code);
 void add_trace(CLI::App& cli, ExitCode& exit_code);
 void add_distance(CLI::App& cli, ExitCode& exit_code);
+void add_bench(CLI::App& cli, ExitCode& exit_code);
 
 } // namespace app

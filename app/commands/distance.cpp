@@ -15,7 +15,7 @@ namespace {
 struct Options {
     std::string a, b, output;
     std::string format = "text";
-    std::string engine = "paper";
+    std::string engine = "fast";
     double mesh_size = 0.5;
     std::vector<double> move = {0, 0, 0}, rotate = {0, 0, 0}, sweep = {0, 0, 0};
 };
@@ -27,12 +27,15 @@ core::Result<std::string> answer(const Options& options) {
     FEELER_TRY(const NamedBody b, body_argument(options.b));
     const core::Transform a_from_b{core::rotation_xyz_deg(vector(options.rotate)),
                                    vector(options.move)};
+    const core::Vec3 sweep = vector(options.sweep);
+    const auto engine = options.engine == "paper" ? core::paper_engine() : core::fast_engine();
     FEELER_TRY(const BodyPairDistance found,
-               measure(a.body, b.body, a_from_b, vector(options.sweep), options.mesh_size));
+               measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine));
     for (const NamedBody* body : {&a, &b})
         for (const std::string& repair : body->repairs)
             fmt::print(stderr, "{}: {}\n", body->name, repair);
-    return options.format == "json" ? json_distance(found) : text_distance(found, a.name, b.name);
+    if (options.format == "json") return json_distance(found);
+    return text_distance(found, a.name, b.name, sweep != core::Vec3(0.0));
 }
 
 ExitCode distance(const Options& options) {
@@ -70,8 +73,10 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
                "RX,RY,RZ: turns B about its origin before it is moved, degrees, fixed axes");
     add_vector(command, "--sweep", options->sweep,
                "X,Y,Z: moves B on by this, the least distance on the way counts, mm");
-    command.add_option("--engine", options->engine, "paper: the search of the paper")
-        ->check(CLI::IsMember({"paper"}))
+    command
+        .add_option("--engine", options->engine,
+                    "fast, or paper: the search of the paper; both find the same distance")
+        ->check(CLI::IsMember({"fast", "paper"}))
         ->capture_default_str();
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))

@@ -2,10 +2,7 @@
 
 #include <chrono>
 
-#include <fmt/format.h>
-
 #include "core/dbm/mesh_scan.h"
-#include "core/distance/sphere_search.h"
 
 namespace app {
 namespace {
@@ -18,18 +15,8 @@ double rounding(const core::Aabb& box) {
     return 1e-9 * std::max(1.0, std::max({farthest.x, farthest.y, farthest.z}) / 2000.0);
 }
 
-constexpr double most_poses = 10'000.0;
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-core::Result<std::vector<core::Vec3>> points_of(const MeasuredBody& body, double mesh_size) {
-    const auto scanned = std::holds_alternative<core::Primitive>(body)
-                             ? core::scan(std::get<core::Primitive>(body), mesh_size)
-                             : core::scan(*std::get<core::SolidMesh>(body).mesh, mesh_size);
-    if (!scanned) return tl::unexpected(scanned.error());
-    return core::boundary_points(*scanned);
 }
 
 core::ExactBody exact(const MeasuredBody& body) {
@@ -44,29 +31,34 @@ core::ExactBody exact(const MeasuredBody& body) {
         core::ProfileElement{-0.5 * c.height, c.radius, 0.5 * c.height, c.radius, 0.0});
 }
 
-/// The paper's answer, at poses along the sweep.
-void search_points(const core::SphereTree& a, const core::SphereTree& b,
-                   const core::Transform& a_from_b, const core::Vec3& sweep, double mesh_size,
-                   BodyPairDistance& found) {
-    const auto steps = static_cast<size_t>(std::ceil(glm::length(sweep) / mesh_size));
-    found.poses = steps + 1;
-    found.distance = core::infinity;
-    for (size_t i = 0; i <= steps; ++i) {
-        const double share = steps ? static_cast<double>(i) / static_cast<double>(steps) : 0.0;
-        const core::ClosestPair pair =
-            core::closest_pair(a, b, core::translation(share * sweep) * a_from_b);
-        found.distance = std::min(found.distance, pair.distance);
-        found.sphere_tests += pair.node_tests;
-        found.point_tests += pair.point_tests;
-    }
+void find_points(const core::ClosestPair& pair, BodyPairDistance& found) {
+    found.distance = pair.distance;
+    found.node_tests = pair.node_tests;
+    found.point_tests = pair.point_tests;
+}
+
+void find_bounds(const core::Separation& bounds, double slack, BodyPairDistance& found) {
+    found.lower = std::max(0.0, bounds.lower - slack);
+    found.upper = bounds.upper > 0.0 ? bounds.upper + slack : 0.0;
+    found.on_a = bounds.point_a;
+    found.on_b = bounds.point_b;
+    found.at = bounds.time_a;
 }
 
 } // namespace
 
+core::Result<std::vector<core::Vec3>> points_of(const MeasuredBody& body, double mesh_size) {
+    const auto scanned = std::holds_alternative<core::Primitive>(body)
+                             ? core::scan(std::get<core::Primitive>(body), mesh_size)
+                             : core::scan(*std::get<core::SolidMesh>(body).mesh, mesh_size);
+    if (!scanned) return tl::unexpected(scanned.error());
+    return core::boundary_points(*scanned);
+}
+
 core::Result<BodyPairDistance> measure(const MeasuredBody& a, const MeasuredBody& b,
                                        const core::Transform& a_from_b, const core::Vec3& sweep,
-                                       double mesh_size) {
-    BodyPairDistance found;
+                                       double mesh_size, core::DistanceEngine& engine) {
+    BodyPairDistance found{.engine = std::string(engine.name())};
     Clock::time_point start = Clock::now();
     FEELER_TRY(const auto points_a, points_of(a, mesh_size));
     FEELER_TRY(const auto points_b, points_of(b, mesh_size));
@@ -75,28 +67,22 @@ core::Result<BodyPairDistance> measure(const MeasuredBody& a, const MeasuredBody
     found.model_seconds = seconds_since(start);
 
     start = Clock::now();
-    FEELER_TRY(const core::SphereTree tree_a, core::sphere_tree(points_a));
-    FEELER_TRY(const core::SphereTree tree_b, core::sphere_tree(points_b));
+    FEELER_TRY(const core::PointBody in_a, engine.add(points_a));
+    FEELER_TRY(const core::PointBody in_b, engine.add(points_b));
     found.build_seconds = seconds_since(start);
 
-    if (glm::length(sweep) / mesh_size > most_poses)
-        return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("the sweep is {:.0f} mm long: the scan points would be "
-                                      "compared at more than {:.0f} poses; a larger mesh size "
-                                      "needs fewer",
-                                      glm::length(sweep), most_poses));
     start = Clock::now();
-    search_points(tree_a, tree_b, a_from_b, sweep, mesh_size, found);
+    FEELER_TRY(const core::ClosestPair pair,
+               engine.closest_pair(in_a, in_b, a_from_b, {.sweep = sweep}));
+    find_points(pair, found);
+    found.query_seconds = seconds_since(start);
+
+    start = Clock::now();
     const core::ExactBody exact_a = exact(a), exact_b = exact(b);
-    const core::Separation bounds = core::separation(exact_a, exact_b, a_from_b, sweep);
     const double slack = rounding(core::bounds(exact_a)) + rounding(core::bounds(exact_b))
                          + 1e-12 * (glm::length(a_from_b.translation) + glm::length(sweep));
-    found.lower = std::max(0.0, bounds.lower - slack);
-    found.upper = bounds.upper > 0.0 ? bounds.upper + slack : 0.0;
-    found.on_a = bounds.point_a;
-    found.on_b = bounds.point_b;
-    found.at = bounds.time_a;
-    found.query_seconds = seconds_since(start);
+    find_bounds(core::separation(exact_a, exact_b, a_from_b, sweep), slack, found);
+    found.exact_seconds = seconds_since(start);
     return found;
 }
 

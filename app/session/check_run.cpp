@@ -131,12 +131,32 @@ struct Runner {
     }
 };
 
+/// A program of which no motion could be judged has not been checked.
+void look_for_judged_motions(CheckRun& run) {
+    const CheckedBlock* first = nullptr;
+    for (const CheckedBlock& block : run.blocks) {
+        if (block.result.motion == core::BlockMotion::none) continue;
+        if (block.result.checked) return;
+        if (!first) first = &block;
+    }
+    if (!first) return;
+    core::Finding finding;
+    finding.rule = "undecided";
+    finding.severity = core::Severity::error;
+    finding.block = first->block;
+    finding.message = "No motion of the program could be judged.";
+    finding.cure = "Say where the axes stand at the first block: `start` under [program] in the "
+                   "set-up, or the machine's home.";
+    run.findings.push_back(finding);
+}
+
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
     run.duration = state.time;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
+    look_for_judged_motions(run);
 }
 
 } // namespace

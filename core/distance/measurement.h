@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/distance/measured_body.h"
+#include "core/geom/rigid_motion.h"
 
 namespace core {
 
@@ -37,6 +38,22 @@ struct Measurement {
 /// Errors: those of DistanceEngine::closest_pair; a tolerance that is no length.
 Result<Measurement> measure(const DistanceEngine& engine, const MeasuredBody& a,
                             const MeasuredBody& b, const Transform& a_from_b,
+                            const MeasureGoal& goal = {});
+
+/// The tolerance of a measurement over a motion that turns is at least this, mm.
+constexpr double least_turning_tolerance = 1e-3;
+
+/// Measures B against A over a whole rigid motion; `at` is 0..1 of it.
+///
+/// Result: lower <= least true distance on the way <= upper, as above; bodies known exactly leave
+///         no more open than the goal's tolerance, at least `least_turning_tolerance`.
+/// Errors: as above; a goal with a sweep.
+/// Cost:   some ten to some hundred measurements where the bodies come near at one time; one for
+///         every so many times the tolerance that B's farthest point moves where they stay equally
+///         near.
+/// Proof:  README.md beside this file, "Motions".
+Result<Measurement> measure(const DistanceEngine& engine, const MeasuredBody& a,
+                            const MeasuredBody& b, const RigidMotion& motion,
                             const MeasureGoal& goal = {});
 
 } // namespace core

@@ -62,7 +62,7 @@ private:
         FEELER_TRY(const ClosestPair chords, engine_.closest_pair(a_, b_, start, goal));
         node_tests_ += chords.node_tests;
         point_tests_ += chords.point_tests;
-        StretchBound bound{std::max(chords.lower - allowance, 0.0), infinity};
+        StretchBound bound{std::max(chords.lower - allowance, 0.0), infinity, 2.0 * allowance};
         if (!chords.found()) return bound;
         first_ = chords.points;
         const double time = from + chords.at * (to - from);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/distance/lane_kernels.h"
+#include "core/distance/pair_comparison.h"
 #include "core/geom/rigid_motion.h"
 
 namespace core {
@@ -39,16 +40,14 @@ bool nearer(const BoxPair& x, const BoxPair& y) {
     return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-class Search {
+class Search : private PairComparison {
 public:
     Search(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
            const PairGoal& goal, SearchMemory& memory)
-        : kernels_(lane_kernels()),
+        : PairComparison(a_from_b, goal),
+          kernels_(lane_kernels()),
           body_a_(a),
           body_b_(b),
-          motion_(a_from_b, goal),
-          goal_(goal),
-          moves_(motion_.moves()),
           a_(memory.a),
           b_(memory.b),
           stack_(memory.stack),
@@ -59,8 +58,11 @@ public:
 
     ClosestPair run() {
         if (goal_.first)
-            compare_first(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
-        if (near_squared_ == infinity) follow_the_middles();
+            compare(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
+        if (near_squared_ == infinity) {
+            if (is_beyond_limit()) return finished();
+            follow_the_middles();
+        }
         start();
         search();
         return finished();
@@ -101,16 +103,6 @@ public:
     }
 
 private:
-    ClosestPair finished() {
-        best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
-        return best_;
-    }
-
-    bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
-
-    /// Only what is nearer than this is still of interest.
-    double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
-
     /// What double precision may add to the distances of points at this pose and at another: some
     /// ten operations; squares of less than 1e-150 mm have lost their digits.
     double rounding(const Transform& other) const {
@@ -157,10 +149,21 @@ private:
         const float squared = squared_above(limit + 8.0 * static_cast<double>(a.margin + b.margin));
         const uint32_t rows = ((1U << b.leaf->count) - 1U)
                               & rows_near(b, a_.box(leaves.a / width, leaves.a % width), squared);
-        for_near(a, b, rows, squared, [&](const PointPlace& of_a, const PointPlace& of_b) {
+        for_near(a, b, rows, squared, [&](uint32_t i, uint32_t j) {
+            const PointPlace of_a = place_in(a, i), of_b = place_in(b, j);
             const double apart = glm::distance(of_a.position(), motion_.start * of_b.position());
             if (apart < limit) front.pairs.push_back({apart, of_a, of_b});
         });
+    }
+
+    /// Whether balls round the bodies say that nothing is near.
+    bool is_beyond_limit() const {
+        if (goal_.limit == infinity || motion_.end) return false;
+        const PointTree::Node& a = body_a_.top->nodes[0];
+        const PointTree::Node& b = body_b_.top->nodes[0];
+        const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
+        const double apart = swept_distance(a.origin - motion_.start * b.origin, motion_.sweep);
+        return apart - reach > goal_.limit + 1e-6 * reach + rounding();
     }
 
     // --- the frame ---
@@ -304,11 +307,20 @@ private:
     }
 
     void compare_rows(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit) {
-        for_near(a, b, rows, limit,
-                 [&](const PointPlace& of_a, const PointPlace& of_b) { compare(of_a, of_b); });
+        const Vec3* const of_a = &a.tree->points[a.leaf->first];
+        const Vec3* const of_b = &b.tree->points[b.leaf->first];
+        for_near(a, b, rows, limit, [&](uint32_t i, uint32_t j) {
+            // Most pairs end here: where faces lie parallel, all are equally near.
+            if (!is_no_nearer(of_a[i], of_b[j])) compare(place_in(a, i), place_in(b, j));
+        });
     }
 
-    /// Calls act(point of A, point of B) for the pairs no farther apart than the limit.
+    static PointPlace place_in(const VisitedLeaf& leaf, uint32_t i) {
+        return {leaf.tree, leaf.leaf, leaf.leaf->first + i};
+    }
+
+    /// Calls act(point of A, point of B), counted in their leaves, for the pairs no farther apart
+    /// than the limit.
     template <typename Act>
     void for_near(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit,
                   const Act& act) {
@@ -323,43 +335,14 @@ private:
             best_.point_tests += a.leaf->count;
             for (uint32_t near = columns[row] & used; near != 0; near &= near - 1) {
                 const auto column = static_cast<uint32_t>(std::countr_zero(near));
-                act(PointPlace{a.tree, a.leaf, a.leaf->first + column},
-                    PointPlace{b.tree, b.leaf, b.leaf->first + row});
+                act(column, row);
             }
         }
-    }
-
-    /// The exact comparison, in double precision; the same operations as brute force does.
-    void compare(const PointPlace& a, const PointPlace& b) {
-        const Vec3 p = a.position();
-        const MovingPoint q = motion_.of(b.position());
-        const Vec3 apart = p - q.at;
-        const double at = moves_ ? nearest_time(apart, q.sweep) : 0.0;
-        const Vec3 then = moves_ ? apart - at * q.sweep : apart;
-        const double squared = glm::dot(then, then);
-        if (!(squared < near_squared_)) return;
-        near_squared_ = squared;
-        near_apart_ = -then;
-        near_a_ = a, near_b_ = b;
-        const double distance = std::sqrt(squared);
-        if (!(distance < std::min(best_.distance, goal_.limit))) return;
-        best_.distance = distance;
-        best_.points = {a.index(), b.index()};
-        best_.witness_a = p;
-        best_.witness_b = q.at + at * q.sweep;
-        best_.at = at;
-    }
-
-    void compare_first(const PointPlace& a, const PointPlace& b) {
-        if (a.leaf != nullptr && b.leaf != nullptr) compare(a, b);
     }
 
     const LaneKernels& kernels_;
     const PointTreeView& body_a_;
     const PointTreeView& body_b_;
-    const StraightMotion motion_;
-    const PairGoal& goal_;
-    bool moves_;
     bool by_middles_ = false;
     float per_length_ = 0.0F;
     Float3 sweep_{};
@@ -368,12 +351,7 @@ private:
     SearchSide& b_;
     std::vector<BoxPair>& stack_;
     std::vector<BoxPair>& beam_;
-    ClosestPair best_;
     float limit_squared_ = 0.0F;
-    // The nearest pair compared so far, also if beyond the limit.
-    double near_squared_ = infinity;
-    Vec3 near_apart_ = Vec3(0.0);
-    PointPlace near_a_, near_b_;
 };
 
 /// Fills the front after a search, if that will be of use.

@@ -54,8 +54,7 @@ void SearchSide::begin(const PointTreeView& of, const SearchFrame& frame,
                        const StraightMotion* motion) {
     kernels_ = &lane_kernels();
     body = of;
-    nodes.clear();
-    leaves.clear();
+    node_count_ = leaf_count_ = 0;
     start_ = pose_in(frame, motion ? motion->start : Transform{});
     spreads_ = motion && motion->end;
     if (spreads_) end_ = pose_in(frame, *motion->end);
@@ -94,8 +93,9 @@ SearchSide::Sight SearchSide::sight(const Pose& pose, const Vec3& origin, float 
 }
 
 uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
-    const auto id = static_cast<uint32_t>(nodes.size());
-    VisitedNode& visited = nodes.emplace_back();
+    const uint32_t id = node_count_++;
+    if (id == nodes.size()) nodes.emplace_back();
+    VisitedNode& visited = nodes[id];
     const PointTree::Node& node = tree->nodes[number];
     visited.tree = tree;
     visited.node = &node;
@@ -129,8 +129,9 @@ const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
     VisitedNode& parent = nodes[at];
     uint32_t& id = parent.below[lane];
     if (id != none) return leaves[id];
-    id = static_cast<uint32_t>(leaves.size());
-    VisitedLeaf& leaf = leaves.emplace_back();
+    id = leaf_count_++;
+    if (id == leaves.size()) leaves.emplace_back();
+    VisitedLeaf& leaf = leaves[id];
     leaf.tree = parent.tree;
     leaf.leaf = &parent.tree->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
     look_at(leaf);

@@ -47,8 +47,8 @@ public:
     static constexpr uint32_t none = 0xFFFF'FFFFU;
 
     PointTreeView body;
-    std::vector<VisitedNode> nodes;
-    std::vector<VisitedLeaf> leaves;
+    std::vector<VisitedNode> nodes;  // beyond those visited stand those of earlier searches
+    std::vector<VisitedLeaf> leaves; // the same
 
     /// Forgets what was visited, and visits the root. A stands still: `motion` is null.
     void begin(const PointTreeView& of, const SearchFrame& frame, const StraightMotion* motion);
@@ -76,6 +76,7 @@ private:
     void look_at(VisitedLeaf& leaf) const;
 
     const LaneKernels* kernels_ = nullptr;
+    uint32_t node_count_ = 0, leaf_count_ = 0; // visited
     Pose start_, end_;
     bool spreads_ = false;   // the points do not all go the same way
     Vec3 sweep_ = Vec3(0.0); // along the directions, when they do

@@ -24,7 +24,7 @@ Result<StretchBound> least_over_time(
     const std::function<Result<StretchBound>(double from, double to, double worth)>& bound,
     const TimeGoal& goal) {
     std::vector<Stretch> queue = {{0.0, 0.0, 1.0}};
-    StretchBound best{goal.limit, infinity};
+    StretchBound best{goal.limit, goal.known < goal.limit ? goal.known : infinity};
     const auto worth = [&] {
         return best.upper < goal.limit ? std::max(best.upper - goal.tolerance, 0.0) : goal.limit;
     };
@@ -40,7 +40,8 @@ Result<StretchBound> least_over_time(
         FEELER_TRY(const StretchBound found, bound(stretch.from, stretch.to, worth()));
         if (found.upper < std::min(best.upper, goal.limit)) best.upper = found.upper;
         const double lower = std::max(found.lower, stretch.lower);
-        if (lower >= worth() || stretch.to - stretch.from < shortest) {
+        if (lower >= worth() || found.gain <= 0.25 * goal.tolerance
+            || stretch.to - stretch.from < shortest) {
             best.lower = std::min(best.lower, lower);
             continue;
         }

@@ -22,6 +22,20 @@ Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double sh
 
 double contact_depth(const Allowance& allowance) { return std::max(allowance.contact, resolution); }
 
+double contact_shrink(const Allowance& allowance, const RevolvedProfile& part) {
+    constexpr double least = 0.005; // mm: the errors of paths and chords are below
+    const double depth = contact_depth(allowance);
+    const double widest = bounds(part).max.x;
+    double shrink = depth;
+    for (const ProfileElement& e : part.elements) {
+        const double height = e.z1 - e.z0, out = e.r1 - e.r0;
+        if (e.margin > 0.0 || height <= 0.0 || out <= 0.0) continue;
+        const double side = std::hypot(height, out);
+        if (e.r0 < depth * side / height) shrink = std::min(shrink, depth * out / side);
+    }
+    return std::min({std::max(shrink, std::min(depth, least)), depth, 0.25 * widest});
+}
+
 void merge(PairClearance& known, const PairClearance& later) {
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);

@@ -43,6 +43,11 @@ Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double sh
 /// By how much a part is shrunk to tell contact from overlap.
 double contact_depth(const Allowance& allowance);
 
+/// The same for one part: less where the part is slender, so that nothing of it is more than about
+/// the contact tolerance short and a point stays a point. A pointed part that is shrunk all round
+/// loses more of its tip than that.
+double contact_shrink(const Allowance& allowance, const RevolvedProfile& part);
+
 /// Takes a later observation of the same pair into account.
 void merge(PairClearance& known, const PairClearance& later);
 

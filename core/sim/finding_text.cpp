@@ -92,12 +92,14 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion mo
                    const SimulatorState& state, double duration) {
     const ToolAssembly* tool = nullptr;
     if (state.tool) tool = &setup.tools.at(*state.tool);
-    const bool spindle_runs = tool && state.spindle.direction == tool->description.cuts;
+    const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
     const std::string& body = body_name(setup, pair.pair);
     const double at = duration > 0.0 ? pair.time / duration : 0.0;
     Finding finding;
     finding.rule = rule_of(pair, motion, spindle_runs);
-    finding.severity = severity_of(setup, finding.rule);
+    // Whatever it is called, a collision is never passed over.
+    finding.severity =
+        pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
     finding.pair = {name_of(pair.pair.part), body};

@@ -108,7 +108,8 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     }
     now.verdict = judge_distance(allowance, now.lower, now.upper);
     if (now.upper == 0.0 || (allowance.distance <= resolution && now.lower <= 0.0)) {
-        const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
+        const RevolvedProfile inner =
+            shrunk_around(part.profile, contact_shrink(allowance, part.profile));
         const Separation shrunk =
             widened(to_fixture(shapes(inner, leg), body, setup_.search_limit), leg.path_error);
         now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
@@ -136,7 +137,8 @@ LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, co
     if (may_touch && retraces(part, leg, stock, allowance)) {
         seen.shrunk.lower = infinity; // no stock where the shrunk part goes
     } else if (may_touch || seen.plain.upper == 0.0) {
-        const RevolvedProfile inner = shrunk_around(part.profile, contact_depth(allowance));
+        const RevolvedProfile inner =
+            shrunk_around(part.profile, contact_shrink(allowance, part.profile));
         const double just_apart = resolution + leg.path_error;
         seen.shrunk = to_stock(part.kind, shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
     }

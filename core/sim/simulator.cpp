@@ -42,7 +42,7 @@ struct BlockRun {
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-        const bool turns = tool() && state.spindle.direction == tool()->description.cuts;
+        const bool turns = tool() && turns_to_cut(state.spindle, *tool());
         return feeds && turns ? FluteUse::cutting : FluteUse::not_cutting;
     }
 

@@ -28,6 +28,11 @@ struct SimulatorState {
     bool told_unchecked_tool = false; // of the tool that is in the spindle now
 };
 
+/// Whether the spindle turns, the way round that the tool cuts. At 0 rev/min it stands.
+inline bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool) {
+    return spindle.direction == tool.description.cuts && spindle.speed > 0.0;
+}
+
 /// What a block moves, as a report says it.
 enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
 

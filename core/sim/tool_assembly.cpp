@@ -33,13 +33,36 @@ Result<RevolvedProfile> coned(const ToolDescription& tool, double tip, double fr
     return RevolvedProfile{{{0.0, tip, height, r, 0.0}, side(tool, height)}};
 }
 
+/// How far a rounding made of cones stands off the round, mm.
+constexpr double rounding_sag = 0.0025;
+
+/// A rounded edge: a ball of radius `corner` about a circle of radius `disc`, up to the end of the
+/// flutes. Where they end below the ball's upper half, the lower one is made of cones.
+RevolvedProfile rounded(const ToolDescription& tool, double disc, double corner) {
+    RevolvedProfile profile;
+    if (tool.flute_length >= 2.0 * corner) {
+        profile.elements.push_back({corner, disc, corner, disc, corner});
+    } else {
+        const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / corner));
+        const int cones = std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::pi / step)));
+        double z = 0.0, r = disc;
+        for (int i = 1; i <= cones; ++i) {
+            const double angle = 0.5 * std::numbers::pi * i / cones;
+            const double above = i == cones ? corner : corner * (1.0 - std::cos(angle));
+            const double out = i == cones ? disc + corner : disc + corner * std::sin(angle);
+            profile.elements.push_back({z, r, above, out, 0.0});
+            z = above, r = out;
+        }
+    }
+    if (tool.flute_length > corner) profile.elements.push_back(side(tool, corner));
+    return profile;
+}
+
 Result<RevolvedProfile> ball(const ToolDescription& tool) {
     const double r = 0.5 * tool.diameter;
     if (tool.flute_length < r)
         return refuse(tool, "flute_length is shorter than the ball's radius");
-    RevolvedProfile profile{{{r, 0.0, r, 0.0, r}}};
-    if (tool.flute_length > r) profile.elements.push_back(side(tool, r));
-    return profile;
+    return rounded(tool, 0.0, r);
 }
 
 Result<RevolvedProfile> bull(const ToolDescription& tool) {
@@ -51,7 +74,7 @@ Result<RevolvedProfile> bull(const ToolDescription& tool) {
         return refuse(tool, "corner_radius must lie between 0 and half the diameter");
     if (tool.flute_length <= corner)
         return refuse(tool, "flute_length is shorter than corner_radius");
-    return RevolvedProfile{{{corner, disc, corner, disc, corner}, side(tool, corner)}};
+    return rounded(tool, disc, corner);
 }
 
 Result<RevolvedProfile> outlined(const ToolDescription& tool) {

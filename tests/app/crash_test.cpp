@@ -92,8 +92,35 @@ TEST(RapidThroughTheStock, IsClearAboveIt) {
     expect_encloses(checked.at_line(8).deciding, 0.5, 1e-3);
 }
 
+TEST(RapidThroughTheStock, IsACollisionForAPointAndForATinyTool) {
+    const std::pair<std::string, std::string> tools[] = {
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 5\nflute_length = 20\nshank = [[6, 6, "
+         "75]]\n",
+         "-0.3"},
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 15\nflute_length = 10\nshank = [[6, 6, "
+         "85]]\n",
+         "-0.12"},
+        {"shape = \"taper\"\ndiameter = 6\nangle_deg = 30\nflute_length = 5\nshank = [[6, 6, "
+         "90]]\n",
+         "-0.08"},
+        {"shape = \"flat\"\ndiameter = 0.1\nflute_length = 5\nshank = [[6, 6, 90]]\n", "-1."},
+        {"shape = \"flat\"\ndiameter = 0.05\nflute_length = 5\nshank = [[6, 6, 90]]\n", "-1."},
+    };
+    for (const auto& [tool, depth] : tools) {
+        const SetupWriter setup = SetupWriter().tool("number = 1\n" + tool);
+        const std::string z = "Z" + depth;
+        const Checked rapid = check(setup, program({"G0 X-20. Y50.", z, "X120.", "Z60."}));
+        EXPECT_EQ(rapid.verdict, "collision") << tool;
+        EXPECT_EQ(rapid.errors(), "rapid-in-stock 8") << tool;
+        const Checked groove = check(setup, program({"G0 X-20. Y50.", z, "G1 X120. F800.",
+                                                     "G0 X-20.", "G1 X40. Y60.", "G0 Z60."}));
+        EXPECT_EQ(groove.errors(), "") << tool; // back through its own groove is contact only
+        EXPECT_EQ(groove.verdict, "clear") << tool;
+    }
+}
+
 TEST(FeedIntoTheStock, IsACollisionWithTheSpindleOffOrTurningTheWrongWay) {
-    for (const char* spindle : {"M5", "S6000 M4"}) {
+    for (const char* spindle : {"M5", "S6000 M4", "S0 M3", "M3"}) {
         const Checked checked =
             check(SetupWriter(),
                   program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60."}, spindle));
@@ -157,6 +184,39 @@ TEST(ShankInTheStock, CollidesWhereTheFlutesAreShorterThanTheCut) {
     EXPECT_EQ(checked.errors(), "collision 8");
     EXPECT_EQ(checked.at_line(8).deciding.name, "shank stock");
     EXPECT_NEAR(*checked.at_line(8).deciding.at, 15.0 / 140.0, mesh_size / 140.0);
+}
+
+TEST(ShankInTheStock, CollidesAboveARoundToolOfShortFlutes) {
+    // At Z-8 the flutes end at Z-1 or Z-1.5; above them stands a shank that is wider than the slot.
+    for (const char* tool :
+         {"shape = \"ball\"\ndiameter = 12\nflute_length = 7\nshank = [[24, 24, 88]]\n",
+          "shape = \"bull\"\ndiameter = 20\ncorner_radius = 6\nflute_length = 6.5\n"
+          "shank = [[24, 24, 88.5]]\n"}) {
+        const Checked checked =
+            check(SetupWriter().tool("number = 1\n" + std::string(tool)),
+                  program({"G0 X-20. Y50.", "Z-8.", "G1 X120. F800.", "G0 Z60."}));
+        EXPECT_EQ(checked.verdict, "collision") << tool;
+        EXPECT_EQ(checked.errors(), "collision 8") << tool;
+        EXPECT_EQ(checked.at_line(8).deciding.name, "shank stock") << tool;
+    }
+}
+
+TEST(Collision, IsNotSilencedByTheRuleThatNamesIt) {
+    for (const char* rule : {"rapid-in-stock", "rapid-near-clamp", "holder-into-wall"}) {
+        const Checked checked =
+            check(SetupWriter().also("[rules]\n" + std::string(rule) + " = \"off\"\n"),
+                  program({"G0 X-20. Y50.", "Z-5.", "X120.", "Z60."}));
+        EXPECT_EQ(checked.status, 1) << rule;
+        EXPECT_EQ(checked.errors(), "rapid-in-stock 8") << rule;
+    }
+}
+
+TEST(FromAnUnknownPlace, AProgramOfWhichNoMotionCouldBeJudgedIsNotPassed) {
+    const Checked checked = check(SetupWriter().program("dialect = \"fanuc\"\n").without_machine(),
+                                  program({"G0 X50.", "Z-10.", "Z60."}));
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_EQ(checked.verdict, "undecided");
+    EXPECT_NE(checked.errors().find("undecided"), std::string::npos);
 }
 
 TEST(Fixture, IsCutByNobodyUnlessItIsExpendable) {

@@ -109,6 +109,38 @@ TEST(Distance, FindsThePassageThroughABodyBetweenTheEndsOfASweep) {
     EXPECT_EQ(found["upper"], 0.0);
 }
 
+TEST(Distance, OfScanPointsIsTheSameByEitherEngineToTheLastBit) {
+    const ScopedFolder folder;
+    const core::Mesh ring = test_support::torus_mesh(20.0, 6.0, 48, 24);
+    const std::string mesh = folder.write("ring.stl", test_support::binary_stl(ring));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"sphere:25", "sphere:25", "--move", "49,17,10"},
+             {"box:30,20,10", "cylinder:5,20", "--move", "25,9,8", "--rotate", "10,20,30"},
+             {mesh, "box:9,9,9", "--move", "2,3,1", "--rotate", "40,-25,70", "--sweep", "1,7,3"}}) {
+        const auto by = [&](const std::string& engine) {
+            std::vector<std::string> all = words;
+            all.insert(all.end(), {"--mesh-size", "1", "--engine", engine});
+            const Json found = measure(all);
+            EXPECT_EQ(found["engine"], engine);
+            return found;
+        };
+        const Json fast = by("fast"), paper = by("paper");
+        for (const char* key : {"distance", "lower", "upper", "witness", "at", "points"})
+            EXPECT_EQ(fast[key], paper[key]) << key << " of " << words[1];
+        EXPECT_GT(fast["distance"], 0.0);
+        EXPECT_NE(fast["sphere_tests"], paper["sphere_tests"]); // or it is one engine twice
+    }
+    EXPECT_EQ(measure({"sphere:5", "sphere:5"})["engine"], "fast");
+}
+
+TEST(Distance, OfScanPointsHoldsForEveryMomentOfASweep) {
+    // Poses a mesh size apart would pass by the nearest one, 0.3 mm beside it.
+    const Json found = measure(
+        {"sphere:5", "sphere:5", "--move=-20.3,13,0", "--sweep", "40,0,0", "--mesh-size", "1"});
+    const Json nearest = measure({"sphere:5", "sphere:5", "--move", "0,13,0", "--mesh-size", "1"});
+    EXPECT_NEAR(found["distance"].get<double>(), nearest["distance"].get<double>(), 1e-9);
+}
+
 TEST(Distance, ReadsMeshFiles) {
     const ScopedFolder folder;
     const core::Mesh box = test_support::box_mesh({0, 0, 0}, {20, 26, 42});
@@ -130,6 +162,13 @@ TEST(Distance, IsToldInWords) {
     EXPECT_EQ(ran.status, 0);
     EXPECT_NE(ran.out.find("10.000000 mm"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("1896 and 1896 points"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("fast: "), std::string::npos) << ran.out;
+    for (const char* not_told : {"sphere tests", "sweep"})
+        EXPECT_EQ(ran.out.find(not_told), std::string::npos) << ran.out;
+    const Ran paper = feeler({"distance", "sphere:5", "sphere:5", "--move", "20,0,0", "--sweep",
+                              "1,1,0", "--engine", "paper"});
+    EXPECT_NE(paper.out.find(" sphere tests"), std::string::npos) << paper.out;
+    EXPECT_NE(paper.out.find(" at 0.0 % of the sweep"), std::string::npos) << paper.out;
 }
 
 TEST(Distance, RefusesWhatIsNoBody) {
@@ -140,6 +179,15 @@ TEST(Distance, RefusesWhatIsNoBody) {
         EXPECT_EQ(ran.status, 2) << body;
         EXPECT_EQ(ran.out, "") << body;
         EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << body << ": " << ran.err;
+    }
+}
+
+TEST(Distance, RefusesAnEngineThatIsNone) {
+    for (const char* engine : {"coproc", "Fast", ""}) {
+        const Ran ran = feeler({"distance", "sphere:5", "sphere:5", "--engine", engine});
+        EXPECT_EQ(ran.status, 2) << engine;
+        EXPECT_NE(ran.err.find("--engine"), std::string::npos) << ran.err;
+        EXPECT_NE(ran.err.find("{fast,paper}"), std::string::npos) << ran.err;
     }
 }
 

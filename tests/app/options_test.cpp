@@ -32,6 +32,10 @@ TEST(CommandLine, NeedsAProgram) {
 
 TEST(CommandLine, RefusesWhatIsNoOptionAndNoValue) {
     expect_misuse({"check", "x.nc", "--bogus"}, "--bogus");
+    expect_misuse({"bench"}, "tables is required");
+    expect_misuse({"bench", "rivals"}, "rivals not in {paper}");
+    expect_misuse({"bench", "paper", "--format", "json"}, "json not in {text,csv}");
+    expect_misuse({"bench", "paper", "twice"}, "twice");
     expect_misuse({"check", "x.nc", "--format", "xml"}, "--format");
     expect_misuse({"check", "x.nc", "--dialect", "latin"}, "--dialect");
     for (const char* value : {"-1", "inf", "two", ""})
@@ -41,8 +45,11 @@ TEST(CommandLine, RefusesWhatIsNoOptionAndNoValue) {
 }
 
 TEST(CommandLine, PrintsHelpAndVersionOnStandardOutput) {
-    for (const auto& words : std::vector<std::vector<std::string>>{
-             {"--help"}, {"--version"}, {"check", "--help"}, {"distance", "--help"}}) {
+    for (const auto& words : std::vector<std::vector<std::string>>{{"--help"},
+                                                                   {"--version"},
+                                                                   {"check", "--help"},
+                                                                   {"distance", "--help"},
+                                                                   {"bench", "--help"}}) {
         const Ran ran = feeler(words);
         EXPECT_EQ(ran.status, 0) << words[0];
         EXPECT_NE(ran.out, "") << words[0];

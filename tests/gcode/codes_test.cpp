@@ -46,6 +46,35 @@ TEST(Codes, AnUnknownMCodeIsAWarningAndTheProgramGoesOn) {
     EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
 }
 
+TEST(Codes, AnMCodeIsAWholeNumber) {
+    for (const DialectId dialect :
+         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl}) {
+        EXPECT_THAT(error_of("S1\nM3.5", dialect), HasSubstr("2:1: M3.5: an M code is a whole"));
+        EXPECT_THAT(error_of("M-3", dialect), HasSubstr("1:1: M-3: an M code is a whole"));
+        EXPECT_EQ(error_of("M3. S1", dialect), "");
+    }
+}
+
+TEST(Codes, AnMCodeThatJumpsOrCallsIsRefusedInEveryDialect) {
+    for (const DialectId dialect :
+         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
+        for (const std::string_view text : {"M96 P5", "M97 P5", "M98 P5", "M99 P5", "M198 P5"})
+            EXPECT_THAT(error_of(text, dialect), HasSubstr("1:")) << text;
+    EXPECT_THAT(error_of("G0 X1 M97 P5", DialectId::fanuc),
+                HasSubstr("1:7: M97: other controls jump or call with it, the dialect fanuc has "
+                          "no such code; take it out or name the program's dialect"));
+    EXPECT_THAT(error_of("M198 P5"), HasSubstr("1:1: M198: subprograms are not supported yet"));
+    EXPECT_THAT(error_of("M99", DialectId::grbl), HasSubstr("1:1: M99: other controls jump"));
+}
+
+TEST(Codes, AnMCodeThatChangesTheStateIsRefused) {
+    for (const std::string_view text : {"M61 Q2", "M70", "M71", "M72", "M73"})
+        EXPECT_THAT(error_of(text, DialectId::linuxcnc), HasSubstr("not supported yet: "));
+    for (const std::string_view text : {"T2 M16", "M46 P1 Q2", "M50 P2"})
+        EXPECT_THAT(error_of(text, DialectId::haas), HasSubstr("not supported yet: "));
+    EXPECT_THAT(warnings_of("M73", DialectId::haas), HasSubstr("M73: unknown here"));
+}
+
 TEST(Codes, TwoOfOneModalGroupAreAnError) {
     EXPECT_EQ(error_of("G17\nG90 G0 G1 X1"),
               "2:8: G0 and G1 are of one modal group: a block takes one of them");

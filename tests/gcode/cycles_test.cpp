@@ -54,9 +54,25 @@ TEST(Cycle, G98AfterG99ClimbsFirstInLinuxcncAndLastInFanuc) {
     EXPECT_EQ(levels(text, DialectId::fanuc), " r200 r30 f-20 r30 r30 f-20 r200");
 }
 
-TEST(Cycle, StartsFromBelowRByGoingUp) {
-    EXPECT_EQ(levels("G99 G81 X1 Z-2 R30 F100"), " r300 r300 f-20 r300");
-    EXPECT_EQ(levels("G98 G81 X1 Z-2 R30 F100"), " r300 r300 f-20 r300");
+TEST(Cycle, StartsFromBelowRByGoingUpInLinuxcnc) {
+    const DialectId linuxcnc = DialectId::linuxcnc;
+    EXPECT_EQ(levels("F100\nG99 G81 X1 Z-2 R30", linuxcnc), " r300 r300 f-20 r300");
+    EXPECT_EQ(levels("F100\nG98 G81 X1 Z-2 R30", linuxcnc), " r300 r300 f-20 r300");
+}
+
+TEST(Cycle, GoesToTheHoleBelowRInFanucAndHaas) {
+    for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
+        EXPECT_EQ(levels("G99 G81 X1 Z-2 R30 F100", dialect), " r200 r300 f-20 r300");
+        EXPECT_EQ(levels("G98 G81 X1 Z-2 R30 F100\nX2", dialect),
+                  " r200 r300 f-20 r200 r200 r300 f-20 r200");
+        EXPECT_EQ(levels("G98 G83 X1 Z-2 R30 Q16 F100", dialect),
+                  " r200 r300 f140 r300 r150 f-20 r200");
+    }
+    EXPECT_EQ(trace("G0 Z-5\nG99 G81 X1 Y1 Z-9 R2 F100"), "straight_traverse x=0 y=0 z=-5\n"
+                                                          "straight_traverse x=1 y=1 z=-5\n"
+                                                          "straight_traverse x=1 y=1 z=2\n"
+                                                          "straight_feed x=1 y=1 z=-9 feed=100\n"
+                                                          "straight_traverse x=1 y=1 z=2\n");
 }
 
 TEST(Cycle, G82DwellsAtTheBottom) {

@@ -103,14 +103,34 @@ TEST(Offsets, G52IsItsOwnInFanucAndG92InLinuxcnc) {
                                                 "set_offset offset=G54 x=0 y=0 z=0\n");
 }
 
+TEST(Offsets, ThePThatMakesG54AnotherOffsetIsRefused) {
+    for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
+        EXPECT_THAT(error_of("G0 X1\nG54 P1", dialect),
+                    HasSubstr("2:5: P1: G54 with P is an extended work offset"));
+        EXPECT_EQ(error_of("G54 G4 P500", dialect), "");
+    }
+}
+
 TEST(Offsets, G53MovesInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_EQ(in_shop("G43 H1\nG53 G0 Z-10"), "use_tool_length_offset number=1 length=95\n"
                                               "straight_traverse x=350 y=200 z=315\n");
-    // Under G91 as well.
-    EXPECT_EQ(in_shop("G91 G53 G0 X-350"), "straight_traverse x=0 y=200 z=420\n");
+    // Under G91 as well, except that Fanuc controls pass it over there.
+    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::haas})
+        EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", dialect), "straight_traverse x=0 y=200 z=420\n");
+    EXPECT_THAT(error_of("G91 G53 G0 X-350", DialectId::fanuc), HasSubstr("1:5: G53 under G91"));
     EXPECT_EQ(error_of("G53 X1", DialectId::linuxcnc), "1:1: G53 needs G0 or G1");
     EXPECT_EQ(error_of("G53 X1", DialectId::fanuc), "");
     EXPECT_EQ(error_of("G2 X10 I5 F100\nG53 X1", DialectId::linuxcnc), "2:1: G53 needs G0 or G1");
+}
+
+TEST(Offsets, G53IsAlwaysARapidInFanucAndFollowsTheMotionCodeElsewhere) {
+    const std::string text = "G21\nG1 X1 F100\nG53 X50";
+    EXPECT_THAT(trace(text, DialectId::fanuc), HasSubstr("straight_traverse x=50 y=0 z=0\n"));
+    EXPECT_THAT(trace("G2 X10 I5 F100\nG53 X50", DialectId::fanuc),
+                HasSubstr("straight_traverse x=50 y=0 z=0\n"));
+    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::haas})
+        EXPECT_THAT(trace(text, dialect), HasSubstr("straight_feed x=50 y=0 z=0 feed=100\n"));
+    EXPECT_EQ(error_of("G53 X1", DialectId::haas), "1:1: G53 needs G0 or G1");
 }
 
 TEST(LengthOffset, ComesFromTheTableElseFromTheTool) {
@@ -129,6 +149,23 @@ TEST(LengthOffset, WithoutHIsTheToolInTheSpindleInLinuxcnc) {
     EXPECT_THAT(in_shop("G43 H1\nG43", DialectId::fanuc),
                 HasSubstr("length=95\nuse_tool_length_offset number=1 length=95\n"));
     EXPECT_THAT(warnings_of("G0 G43 Z1"), HasSubstr("G43 has no H word"));
+}
+
+TEST(LengthOffset, ALoneHChangesTheOneThatIsOn) {
+    for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
+        EXPECT_EQ(in_shop("G43 H1\nH2", dialect), "use_tool_length_offset number=1 length=95\n"
+                                                  "use_tool_length_offset number=2 length=59.5\n");
+        EXPECT_THAT(in_shop("G44 H1\nG0 Z10 H2", dialect),
+                    HasSubstr("use_tool_length_offset number=2 length=-59.5\n"
+                              "straight_traverse x=350 y=200 z=10\n"));
+        EXPECT_THAT(in_shop("G43 H1\nM77 H0", dialect),
+                    HasSubstr("use_tool_length_offset number=0 length=0\n"));
+        EXPECT_EQ(warnings_of("G43 H0\nH0\nM30", dialect), "");
+        EXPECT_THAT(warnings_of("G43 H0\nG49\nH1\nM30", dialect),
+                    HasSubstr("H1: nothing in this block uses it"));
+    }
+    EXPECT_EQ(error_of("G43 H0\nH0", DialectId::linuxcnc),
+              "2:1: H0: nothing in this block uses it");
 }
 
 TEST(LengthOffset, OfAnUnknownNumberIsAWarning) {
@@ -155,6 +192,16 @@ TEST(Homing, GoesThroughTheIntermediatePoint) {
                                         "straight_traverse x=350 y=200 z=420\n");
     EXPECT_EQ(in_shop("G30 Z450"), "straight_traverse x=350 y=200 z=450\n"
                                    "straight_traverse x=350 y=200 z=370\n");
+}
+
+TEST(Homing, KnowsTheSecondPlaceOnly) {
+    for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
+        for (const std::string_view text : {"G91 G30 P3 Z0", "G91 G30 P4 Z0"})
+            EXPECT_THAT(error_of(text, dialect),
+                        HasSubstr("G30 knows the second reference position only"));
+        EXPECT_EQ(in_shop("G30 P2 Z450", dialect), in_shop("G30 Z450", dialect));
+        EXPECT_EQ(warnings_of("G21 G91 G30 P2 Z0\nM30", dialect), "");
+    }
 }
 
 TEST(Homing, WithoutAxisWordsMovesAllAxes) {

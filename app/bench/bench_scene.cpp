@@ -1,0 +1,140 @@
+#include "app/bench/bench_scene.h"
+
+namespace app {
+namespace {
+
+using core::Transform;
+using core::translation;
+using core::Vec3;
+
+const std::vector<double> paper_mesh_sizes = {0.5, 1.0, 1.5, 2.0};
+const std::vector<double> fine_and_coarse = {0.5, 1.0};
+
+const Vec3 askew = glm::normalize(Vec3(1.0, 0.35, 0.2));
+
+Transform turned_by(const Vec3& angles_deg) { return {core::rotation_xyz_deg(angles_deg), {}}; }
+
+/// Two spheres of 50 mm; B is turned, then moved along the direction.
+BenchScene spheres(const Vec3& direction, const Vec3& angles_deg) {
+    BenchScene scene{.name = "spheres",
+                     .a = core::Sphere{25.0},
+                     .b = core::Sphere{25.0},
+                     .mesh_sizes = paper_mesh_sizes};
+    for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0})
+        scene.places.push_back(
+            {gap, translation((50.0 + gap) * direction) * turned_by(angles_deg)});
+    return scene;
+}
+
+BenchScene askew_spheres() {
+    BenchScene scene = spheres(askew, Vec3(0.0));
+    scene.direction = "generic";
+    scene.title = "Two spheres of 50 mm, moved apart along (1, 0.35, 0.2)";
+    return scene;
+}
+
+BenchScene turned_spheres() {
+    BenchScene scene = spheres(askew, {10.0, 20.0, 30.0});
+    scene.direction = "turned";
+    scene.title = "Two spheres of 50 mm, moved apart along (1, 0.35, 0.2), one of them turned by "
+                  "10, 20 and 30 degrees about X, Y and Z";
+    return scene;
+}
+
+/// Two rings at right angles, one through the other.
+///
+/// The middle circle of B crosses the plane of A's at s = offset - ring from A's centre. While
+/// 0 <= s < ring that is its nearest point to A's circle, ring - s away. At s = 0, every point of B
+/// is as near.
+BenchScene linked_tori() {
+    const Torus torus{25.0, 5.0};
+    BenchScene scene{.name = "linked-tori",
+                     .direction = "turned",
+                     .title = "Two linked tori of 60 mm, tubes of 10 mm, at right angles, turned "
+                              "each about its own axis; at 15 mm they are as near all round",
+                     .a = torus,
+                     .b = torus,
+                     .mesh_sizes = fine_and_coarse};
+    for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0, 15.0}) {
+        const double offset = 2.0 * (torus.ring - torus.tube) - gap;
+        scene.places.push_back({gap, turned_by({0.0, 0.0, 25.0}) * translation({offset, 0.0, 0.0})
+                                         * turned_by({90.0, 0.0, 0.0})
+                                         * turned_by({0.0, 0.0, 17.0})});
+    }
+    return scene;
+}
+
+/// A pin stands off the middle of a bore, farther from its floor than from its wall.
+BenchScene pin_in_cup() {
+    const Cup cup{25.0, 40.0, 20.0, 35.0};
+    const core::Cylinder pin{8.0, 30.0};
+    BenchScene scene{.name = "pin-in-cup",
+                     .direction = "turned",
+                     .title = "A pin of 16 mm in a cup with a bore of 40 mm, turned about its axis",
+                     .a = cup,
+                     .b = pin,
+                     .mesh_sizes = fine_and_coarse};
+    const double floor = 0.5 * cup.height - cup.depth;
+    for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0}) {
+        const double off_axis = cup.bore - pin.radius - gap;
+        const double lift = floor + 20.0 + 0.5 * pin.height;
+        scene.places.push_back(
+            {gap, turned_by({0.0, 0.0, 25.0}) * translation({off_axis, 0.0, lift})
+                      * turned_by({0.0, 0.0, 17.0})});
+    }
+    return scene;
+}
+
+/// A holder's flat end above a flat stock.
+BenchScene holder_over_stock(double angle_deg) {
+    const core::Box stock{{100.0, 100.0, 30.0}}, holder{{40.0, 40.0, 60.0}};
+    BenchScene scene{.name = "holder-over-stock",
+                     .direction = "axis",
+                     .title = "A holder of 40 x 40 mm above a stock of 100 x 100 mm, face to face",
+                     .a = stock,
+                     .b = holder,
+                     .mesh_sizes = {0.5}};
+    if (angle_deg != 0.0) {
+        scene.direction = "turned";
+        scene.title += ", the holder turned by 30 degrees about Z";
+    }
+    for (const double gap : {1.0, 2.0, 5.0, 10.0, 15.0}) {
+        const double lift = 0.5 * (stock.size.z + holder.size.z) + gap;
+        scene.places.push_back(
+            {gap, translation({7.3, -4.6, lift}) * turned_by({0.0, 0.0, angle_deg})});
+    }
+    return scene;
+}
+
+core::Result<core::Dbm> scanned(const core::Primitive& body, double mesh_size) {
+    return core::scan(body, mesh_size);
+}
+
+template <typename Body>
+core::Result<core::Dbm> scanned(const Body& body, double mesh_size) {
+    return core::scan_lines_of(bounds(body), mesh_size, [&](int axis, double u, double v) {
+        return line_of(body, axis, u, v);
+    });
+}
+
+} // namespace
+
+BenchScene paper_scene() {
+    BenchScene scene = spheres({1.0, 0.0, 0.0}, Vec3(0.0));
+    scene.direction = "axis";
+    scene.title = "Two spheres of 50 mm, moved apart along X, as in the paper";
+    return scene;
+}
+
+std::vector<BenchScene> bench_scenes() {
+    return {paper_scene(), askew_spheres(),        turned_spheres(),       linked_tori(),
+            pin_in_cup(),  holder_over_stock(0.0), holder_over_stock(30.0)};
+}
+
+core::Result<std::vector<core::Vec3>> points_of(const BenchBody& body, double mesh_size) {
+    FEELER_TRY(const core::Dbm dbm,
+               std::visit([&](const auto& shape) { return scanned(shape, mesh_size); }, body));
+    return core::boundary_points(dbm);
+}
+
+} // namespace app

@@ -1,0 +1,50 @@
+#include <memory>
+
+#include "app/commands/commands.h"
+#include "app/commands/output.h"
+#include "app/report/bench_report.h"
+
+namespace app {
+namespace {
+
+struct Options {
+    std::string tables, output;
+    std::string format = "text";
+};
+
+core::Result<void> bench_paper(const Options& options) {
+    std::vector<BenchTable> tables;
+    for (const BenchScene& scene : bench_scenes()) {
+        FEELER_TRY(BenchTable table, measure(scene));
+        tables.push_back(std::move(table));
+    }
+    return write_output(options.output,
+                        options.format == "csv" ? csv_bench(tables) : text_bench(tables));
+}
+
+ExitCode run_bench(const Options& options) {
+    const auto done = bench_paper(options);
+    if (done) return ExitCode::clear;
+    print_error(done.error());
+    return ExitCode::failed;
+}
+
+} // namespace
+
+void add_bench(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command =
+        *cli.add_subcommand("bench", "Measure the searches for the closest pair of points");
+    command
+        .add_option("tables", options->tables,
+                    "paper: those behind the figures of Uddin and Yamazaki (2010), by both engines")
+        ->required()
+        ->check(CLI::IsMember({"paper"}));
+    command.add_option("--format", options->format, "text or csv")
+        ->check(CLI::IsMember({"text", "csv"}))
+        ->capture_default_str();
+    command.add_option("-o,--output", options->output, "Write the tables to this file");
+    command.callback([options, &exit_code] { exit_code = run_bench(*options); });
+}
+
+} // namespace app

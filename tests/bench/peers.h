@@ -1,0 +1,16 @@
+#pragma once
+
+#include "tests/bench/contestant.h"
+
+namespace bench {
+
+/// The Flexible Collision Library: each point a degenerate triangle, boxes of the kind OBBRSS.
+Contestant fcl_peer();
+
+/// A KD-tree over A; each point of B asks it for a point nearer than the best so far.
+Contestant nanoflann_peer();
+
+/// A hierarchy over A in floats; each point of B asks it for a point nearer than the best so far.
+Contestant embree_peer();
+
+} // namespace bench
