@@ -187,7 +187,9 @@ Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit) {
     return std::move(scan.dbm);
 }
 
-Result<IntervalList> scan_line(const Mesh& mesh, int axis, double u, double v) {
+namespace {
+
+LineScan read_line_of(const Mesh& mesh, int axis, double u, double v) {
     std::vector<Crossing> crossings;
     const Vec2 p(u, v);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -196,9 +198,19 @@ Result<IntervalList> scan_line(const Mesh& mesh, int axis, double u, double v) {
         if (step != 0) crossings.push_back({0, -step, crossing_depth(triangle, p)});
     }
     std::sort(crossings.begin(), crossings.end(), comes_before);
-    LineScan scan = read_line(crossings, rounding_of(mesh.bounds(), axis));
+    return read_line(crossings, rounding_of(mesh.bounds(), axis));
+}
+
+} // namespace
+
+Result<IntervalList> scan_line(const Mesh& mesh, int axis, double u, double v) {
+    LineScan scan = read_line_of(mesh, axis, u, v);
     if (!scan.sound) return unsound_mesh(axis, u, v, scan.unsound_at);
     return std::move(scan.matter);
+}
+
+IntervalList matter_on_line(const Mesh& mesh, int axis, double u, double v) {
+    return read_line_of(mesh, axis, u, v).matter;
 }
 
 } // namespace core

@@ -32,4 +32,8 @@ Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit = default
 /// Cost:   every triangle of the mesh.
 Result<IntervalList> scan_line(const Mesh& mesh, int axis, double u, double v);
 
+/// The same, where the winding number is at least 1, also beside stretches at which the mesh is
+/// inside out: a fold of the surface must not hide the matter before or behind it.
+IntervalList matter_on_line(const Mesh& mesh, int axis, double u, double v);
+
 } // namespace core

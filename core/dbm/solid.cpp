@@ -113,16 +113,14 @@ IntervalList column_of_mesh(const SolidMesh& solid, const Square& s) {
         heights.add(heights_within(near.triangle(i), wide));
     for (const double x : {s.x0, s.x1})
         for (const double y : {s.y0, s.y1})
-            if (const auto line = scan_line(near, 2, x, y))
-                for (const Interval& interval : *line) heights.add(interval);
+            for (const Interval& interval : matter_on_line(near, 2, x, y)) heights.add(interval);
     return heights;
 }
 
 IntervalList line_of_mesh(const SolidMesh& solid, int axis, double u, double v) {
     // Lines along Z are asked for one by one while squares are refined.
-    if (axis == 2)
-        return scan_line(triangles_over(solid, {u, u, v, v}), 2, u, v).value_or(IntervalList());
-    return scan_line(*solid.mesh, axis, u, v).value_or(IntervalList());
+    if (axis == 2) return matter_on_line(triangles_over(solid, {u, u, v, v}), 2, u, v);
+    return matter_on_line(*solid.mesh, axis, u, v);
 }
 
 /// The first vertex of every connected shell.
@@ -169,8 +167,7 @@ bool holds(const SolidMesh& solid, const Vec3& point) {
     if (solid.bvh->nodes.empty() || !overlaps(solid.bvh->nodes[0].box, {point, point}))
         return false;
     const Mesh over = triangles_over(solid, {point.x, point.x, point.y, point.y});
-    const auto line = scan_line(over, 2, point.x, point.y);
-    return line && line->contains(point.z);
+    return matter_on_line(over, 2, point.x, point.y).contains(point.z);
 }
 
 Aabb bounds(const Solid& solid) {

@@ -12,6 +12,10 @@ namespace {
 /// What rounding adds to a place on the way, for each of these lengths: some ten operations.
 constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
 
+/// How far the turn may miss the end, for each of these lengths: rotations may be off by 1e-9 in
+/// each entry of R^T R, and twice this much stays below the least tolerance.
+constexpr double most_gap = 4e-9;
+
 /// Searches parts of the motion and remembers the best pair.
 class Search {
 public:
@@ -23,9 +27,13 @@ public:
           motion_(motion),
           first_(goal.first),
           reach_(reach_from_axis(motion, engine.box_of(b))),
-          lengths_(lengths_of(engine.box_of(b), motion)) {}
+          lengths_(lengths_of(engine.box_of(b), motion)),
+          gap_(gap_at_end(motion, engine.box_of(b))) {}
 
     Result<ClosestPair> run(const PairGoal& goal) {
+        if (!(gap_ <= most_gap * lengths_))
+            return fail(ErrorCode::invalid_value,
+                        "the motion does not go together: its turn does not lead to its end");
         const double tolerance = std::max(goal.tolerance, least_motion_tolerance(lengths_));
         const auto part = [&](double from, double to, double worth) {
             return search(from, to, worth);
@@ -49,7 +57,7 @@ private:
 
     Result<StretchBound> search(double from, double to, double worth) {
         const Transform start = motion_.at(from);
-        const double allowance = bulge(motion_, reach_, to - from) + rounding * lengths_;
+        const double allowance = bulge(motion_, reach_, to - from) + gap_ + rounding * lengths_;
         const PairGoal goal{.limit = worth + allowance, .end = motion_.at(to), .first = first_};
         FEELER_TRY(const ClosestPair chords, engine_.closest_pair(a_, b_, start, goal));
         node_tests_ += chords.node_tests;
@@ -70,6 +78,7 @@ private:
     const RigidMotion& motion_;
     std::optional<PointPair> first_;
     double reach_, lengths_;
+    double gap_; // the last part of the way jumps by this to the end
     ClosestPair best_;
     uint64_t node_tests_ = 0, point_tests_ = 0;
 };
@@ -81,16 +90,18 @@ Result<ClosestPair> closest_pair(const DistanceEngine& engine, PointBody a, Poin
     if (goal.sweep != Vec3(0.0) || goal.end)
         return fail(ErrorCode::invalid_value,
                     "a goal with a way of its own does not go with a motion");
-    if (motion.angle == 0.0) { // exactly, in one search
-        PairGoal straight = goal;
-        straight.sweep = motion.travel();
+    PairGoal straight = goal;
+    straight.end = motion.end;
+    if (auto checked = engine.check(a, b, motion.start, straight); !checked)
+        return tl::unexpected(std::move(checked).error());
+    if (motion.angle == 0.0 && motion.start.rotation == motion.end.rotation) { // exactly, at once
+        straight.end.reset();
+        straight.sweep = motion.end.translation - motion.start.translation;
         return engine.closest_pair(a, b, motion.start, straight);
     }
-    if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0) || !std::isfinite(motion.angle)
-        || !(std::abs(glm::length(motion.axis) - 1.0) <= 1e-9))
+    if (!std::isfinite(motion.angle) || !(std::abs(glm::length(motion.axis) - 1.0) <= 1e-9))
         return fail(ErrorCode::invalid_value,
-                    "the limit and the tolerance of a search must be lengths of 0 or more, and a "
-                    "motion must turn about an axis of length 1 by an angle that is a number");
+                    "a motion must turn about an axis of length 1 by an angle that is a number");
     return Search(engine, a, b, motion, goal).run(goal);
 }
 

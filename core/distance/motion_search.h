@@ -19,7 +19,8 @@ constexpr double least_motion_tolerance(double reach) { return 1e-6 + 1e-8 * rea
 /// Result: `distance` is that of the points named at the time `at`, and `lower` bounds that of all
 ///         points at all times; unless any will do they are no more than the goal's tolerance apart
 ///         (at least least_motion_tolerance(); exact if nothing turns).
-/// Errors: those of DistanceEngine::closest_pair; a goal with a sweep or an end.
+/// Errors: those of DistanceEngine::closest_pair; a goal with a sweep or an end; a motion that does
+///         not lead to its end.
 /// Cost:   a quarter turn of a 50 mm body to 1e-3 mm takes some ten searches where it comes near at
 ///         one time, some hundred where it is equally near all the way.
 /// Proof:  README.md beside this file, "Motions".

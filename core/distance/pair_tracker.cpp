@@ -1,5 +1,6 @@
 #include "core/distance/pair_tracker.h"
 
+#include <cmath>
 #include <limits>
 
 #include "core/distance/search_memory.h"
@@ -33,7 +34,8 @@ double PairTracker::lower_bound(const Transform& a_from_b) const {
     // The distances of two poses take some ten roundings of numbers of this size each.
     const double lengths = reach(box_of_a_) + reach(box_of_b_) + glm::length(a_from_b.translation)
                            + glm::length(known_pose_.translation);
-    const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * lengths;
+    // Squares of less than 1e-150 mm have lost their digits.
+    const double rounding = 1e-150 + 64.0 * std::numeric_limits<double>::epsilon() * lengths;
     const double moved = displacement(known_pose_, a_from_b, box_of_b_) + rounding;
     return known_lower_ > moved ? known_lower_ - moved : 0.0;
 }
@@ -49,6 +51,8 @@ Result<ClosestPair> PairTracker::closest_pair(const Transform& a_from_b, const P
 Result<bool> PairTracker::is_nearer(const Transform& a_from_b, double distance) {
     if (auto checked = engine_.check(a_, b_, a_from_b); !checked)
         return tl::unexpected(std::move(checked).error());
+    if (std::isnan(distance))
+        return fail(ErrorCode::invalid_value, "the distance asked about is no number");
     if (lower_bound(a_from_b) >= distance) return false;
     if (!nearest_) {
         FEELER_TRY(const ClosestPair found, search(a_from_b, {}));

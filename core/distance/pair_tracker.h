@@ -21,6 +21,8 @@ public:
 
     /// Whether any two points are nearer than `distance`. Most poses of a path that keeps away need
     /// no search.
+    ///
+    /// Errors: those of DistanceEngine::closest_pair; a distance that is no number.
     Result<bool> is_nearer(const Transform& a_from_b, double distance);
 
     /// What is known without a search: no two points are nearer at this pose.

@@ -70,7 +70,8 @@ public:
 
     /// The same, only with the pairs of the front; nothing if the answer may be elsewhere.
     std::optional<ClosestPair> run_along(const PairFront& front) {
-        const double moved = displacement(front.pose, motion_.start, body_b_.top->box) + rounding();
+        const double moved =
+            displacement(front.pose, motion_.start, body_b_.top->box) + rounding(front.pose);
         const double reach = front.limit - moved;
         if (!(reach > 0.0)) return {};
         for (const FrontPair& pair : front.pairs) {
@@ -102,14 +103,17 @@ public:
     }
 
 private:
-    /// What double precision may add to the distances of points at two poses: some ten operations.
-    double rounding() const {
+    /// What double precision may add to the distances of points at this pose and at another: some
+    /// ten operations; squares of less than 1e-150 mm have lost their digits.
+    double rounding(const Transform& other) const {
         const auto reach = [](const PointTreeView& body) {
             const PointTree::Node& root = body.top->nodes[0];
             return glm::length(root.origin) + static_cast<double>(root.reach);
         };
-        return 64.0 * std::numeric_limits<double>::epsilon()
-               * (reach(body_a_) + reach(body_b_) + glm::length(motion_.start.translation));
+        const double lengths = reach(body_a_) + reach(body_b_)
+                               + glm::length(motion_.start.translation)
+                               + glm::length(other.translation);
+        return 1e-150 + 64.0 * std::numeric_limits<double>::epsilon() * lengths;
     }
 
     // --- the front ---

@@ -50,14 +50,15 @@ public:
 private:
     /// What rounding can add to a gap computed from radii and mapped centres: some 10 operations on
     /// numbers up to the sum of all these lengths, and B's spheres becoming larger where its
-    /// transform is not quite a rotation.
+    /// transform is not quite a rotation. Squares of less than 1e-150 mm have lost their digits.
     static double rounding_of(const Node& a, const Node& b, const StraightMotion& motion) {
         const double reach = glm::length(a.centre) + a.radius + glm::length(b.centre) + b.radius
                              + glm::length(motion.start.translation)
                              + glm::length(motion.last().translation);
         const double stretch =
             std::max(distortion(motion.start.rotation), distortion(motion.last().rotation));
-        return 64.0 * std::numeric_limits<double>::epsilon() * reach + 2.0 * stretch * b.radius;
+        return 1e-150 + 64.0 * std::numeric_limits<double>::epsilon() * reach
+               + 2.0 * stretch * b.radius;
     }
 
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }

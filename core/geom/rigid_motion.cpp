@@ -31,6 +31,10 @@ Vec3 axis_of_large_turn(const Mat3& r, double cosine) {
 Transform RigidMotion::at(double time) const {
     if (time <= 0.0) return start;
     if (time >= 1.0) return end;
+    return turned_to(time);
+}
+
+Transform RigidMotion::turned_to(double time) const {
     const Mat3 turned = rotation_about(axis, time * angle) * start.rotation;
     const Vec3 from = start * centre;
     const Vec3 place = from + time * (end * centre - from);
@@ -74,6 +78,10 @@ double displacement(const Transform& from, const Transform& to, const Aabb& box)
         for (const Vec3& way : {middle + corner, middle - corner})
             most = std::max(most, glm::dot(way, way));
     return std::sqrt(most);
+}
+
+double gap_at_end(const RigidMotion& motion, const Aabb& box) {
+    return displacement(motion.turned_to(1.0), motion.end, box);
 }
 
 double reach_from_axis(const RigidMotion& motion, const Aabb& box) {

@@ -16,6 +16,10 @@ struct RigidMotion {
     /// The pose at a time 0..1; at 0 and 1 start and end themselves.
     Transform at(double time) const;
 
+    /// The pose that the turn leads to at a time, which at 0 and 1 is not to the last bit that of
+    /// start and end.
+    Transform turned_to(double time) const;
+
     /// How far `centre` goes. Frame: A's.
     Vec3 travel() const { return end * centre - start * centre; }
 };
@@ -31,6 +35,10 @@ RigidMotion turning_motion(const Transform& start, const Vec3& centre, const Vec
 
 /// The largest distance between where two poses put a point of the box (B's frame).
 double displacement(const Transform& from, const Transform& to, const Aabb& box);
+
+/// The largest distance, over the box (B's frame), between where the turn leads and `end`: rounding
+/// and what the poses are off rotations, or more if the parts of the motion do not go together.
+double gap_at_end(const RigidMotion& motion, const Aabb& box);
 
 /// The largest distance of a point of the box (B's frame) from the line that B turns about.
 double reach_from_axis(const RigidMotion& motion, const Aabb& box);

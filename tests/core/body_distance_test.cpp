@@ -61,6 +61,14 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
     expect_distance(separation(hollow, two, translation({38, 0, 0}), Vec3(0)), 0.0);
 }
 
+TEST(BodyDistance, OfABodyBesideAFoldInTheMatterIsZero) {
+    const ExactBody folded = solid_mesh(test_support::cube_with_a_fold());
+    const ExactBody cube = solid_mesh(box_mesh(Vec3(0), Vec3(1)));
+    const Transform place = translation({3.5, 0.229, 5.0}); // above the fold, in the matter
+    expect_distance(separation(folded, cube, place, Vec3(0)), 0.0);
+    expect_distance(separation(ball_at({3.5, 0.229, 5.0}, 0.5), folded), 0.0);
+}
+
 TEST(BodyDistance, SeesABodySweptIntoAnother) {
     const ExactBody box = solid_mesh(box_mesh(Vec3(-10), Vec3(10)));
     const ExactBody small = solid_mesh(box_mesh(Vec3(-1), Vec3(1)));

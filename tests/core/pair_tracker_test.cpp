@@ -1,3 +1,4 @@
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -154,12 +155,27 @@ TEST(PairTracker, KnowsHowFarBHasMovedAtMost) {
     EXPECT_NEAR(fullest, 1.0, 1e-12);
 }
 
+/// The squares of such lengths have lost most of their digits.
+TEST(PairTracker, BoundsDistancesWhoseSquaresUnderflow) {
+    const auto engine = fast_engine();
+    const PointBody one = engine->add(Points{Vec3(0.0)}).value();
+    const auto pose = [](double tiny) { return translation(tiny * Vec3(1.0, 0.7, 0.3)); };
+    const double exact = engine->closest_pair(one, one, pose(3e-161))->distance;
+    for (int i = 0; i < 200; ++i) {
+        PairTracker tracker(*engine, one, one);
+        ASSERT_TRUE(tracker.closest_pair(pose((30.0 + 0.3 * i) * 1e-162)));
+        EXPECT_LE(tracker.lower_bound(pose(3e-161)), exact);
+        EXPECT_EQ(tracker.closest_pair(pose(3e-161))->distance, exact);
+    }
+}
+
 TEST(PairTracker, PassesOnWhatIsWrong) {
     const auto engine = fast_engine();
     const PointBody one = engine->add(Points{Vec3(0.0)}).value();
     PairTracker tracker(*engine, one, one), nobody(*engine, one, PointBody(5));
     EXPECT_FALSE(tracker.closest_pair({Mat3(2.0), Vec3(0.0)}));
     EXPECT_FALSE(tracker.is_nearer({Mat3(2.0), Vec3(0.0)}, 1.0));
+    EXPECT_FALSE(tracker.is_nearer({}, std::nan("")));
     EXPECT_FALSE(nobody.closest_pair({}));
     EXPECT_FALSE(nobody.is_nearer({}, 1.0));
 }

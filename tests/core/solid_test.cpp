@@ -213,6 +213,18 @@ TEST(Holds, SaysWhatTheLineThroughThePointSays) {
     EXPECT_FALSE(holds(solid_mesh({}), Vec3(0.0)));
 }
 
+TEST(Holds, SeesTheMatterBesideAFoldOfTheSurface) {
+    const SolidMesh folded = solid_mesh(test_support::cube_with_a_fold());
+    EXPECT_TRUE(holds(folded, {3.5, 0.229, 5.0}));
+    EXPECT_FALSE(holds(folded, {3.5, 0.229, 11.0}));
+    EXPECT_FALSE(holds(folded, {3.5, 0.229, -11.5})); // in the fold
+}
+
+TEST(ColumnOfAMesh, HoldsTheMatterBesideAFoldOfTheSurface) {
+    const Solid folded{solid_mesh(test_support::cube_with_a_fold()), 0.0};
+    EXPECT_TRUE(column_of(folded, {3.5, 3.501, 0.229, 0.2291}).contains(5.0));
+}
+
 TEST(SolidMesh, HasAPointOfEveryShell) {
     const SolidMesh solid = solid_mesh(test_support::together(
         box_mesh(Vec3(-3), Vec3(3)), test_support::together(box_mesh({10, 0, 0}, {11, 1, 1}),

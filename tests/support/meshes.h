@@ -21,6 +21,28 @@ inline core::Mesh box_mesh(const core::Vec3& min, const core::Vec3& max) {
     return mesh;
 }
 
+/// A cube of half size 10 with a hole, thin as a needle, that runs from (-8.2, 0.2) in the top face
+/// aslant through the bottom and ends outside of it: there the mesh is inside out.
+inline core::Mesh cube_with_a_fold() {
+    core::Mesh mesh = box_mesh(core::Vec3(-10.0), core::Vec3(10.0));
+    mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4); // the top
+    for (const auto& p : {core::Vec3(-8.23, 0.17, 10.0), core::Vec3(-8.13, 0.17, 10.0),
+                          core::Vec3(-8.18, 0.27, 10.0), core::Vec3(4.31, 0.23, -13.0)})
+        mesh.vertices.push_back(p);
+    for (const core::Mesh::Corners& t : {core::Mesh::Corners{4, 5, 8},
+                                         {5, 9, 8},
+                                         {5, 7, 9},
+                                         {7, 10, 9},
+                                         {7, 6, 10},
+                                         {6, 4, 10},
+                                         {4, 8, 10},
+                                         {8, 9, 11},
+                                         {9, 10, 11},
+                                         {10, 8, 11}})
+        mesh.triangles.push_back(t);
+    return mesh;
+}
+
 /// A torus about Z; radius of the ring, radius of the tube, facets round each.
 inline core::Mesh torus_mesh(double ring, double tube, uint32_t ring_count, uint32_t tube_count) {
     core::Mesh mesh;
