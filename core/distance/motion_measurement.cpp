@@ -14,7 +14,12 @@ class Measuring {
 public:
     Measuring(const DistanceEngine& engine, const MeasuredBody& a, const MeasuredBody& b,
               const RigidMotion& motion, const MeasureGoal& goal)
-        : engine_(engine), a_(a), b_(b), motion_(motion), goal_(goal) {
+        : engine_(engine),
+          a_(a),
+          b_(b),
+          motion_(motion),
+          goal_(goal),
+          gap_(gap_at_end(motion, {Vec3(-b.reach), Vec3(b.reach)})) {
         const Vec3 axis_in_b = glm::transpose(motion.start.rotation) * motion.axis;
         from_axis_ = b.reach + glm::length(glm::cross(axis_in_b, motion.centre));
         rounding_ = search_rounding(a.reach + b.reach
@@ -44,7 +49,7 @@ private:
     /// The body keeps the orientation that it has half way and goes straight; by how much a point
     /// swings out of that is taken off.
     Result<StretchBound> measured(double from, double to, double worth) {
-        const double allowance = swing(motion_, from_axis_, to - from) + rounding_;
+        const double allowance = swing(motion_, from_axis_, to - from) + gap_ + rounding_;
         const Mat3 half_way = motion_.at(0.5 * (from + to)).rotation;
         const Transform start{half_way,
                               motion_.at(from) * motion_.centre - half_way * motion_.centre};
@@ -77,6 +82,7 @@ private:
     const RigidMotion& motion_;
     const MeasureGoal goal_;
     double from_axis_ = 0.0, rounding_ = 0.0;
+    double gap_; // the last part of the way jumps by this to the end
     std::optional<PointPair> first_;
     std::string reason_;
     Measurement best_;
@@ -91,9 +97,9 @@ Result<Measurement> measure(const DistanceEngine& engine, const MeasuredBody& a,
     if (goal.sweep != Vec3(0.0))
         return fail(ErrorCode::invalid_value,
                     "a goal with a way of its own does not go with a motion");
-    if (motion.angle == 0.0) {
+    if (motion.angle == 0.0 && motion.start.rotation == motion.end.rotation) {
         MeasureGoal straight = goal;
-        straight.sweep = motion.travel();
+        straight.sweep = motion.end.translation - motion.start.translation;
         return measure(engine, a, b, motion.start, straight);
     }
     MeasureGoal turning = goal;

@@ -163,7 +163,7 @@ private:
         const PointTree::Node& b = body_b_.top->nodes[0];
         const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
         const double apart = swept_distance(a.origin - motion_.start * b.origin, motion_.sweep);
-        return apart - reach > goal_.limit + 1e-6 * reach + rounding();
+        return apart - reach > goal_.limit + 1e-6 * reach + rounding(motion_.start);
     }
 
     // --- the frame ---
