@@ -14,12 +14,7 @@ class Measuring {
 public:
     Measuring(const DistanceEngine& engine, const MeasuredBody& a, const MeasuredBody& b,
               const RigidMotion& motion, const MeasureGoal& goal)
-        : engine_(engine),
-          a_(a),
-          b_(b),
-          motion_(motion),
-          goal_(goal),
-          gap_(gap_at_end(motion, {Vec3(-b.reach), Vec3(b.reach)})) {
+        : engine_(engine), a_(a), b_(b), motion_(motion), goal_(goal) {
         const Vec3 axis_in_b = glm::transpose(motion.start.rotation) * motion.axis;
         from_axis_ = b.reach + glm::length(glm::cross(axis_in_b, motion.centre));
         rounding_ = search_rounding(a.reach + b.reach
@@ -27,6 +22,7 @@ public:
                                           * (2.0 * glm::length(motion.centre)
                                              + glm::length(motion.start.translation)
                                              + glm::length(motion.end.translation)));
+        rounding_ += gap_at_end(motion, {Vec3(-b.reach), Vec3(b.reach)});
     }
 
     Result<Measurement> run(const ClosestPair& scan) {
@@ -49,7 +45,7 @@ private:
     /// The body keeps the orientation that it has half way and goes straight; by how much a point
     /// swings out of that is taken off.
     Result<StretchBound> measured(double from, double to, double worth) {
-        const double allowance = swing(motion_, from_axis_, to - from) + gap_ + rounding_;
+        const double allowance = swing(motion_, from_axis_, to - from) + rounding_;
         const Mat3 half_way = motion_.at(0.5 * (from + to)).rotation;
         const Transform start{half_way,
                               motion_.at(from) * motion_.centre - half_way * motion_.centre};
@@ -82,7 +78,6 @@ private:
     const RigidMotion& motion_;
     const MeasureGoal goal_;
     double from_axis_ = 0.0, rounding_ = 0.0;
-    double gap_; // the last part of the way jumps by this to the end
     std::optional<PointPair> first_;
     std::string reason_;
     Measurement best_;

@@ -163,7 +163,8 @@ private:
         const PointTree::Node& b = body_b_.top->nodes[0];
         const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
         const double apart = swept_distance(a.origin - motion_.start * b.origin, motion_.sweep);
-        return apart - reach > goal_.limit + 1e-6 * reach + rounding(motion_.start);
+        const double error = std::max(rounding(motion_.start), rounding(motion_.last()));
+        return apart - reach > goal_.limit + 1e-6 * reach + error;
     }
 
     // --- the frame ---

@@ -170,6 +170,25 @@ TEST(MotionMeasurement, SeesABarSwingThroughAPost) {
     EXPECT_NEAR(above->upper, 7.0, 1e-3);
 }
 
+/// A rotation may be off by a little: the end is then read in more than one way, and the bound
+/// holds for all of them. One that is off by more is refused.
+TEST(MotionMeasurement, HoldsAtAnEndThatIsNotQuiteARotation) {
+    const auto engine = fast_engine();
+    const auto cube = taken_into(*engine, measured_body(Box{Vec3(10.0)}, 1.0).value()).value();
+    const auto bar = taken_into(*engine, measured_body(Box{{2000, 2, 2}}, 1.0).value()).value();
+    const Transform start = translation({1010, 0, 0});
+    for (const double turn_deg : {0.0, 1e-9, 1e-6}) {
+        const Mat3 turned = rotation_xyz_deg({0, 0, turn_deg});
+        const Transform end{(1.0 + 4.9e-10) * turned, start.translation};
+        const auto found = measure(*engine, cube, bar, motion_between(start, end));
+        ASSERT_TRUE(found);
+        EXPECT_LE(found->lower, 5.0 - 4.9e-7); // as the matrix puts the bar's end
+        EXPECT_GE(found->upper, 5.0 - 4.9e-7);
+    }
+    const Transform across{rotation_xyz_deg({0, 0, 90}), start.translation};
+    EXPECT_FALSE(measure(*engine, cube, bar, RigidMotion{.start = start, .end = across}));
+}
+
 TEST(MotionMeasurement, LooksNoFartherThanTheLimit) {
     Bodies bodies;
     std::mt19937 rng(3);
