@@ -1,0 +1,210 @@
+#include "gcode/radius_compensation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
+constexpr double straight_on = 0.05;
+
+core::Error refusal(const core::SourceSpan& where, std::string message) {
+    return {ErrorCode::invalid_value, where, std::move(message)};
+}
+
+/// The way from a point of the contour to the tool's centre beside it.
+FlatPoint beside(const RadiusCompensation& compensation, FlatPoint heading) {
+    const FlatPoint left = compensation.radius * left_of(heading);
+    return compensation.side == ContourSide::left ? left : -1.0 * left;
+}
+
+/// Whether the tool runs on the side of the arc's centre.
+bool is_inside(ContourSide side, const FlatArc& arc) {
+    return (side == ContourSide::left) == (arc.turns > 0);
+}
+
+double compensated_radius(const RadiusCompensation& compensation, const FlatArc& arc,
+                          FlatPoint on_contour) {
+    const double radius = length(on_contour - arc.centre);
+    return is_inside(compensation.side, arc) ? radius - compensation.radius
+                                             : radius + compensation.radius;
+}
+
+/// The programmed end of the last move, and how the contour goes on from it.
+struct Corner {
+    FlatPoint at;
+    FlatPoint arriving, leaving;           // directions of the contour
+    FlatPoint tool_arriving, tool_leaving; // the tool's centre beside either
+};
+
+Corner corner_before(const RadiusCompensation& compensation, const ContourMove& move) {
+    const FlatPoint at = compensation.programmed;
+    const FlatPoint to_tool = direction(compensation.tool - at);
+    const FlatPoint turned = left_of(to_tool);
+    const FlatPoint arriving = compensation.side == ContourSide::left ? -1.0 * turned : turned;
+    const FlatPoint leaving = move.arc ? tangent(*move.arc, at) : direction(move.end - at);
+    return {at, arriving, leaving, compensation.tool, at + beside(compensation, leaving)};
+}
+
+enum class Bend { inside, straight_on, outside };
+
+Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
+             const ContourMove& move) {
+    const double to_left =
+        std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
+    const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
+    if (std::abs(to_tool) > std::numbers::pi - straight_on) {
+        const bool between = move.arc && !is_inside(compensation.side, *move.arc);
+        return between ? Bend::inside : Bend::outside;
+    }
+    if (std::abs(to_tool) <= straight_on) return Bend::straight_on;
+    return to_tool > 0.0 ? Bend::inside : Bend::outside;
+}
+
+/// Where the tool's centre is when it touches both sides of an inside corner.
+std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, const Corner& corner,
+                                       const ContourMove& move) {
+    const std::optional<FlatArc>& before = compensation.waiting.front().arc;
+    const double radius_before = before ? length(corner.tool_arriving - before->centre) : 0.0;
+    const double radius = move.arc ? compensated_radius(compensation, *move.arc, move.end) : 0.0;
+    if (before && move.arc) {
+        const auto crossings =
+            cross_circles(before->centre, radius_before, move.arc->centre, radius);
+        if (!crossings) return {};
+        const double side = cross(move.arc->centre - before->centre, corner.at - before->centre);
+        return side > 0.0 ? crossings->first : crossings->second;
+    }
+    if (move.arc) {
+        const auto crossings =
+            cross_line_and_circle(corner.tool_arriving, corner.arriving, move.arc->centre, radius);
+        if (!crossings) return {};
+        return is_inside(compensation.side, *move.arc) ? crossings->second : crossings->first;
+    }
+    if (before) {
+        const auto crossings = cross_line_and_circle(corner.tool_leaving, corner.leaving,
+                                                     before->centre, radius_before);
+        if (!crossings) return {};
+        return is_inside(compensation.side, *before) ? crossings->first : crossings->second;
+    }
+    const FlatPoint arriving = corner.tool_arriving - corner.at;
+    const FlatPoint both = arriving + (corner.tool_leaving - corner.at);
+    return corner.at + (dot(arriving, arriving) / dot(arriving, both)) * both;
+}
+
+/// Lets the waiting moves end at a point and returns them; they wait no longer.
+core::Result<CompensatedMoves> end_waiting(RadiusCompensation& compensation, FlatPoint end) {
+    CompensatedMoves moves = std::move(compensation.waiting);
+    compensation.waiting.clear();
+    if (moves.empty()) return moves;
+    const CompensatedMove& first = moves.front();
+    bool too_short = dot(compensation.waiting_way, end - compensation.reached) < 0.0;
+    if (first.arc)
+        too_short = turned_angle(*first.arc, compensation.reached, end)
+                    > turned_angle(*first.arc, compensation.reached, first.end) + 1e-6;
+    if (too_short) return tl::unexpected(refusal(compensation.waiting_where, "too short"));
+    for (CompensatedMove& move : moves) move.end = end;
+    compensation.reached = end;
+    return moves;
+}
+
+/// Puts the move itself, at its end as far as that is known, after what waits no longer.
+void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPoint tool_end,
+               FlatPoint way, const std::optional<FlatArc>& arc) {
+    compensation.waiting.push_back({move.id, move.rapid, false, tool_end, arc});
+    compensation.waiting_way = way;
+    compensation.waiting_where = move.where;
+    compensation.programmed = move.end;
+    compensation.tool = tool_end;
+}
+
+/// The circle through the tool's start that meets the end as the programmed arc does.
+std::optional<FlatArc> entry_arc(FlatPoint start, FlatPoint end, const FlatArc& programmed) {
+    const FlatPoint to_centre = direction(programmed.centre - end);
+    const FlatPoint chord = start - end;
+    const double reach = dot(chord, to_centre);
+    if (std::abs(reach) < 1e-6 * length(chord)) return {};
+    return FlatArc{end + (0.5 * dot(chord, chord) / reach) * to_centre, programmed.turns};
+}
+
+core::Result<void> check_fit(const RadiusCompensation& compensation, const ContourMove& move) {
+    if (!move.arc || !is_inside(compensation.side, *move.arc)) return {};
+    const double radius = length(move.end - move.arc->centre);
+    if (radius > compensation.radius) return {};
+    return tl::unexpected(refusal(move.where, fmt::format("fit")));
+}
+
+core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const ContourMove& move) {
+    const double way = length(move.end - compensation.programmed);
+    if (way <= compensation.radius) return tl::unexpected(refusal(move.where, "entry"));
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const FlatPoint heading =
+        move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
+    const FlatPoint end = move.end + beside(compensation, heading);
+    std::optional<FlatArc> arc;
+    if (move.arc) {
+        arc = entry_arc(compensation.programmed, end, *move.arc);
+        if (!arc) return tl::unexpected(refusal(move.where, "entry arc"));
+    }
+    compensation.entered = true;
+    wait_with(compensation, move, end, {}, arc);
+    return CompensatedMoves{};
+}
+
+core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const ContourMove& move) {
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const Corner corner = corner_before(compensation, move);
+    const Bend bend = bend_of(compensation, corner, move);
+    FlatPoint met = corner.tool_arriving;
+    if (bend == Bend::inside) {
+        const auto both = touching_both(compensation, corner, move);
+        if (!both) return tl::unexpected(refusal(move.where, "no corner"));
+        met = *both;
+    }
+    FEELER_TRY(CompensatedMoves moves, end_waiting(compensation, met));
+    FlatPoint start = met;
+    if (bend == Bend::outside) {
+        const int turns = compensation.side == ContourSide::left ? -1 : 1;
+        const bool straight = move.rapid;
+        moves.push_back({move.id, move.rapid, true, corner.tool_leaving, {}});
+        if (!straight) moves.back().arc = FlatArc{corner.at, turns};
+        start = corner.tool_leaving;
+    }
+    compensation.reached = start;
+    const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : corner.leaving;
+    const FlatPoint end = move.end + beside(compensation, heading);
+    wait_with(compensation, move, end, move.arc ? FlatPoint{} : move.end - corner.at, move.arc);
+    return moves;
+}
+
+} // namespace
+
+RadiusCompensation begin_compensation(ContourSide side, double radius, FlatPoint at) {
+    if (radius < 0.0) side = side == ContourSide::left ? ContourSide::right : ContourSide::left;
+    return {.side = side, .radius = std::abs(radius), .programmed = at, .tool = at, .reached = at};
+}
+
+core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const ContourMove& move) {
+    RadiusCompensation next = compensation;
+    core::Result<CompensatedMoves> moves;
+    if (!compensation.entered) {
+        moves = enter(next, move);
+    } else if (!move.arc && move.end == compensation.programmed) {
+        next.waiting.push_back({move.id, move.rapid, false, next.tool, {}});
+    } else {
+        moves = go_on(next, move);
+    }
+    if (moves) compensation = std::move(next);
+    return moves;
+}
+
+core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation) {
+    return end_waiting(compensation, compensation.tool);
+}
+
+} // namespace gcode
