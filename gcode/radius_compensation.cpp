@@ -9,13 +9,11 @@
 namespace gcode {
 namespace {
 
-using core::ErrorCode;
-
 /// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
 constexpr double straight_on = 0.05;
 
-core::Error refusal(const core::SourceSpan& where, std::string message) {
-    return {ErrorCode::invalid_value, where, std::move(message)};
+tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string message) {
+    return core::fail(core::ErrorCode::invalid_value, std::move(message), where);
 }
 
 /// The way from a point of the contour to the tool's centre beside it.
@@ -60,7 +58,9 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - straight_on) {
-        const bool between = move.arc && !is_inside(compensation.side, *move.arc);
+        const std::optional<FlatArc>& before = compensation.waiting.front().arc;
+        const bool between = (move.arc && !is_inside(compensation.side, *move.arc))
+                             || (before && !is_inside(compensation.side, *before));
         return between ? Bend::inside : Bend::outside;
     }
     if (std::abs(to_tool) <= straight_on) return Bend::straight_on;
@@ -97,27 +97,41 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
     return corner.at + (dot(arriving, arriving) / dot(arriving, both)) * both;
 }
 
+/// Whether the waiting move would have to go backwards to end at a point.
+bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
+    const std::optional<FlatArc>& arc = compensation.waiting.front().arc;
+    if (!arc) return dot(compensation.waiting_way, end - compensation.reached) < 0.0;
+    return turned_angle(*arc, compensation.reached, end) > compensation.waiting_angle + 1e-6;
+}
+
 /// Lets the waiting moves end at a point and returns them; they wait no longer.
-core::Result<CompensatedMoves> end_waiting(RadiusCompensation& compensation, FlatPoint end) {
+CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
+    if (compensation.waiting.empty()) return {};
+    const bool turned = turns_round(compensation, end);
     CompensatedMoves moves = std::move(compensation.waiting);
     compensation.waiting.clear();
-    if (moves.empty()) return moves;
-    const CompensatedMove& first = moves.front();
-    bool too_short = dot(compensation.waiting_way, end - compensation.reached) < 0.0;
-    if (first.arc)
-        too_short = turned_angle(*first.arc, compensation.reached, end)
-                    > turned_angle(*first.arc, compensation.reached, first.end) + 1e-6;
-    if (too_short) return tl::unexpected(refusal(compensation.waiting_where, "too short"));
+    moves.front().turned_round = turned;
     for (CompensatedMove& move : moves) move.end = end;
     compensation.reached = end;
     return moves;
 }
 
-/// Puts the move itself, at its end as far as that is known, after what waits no longer.
+/// What LinuxCNC checks where the contour bends to the inside, and at G40: that the waiting move
+/// keeps its direction. Of the entry it does not.
+core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
+    if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
+        return {};
+    return refusal(compensation.waiting_where, "direction");
+}
+
+/// Puts the move, at its end as far as that is known, in the place of what waited.
 void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPoint tool_end,
-               FlatPoint way, const std::optional<FlatArc>& arc) {
-    compensation.waiting.push_back({move.id, move.rapid, false, tool_end, arc});
-    compensation.waiting_way = way;
+               const std::optional<FlatArc>& arc) {
+    compensation.waiting.push_back(
+        {.id = move.id, .rapid = move.rapid, .end = tool_end, .arc = arc});
+    compensation.waiting_way = move.end - compensation.programmed;
+    compensation.waiting_angle =
+        arc ? turned_angle(*move.arc, compensation.programmed, move.end) : 0.0;
     compensation.waiting_where = move.where;
     compensation.programmed = move.end;
     compensation.tool = tool_end;
@@ -136,12 +150,12 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
     if (!move.arc || !is_inside(compensation.side, *move.arc)) return {};
     const double radius = length(move.end - move.arc->centre);
     if (radius > compensation.radius) return {};
-    return tl::unexpected(refusal(move.where, fmt::format("fit")));
+    return refusal(move.where, fmt::format("fit"));
 }
 
 core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const ContourMove& move) {
     const double way = length(move.end - compensation.programmed);
-    if (way <= compensation.radius) return tl::unexpected(refusal(move.where, "entry"));
+    if (way <= compensation.radius) return refusal(move.where, "entry");
     if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
     const FlatPoint heading =
         move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
@@ -149,10 +163,12 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     std::optional<FlatArc> arc;
     if (move.arc) {
         arc = entry_arc(compensation.programmed, end, *move.arc);
-        if (!arc) return tl::unexpected(refusal(move.where, "entry arc"));
+        if (!arc) return refusal(move.where, "entry arc");
     }
+    wait_with(compensation, move, end, arc);
+    if (arc) compensation.waiting_angle = turned_angle(*arc, compensation.reached, end);
     compensation.entered = true;
-    wait_with(compensation, move, end, {}, arc);
+    compensation.entering = true;
     return CompensatedMoves{};
 }
 
@@ -163,22 +179,25 @@ core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const Con
     FlatPoint met = corner.tool_arriving;
     if (bend == Bend::inside) {
         const auto both = touching_both(compensation, corner, move);
-        if (!both) return tl::unexpected(refusal(move.where, "no corner"));
+        if (!both) return refusal(move.where, "no corner");
         met = *both;
+        if (auto kept = check_direction(compensation, met); !kept)
+            return tl::unexpected(kept.error());
     }
-    FEELER_TRY(CompensatedMoves moves, end_waiting(compensation, met));
-    FlatPoint start = met;
+    CompensatedMoves moves = end_waiting(compensation, met);
     if (bend == Bend::outside) {
         const int turns = compensation.side == ContourSide::left ? -1 : 1;
-        const bool straight = move.rapid;
-        moves.push_back({move.id, move.rapid, true, corner.tool_leaving, {}});
-        if (!straight) moves.back().arc = FlatArc{corner.at, turns};
-        start = corner.tool_leaving;
+        moves.push_back({.id = move.id,
+                         .rapid = move.rapid,
+                         .rounds_corner = true,
+                         .end = corner.tool_leaving,
+                         .arc = {}});
+        if (!move.rapid) moves.back().arc = FlatArc{corner.at, turns};
+        compensation.reached = corner.tool_leaving;
     }
-    compensation.reached = start;
     const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : corner.leaving;
-    const FlatPoint end = move.end + beside(compensation, heading);
-    wait_with(compensation, move, end, move.arc ? FlatPoint{} : move.end - corner.at, move.arc);
+    wait_with(compensation, move, move.end + beside(compensation, heading), move.arc);
+    compensation.entering = false;
     return moves;
 }
 
@@ -195,7 +214,7 @@ core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const 
     if (!compensation.entered) {
         moves = enter(next, move);
     } else if (!move.arc && move.end == compensation.programmed) {
-        next.waiting.push_back({move.id, move.rapid, false, next.tool, {}});
+        next.waiting.push_back({.id = move.id, .rapid = move.rapid, .end = next.tool, .arc = {}});
     } else {
         moves = go_on(next, move);
     }
@@ -204,6 +223,8 @@ core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const 
 }
 
 core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation) {
+    if (auto kept = check_direction(compensation, compensation.tool); !kept)
+        return tl::unexpected(kept.error());
     return end_waiting(compensation, compensation.tool);
 }
 

@@ -23,12 +23,15 @@ struct ContourMove {
 
 /// A move of the tool's centre. A programmed move becomes one, or two at an outside corner.
 struct CompensatedMove {
-    size_t id; // of the programmed move it is part of
-    bool rapid;
+    size_t id = 0; // of the programmed move it is part of
+    bool rapid = false;
     /// It leads round the outside corner at which the programmed move starts. All axes outside of
     /// the plane stand still meanwhile; their whole travel belongs to the programmed move's other
     /// part, of which there is always exactly one.
-    bool rounds_corner;
+    bool rounds_corner = false;
+    /// The inside corner at its start took more than its length, so that it runs backwards and the
+    /// tool cuts into the contour. LinuxCNC refuses that only at the next inside corner and at G40.
+    bool turned_round = false;
     FlatPoint end;
     std::optional<FlatArc> arc; // straight when empty
 
@@ -43,15 +46,17 @@ using CompensatedMoves = std::vector<CompensatedMove>;
 /// A plain value. Moves without motion in the plane (the normal axis, rotary axes) take part too:
 /// they wait behind the move that waits, and happen where it will end.
 struct RadiusCompensation {
-    ContourSide side;
-    double radius;        // mm, positive
-    FlatPoint programmed; // where the program is
-    FlatPoint tool;       // where the tool's centre would be if nothing followed
-    FlatPoint reached;    // where the moves that are final have brought it
-    bool entered = false; // the entry move was made
+    ContourSide side = ContourSide::left;
+    double radius = 0.0;   // mm, positive
+    FlatPoint programmed;  // where the program is
+    FlatPoint tool;        // where the tool's centre would be if nothing followed
+    FlatPoint reached;     // where the moves that are final have brought it
+    bool entered = false;  // the entry move was made
+    bool entering = false; // and is the one that waits
 
     CompensatedMoves waiting{}; // a move in the plane, then those without motion in it
-    FlatPoint waiting_way{};    // of the first of them, as far as it must not be turned round
+    FlatPoint waiting_way{};    // of the first of them, as programmed
+    double waiting_angle = 0.0; // and, for an arc, how far it turns
     core::SourceSpan waiting_where{};
 };
 
