@@ -58,9 +58,10 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - straight_on) {
-        const std::optional<FlatArc>& before = compensation.waiting.front().arc;
-        const bool between = (move.arc && !is_inside(compensation.side, *move.arc))
-                             || (before && !is_inside(compensation.side, *before));
+        // Between an arc the tool passes outside and what touches the arc there is a wedge. The
+        // reference asks the arc that leaves, and only before a line the one that arrives.
+        const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
+        const bool between = arc && !is_inside(compensation.side, *arc);
         return between ? Bend::inside : Bend::outside;
     }
     if (std::abs(to_tool) <= straight_on) return Bend::straight_on;
@@ -77,7 +78,10 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
         const auto crossings =
             cross_circles(before->centre, radius_before, move.arc->centre, radius);
         if (!crossings) return {};
-        const double side = cross(move.arc->centre - before->centre, corner.at - before->centre);
+        const bool reversing = dot(corner.arriving, corner.leaving) < -std::cos(straight_on);
+        const double side =
+            reversing ? dot(crossings->second - crossings->first, corner.arriving)
+                      : cross(move.arc->centre - before->centre, corner.at - before->centre);
         return side > 0.0 ? crossings->first : crossings->second;
     }
     if (move.arc) {
@@ -101,7 +105,7 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
 bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
     const std::optional<FlatArc>& arc = compensation.waiting.front().arc;
     if (!arc) return dot(compensation.waiting_way, end - compensation.reached) < 0.0;
-    return turned_angle(*arc, compensation.reached, end) > compensation.waiting_angle + 1e-6;
+    return turned_angle(*arc, compensation.reached, end) > compensation.waiting_angle + 2.0 * straight_on;
 }
 
 /// Lets the waiting moves end at a point and returns them; they wait no longer.
