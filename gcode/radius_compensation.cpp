@@ -12,6 +12,9 @@ namespace {
 /// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
 constexpr double straight_on = 0.05;
 
+/// A move that inside corners leave no more of than this, mm, has no direction.
+constexpr double degenerate = 1e-6;
+
 tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string message) {
     return core::fail(core::ErrorCode::invalid_value, std::move(message), where);
 }
@@ -104,7 +107,9 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
 /// Whether the waiting move would have to go backwards to end at a point.
 bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
     const std::optional<FlatArc>& arc = compensation.waiting.front().arc;
-    if (!arc) return dot(compensation.waiting_way, end - compensation.reached) < 0.0;
+    const FlatPoint way = end - compensation.reached;
+    if (length(way) < degenerate) return false;
+    if (!arc) return dot(compensation.waiting_way, way) < 0.0;
     return turned_angle(*arc, compensation.reached, end) > compensation.waiting_angle + 2.0 * straight_on;
 }
 
@@ -185,6 +190,8 @@ core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const Con
         const auto both = touching_both(compensation, corner, move);
         if (!both) return refusal(move.where, "no corner");
         met = *both;
+    }
+    if (bend == Bend::inside || (bend == Bend::outside && !move.arc)) {
         if (auto kept = check_direction(compensation, met); !kept)
             return tl::unexpected(kept.error());
     }
