@@ -110,7 +110,8 @@ bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
     const FlatPoint way = end - compensation.reached;
     if (length(way) < degenerate) return false;
     if (!arc) return dot(compensation.waiting_way, way) < 0.0;
-    return turned_angle(*arc, compensation.reached, end) > compensation.waiting_angle + 2.0 * straight_on;
+    return turned_angle(*arc, compensation.reached, end)
+           > compensation.waiting_angle + 2.0 * straight_on;
 }
 
 /// Lets the waiting moves end at a point and returns them; they wait no longer.
@@ -130,7 +131,11 @@ CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
 core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
     if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
         return {};
-    return refusal(compensation.waiting_where, "direction");
+    return refusal(compensation.waiting_where,
+                   fmt::format("the tool, of radius {:g} mm, does not fit beside this move: the "
+                               "inside corners at its ends take more than its whole length; take "
+                               "a smaller tool, or make the move longer",
+                               compensation.radius));
 }
 
 /// Puts the move, at its end as far as that is known, in the place of what waited.
@@ -159,12 +164,21 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
     if (!move.arc || !is_inside(compensation.side, *move.arc)) return {};
     const double radius = length(move.end - move.arc->centre);
     if (radius > compensation.radius) return {};
-    return refusal(move.where, fmt::format("fit"));
+    return refusal(move.where,
+                   fmt::format("the tool, of radius {:g} mm, runs inside this arc of radius {:g} "
+                               "mm and does not fit into it; take a smaller tool or a larger arc",
+                               compensation.radius, radius));
 }
 
 core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const ContourMove& move) {
     const double way = length(move.end - compensation.programmed);
-    if (way <= compensation.radius) return refusal(move.where, "entry");
+    if (way <= compensation.radius)
+        return refusal(move.where,
+                       fmt::format("the first move under cutter radius compensation leads the tool "
+                                   "to the contour: it must go farther in the plane than the "
+                                   "tool's radius of {:g} mm, and goes {:g} mm; start from "
+                                   "farther away",
+                                   compensation.radius, way));
     if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
     const FlatPoint heading =
         move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
@@ -172,10 +186,16 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     std::optional<FlatArc> arc;
     if (move.arc) {
         arc = entry_arc(compensation.programmed, end, *move.arc);
-        if (!arc) return refusal(move.where, "entry arc");
+        if (!arc)
+            return refusal(move.where, "no arc from here meets the contour as this one does with "
+                                       "cutter radius compensation; enter by a straight move");
     }
     wait_with(compensation, move, end, arc);
-    if (arc) compensation.waiting_angle = turned_angle(*arc, compensation.reached, end);
+    if (arc) {
+        // A circle that bends the other way passes the end against the programmed direction.
+        const bool against = dot(arc->centre - end, move.arc->centre - end) < 0.0;
+        compensation.waiting_angle = against ? -1.0 : turned_angle(*arc, compensation.reached, end);
+    }
     compensation.entered = true;
     compensation.entering = true;
     return CompensatedMoves{};
@@ -188,7 +208,12 @@ core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const Con
     FlatPoint met = corner.tool_arriving;
     if (bend == Bend::inside) {
         const auto both = touching_both(compensation, corner, move);
-        if (!both) return refusal(move.where, "no corner");
+        if (!both)
+            return refusal(move.where,
+                           fmt::format("the tool, of radius {:g} mm, does not fit into the inside "
+                                       "corner at the start of this move; take a smaller tool, or "
+                                       "round the corner",
+                                       compensation.radius));
         met = *both;
     }
     if (bend == Bend::inside || (bend == Bend::outside && !move.arc)) {
