@@ -14,7 +14,7 @@ std::optional<Crossings> cross_line_and_circle(FlatPoint through, FlatPoint way,
     const FlatPoint along = direction(way);
     const double foot = dot(centre - through, along);
     const double distance = cross(along, centre - through);
-    if (std::abs(distance) > radius * (1.0 - 1e-9)) return {};
+    if (std::abs(distance) > radius) return {};
     const double half = std::sqrt((radius - distance) * (radius + distance));
     return Crossings{through + (foot - half) * along, through + (foot + half) * along};
 }
