@@ -10,7 +10,7 @@ namespace gcode {
 namespace {
 
 /// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
-constexpr double straight_on = 0.05;
+constexpr double slight_bend = 0.05;
 
 /// A move that inside corners leave no more of than this, mm, has no direction.
 constexpr double degenerate = 1e-6;
@@ -60,14 +60,14 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
     const double to_left =
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
-    if (std::abs(to_tool) > std::numbers::pi - straight_on) {
+    if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
         // Between an arc the tool passes outside and what touches the arc there is a wedge. The
         // reference asks the arc that leaves, and only before a line the one that arrives.
         const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
         const bool between = arc && !is_inside(compensation.side, *arc);
         return between ? Bend::inside : Bend::outside;
     }
-    if (std::abs(to_tool) <= straight_on) return Bend::straight_on;
+    if (std::abs(to_tool) <= slight_bend) return Bend::straight_on;
     return to_tool > 0.0 ? Bend::inside : Bend::outside;
 }
 
@@ -81,7 +81,7 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
         const auto crossings =
             cross_circles(before->centre, radius_before, move.arc->centre, radius);
         if (!crossings) return {};
-        const bool reversing = dot(corner.arriving, corner.leaving) < -std::cos(straight_on);
+        const bool reversing = dot(corner.arriving, corner.leaving) < -std::cos(slight_bend);
         const double side =
             reversing ? dot(crossings->second - crossings->first, corner.arriving)
                       : cross(move.arc->centre - before->centre, corner.at - before->centre);
@@ -111,7 +111,7 @@ bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
     if (length(way) < degenerate) return false;
     if (!arc) return dot(compensation.waiting_way, way) < 0.0;
     return turned_angle(*arc, compensation.reached, end)
-           > compensation.waiting_angle + 2.0 * straight_on;
+           > compensation.waiting_angle + 2.0 * slight_bend;
 }
 
 /// Lets the waiting moves end at a point and returns them; they wait no longer.
