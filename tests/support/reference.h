@@ -41,7 +41,7 @@ inline std::vector<ReferenceRun> run_reference(const std::vector<std::string>& p
             runs.emplace_back();
         else if (call == "refused")
             runs.back().refusal = line.substr(8);
-        else if (call != "ended") {
+        else if (!call.empty() && call != "ended") {
             ReferenceMotion motion{call, {}};
             for (double value; words >> value;) motion.values.push_back(value);
             runs.back().motions.push_back(motion);

@@ -70,12 +70,14 @@ def main():
             print("program", flush=True)
             child = os.fork()  # what a program leaves in the interpreter must not reach the next
             if child == 0:
-                signal.alarm(2)  # some cycles never end
-                sys.stderr = open(os.devnull, "w")
+                signal.setitimer(signal.ITIMER_VIRTUAL, 0.2)  # some cycles never end
+                sys.stdout = os.fdopen(os.dup(1), "w")  # some of them print, too
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+                os.dup2(1, 2)
                 run(gcode, home, text)
                 sys.stdout.flush()
                 os._exit(0)
-            if os.waitpid(child, 0)[1]: print("refused did not end")
+            if os.waitpid(child, 0)[1]: print("\nrefused did not end")
     finally:
         shutil.rmtree(home, True)
 
