@@ -66,6 +66,12 @@ Outline outline_from_contour(TurningPoint start, const TurningContour& contour,
     return outline;
 }
 
+core::Result<void> check_length(const TurningContour& contour) {
+    if (contour.size() <= greatest_contour) return {};
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("the contour has more than {} segments", greatest_contour));
+}
+
 core::Result<TurningMoves> checked(MoveWriter writer) {
     const auto finite = [](const TurningPoint& p) {
         return std::isfinite(p.x) && std::isfinite(p.z);
@@ -97,7 +103,7 @@ struct Roughing {
     size_t piece = 0;
     double level = 0.0; // X of the next cut
     bool follows_pockets = false;
-    size_t budget = greatest_turning_moves;
+    std::int64_t budget = 20'000'000; // visits of pieces, so that it ends
 };
 
 void go(Roughing& roughing, ZxPoint end, bool rapid) {
@@ -266,7 +272,8 @@ core::Result<void> cut(Roughing& roughing) {
         if (auto skipped = skip_first_descent(roughing); !skipped) return skipped;
     while (roughing.piece < roughing.pieces.size()) {
         const double above = roughing.level - zx_tolerance - roughing.at.imag();
-        if (!(above / roughing.depth < 1e6) || roughing.budget-- == 0) return endless();
+        if (!(above / roughing.depth < 1e6) || roughing.budget < 0) return endless();
+        roughing.budget -= static_cast<std::int64_t>(roughing.pieces.size());
         while (roughing.level - zx_tolerance > roughing.at.imag()) roughing.level -= roughing.depth;
         FEELER_TRY(const Step step, dive(roughing, roughing.level));
         if (step == Step::not_this_way) {
@@ -301,6 +308,7 @@ core::Result<void> orient_for_finishing(Outline& outline) {
 
 core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningContour& contour,
                                           const RoughingWords& words, double mm_per_unit) {
+    if (auto length = check_length(contour); !length) return tl::unexpected(length.error());
     const double depth = words.depth.value_or(mm_per_unit) / mm_per_unit;
     Outline outline = outline_from_contour(start, contour, mm_per_unit);
     if (outline.pieces.size() < 2) return TurningMoves{};
@@ -337,6 +345,7 @@ core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningConto
 
 core::Result<TurningMoves> finishing_moves(TurningPoint start, const TurningContour& contour,
                                            const FinishingWords& words, double mm_per_unit) {
+    if (auto length = check_length(contour); !length) return tl::unexpected(length.error());
     Outline outline = outline_from_contour(start, contour, mm_per_unit);
     if (outline.pieces.size() < 2) return TurningMoves{};
     const ZxPoint tool = outline.pieces.front().start;

@@ -60,7 +60,8 @@ struct FinishingWords {
     double passes = 1.0;         // P: its whole part counts
 };
 
-/// More moves of a cycle than this are refused.
+/// Contours with more segments, and finishing with more moves, are refused.
+constexpr size_t greatest_contour = 10'000;
 constexpr size_t greatest_turning_moves = 1'000'000;
 
 /// The moves of G71 or G72 from `start`, to which the caller has moved the tool by a rapid.

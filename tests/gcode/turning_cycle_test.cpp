@@ -96,6 +96,25 @@ TEST(Roughing, InchesAreTwinsOfMillimetres) {
         EXPECT_NEAR((*mm)[i].end.x * 25.4, (*inch)[i].end.x, 1e-9);
 }
 
+TEST(Roughing, EndsWhereTheReferenceDoesNot) {
+    // Steps of a tenth below an arc that comes back: LinuxCNC cuts X17.3 for ever.
+    const auto arc = [](TurningPoint from, TurningPoint to, double radius, bool ccw) {
+        return *turning_arc_from_radius(from, to, radius, ccw);
+    };
+    const TurningContour contour = {
+        {{7, -3.8}},    {{16, -3.8}},
+        {{21.2, -0.4}}, {{22.8, 7}, arc({21.2, -0.4}, {22.8, 7}, 5.3535035257296695, true)},
+        {{30.8, 14.8}}, {{36.4, 22.2}, arc({30.8, 14.8}, {36.4, 22.2}, 6.562011886609166, true)},
+        {{39, 22.8}},   {{41, 28}, arc({39, 22.8}, {41, 28}, 3.939543120718442, false)}};
+    RoughingWords words;
+    words.pockets = PocketCutting::none;
+    words.allowance = 1.8;
+    words.depth = 0.1;
+    EXPECT_FALSE(roughing_moves({43, -3.8}, contour, words));
+    EXPECT_FALSE(roughing_moves({18, 4}, TurningContour(greatest_contour + 1, {{1, 1}}), {}));
+    EXPECT_FALSE(finishing_moves({22, 2}, {{{10, 0}}, {{10, -10}}}, {0, 0, 1e300}));
+}
+
 TEST(TurningArc, RadiusMustReachTheEnd) {
     EXPECT_FALSE(turning_arc_from_radius({10, 0}, {20, 0}, 4.9, true));
     const auto arc = turning_arc_from_radius({10, -10}, {15, -15}, 5.0, false);
@@ -222,7 +241,7 @@ TEST(TurningCycle, AgreesWithTheReferenceOnRandomContours) {
     TurningGenerator generator(71);
     std::vector<TurningCase> cases;
     std::vector<std::string> programs;
-    for (int i = 0; i < 800; ++i) {
+    for (int i = 0; i < 500; ++i) {
         cases.push_back(generator.next());
         programs.push_back(cases.back().program);
     }
@@ -253,9 +272,9 @@ TEST(TurningCycle, AgreesWithTheReferenceOnRandomContours) {
             EXPECT_EQ(count, cases[i].ours->size() + lead);
         if (HasFailure()) return;
     }
-    RecordProperty("endless", static_cast<int>(endless));
-    EXPECT_GT(refused, 150u);
-    EXPECT_LT(refused, 650u);
+    EXPECT_GT(endless, 2u);
+    EXPECT_GT(refused, 100u);
+    EXPECT_LT(refused, 400u);
     EXPECT_GT(arcs, 100u);
 }
 
