@@ -13,6 +13,7 @@ Lines that come out (lengths in mm, angles in degrees, seconds, mm/min):
     program INDEX
     state KEY VALUE...          holds from here on; a key never said is not known
     LINE EVENT VALUE...         motions: x y z a b c u v w, arcs then: centre centre turns
+    no_actions                  spindle, coolant, tools and modes are not told
     print TEXT                  of (print, ...), after the events
     problem TEXT                the two lists contradict one another
     accepted | refused LINE TEXT | endless
@@ -325,7 +326,8 @@ def answer(path, rows, fresh, seconds, write):
         rs, rs_ending, said = rs_calls(path, folder, seconds)
     plain = Plain(write)
     if re.match("Bad character '[uvw]'", rs_ending[2]) and ending != rs_ending:
-        for call in module:  # six axes are all that rs274 has
+        write('no_actions\n')  # six axes are all that rs274 has
+        for call in module:
             plain.from_module(*call)
     else:
         problem = lay_together(module, rs, plain)
