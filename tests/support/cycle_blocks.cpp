@@ -29,7 +29,8 @@ void cycle(ProgramText& text, int code, const CyclePlane& plane) {
     const double r = text.length(10);
     const double bottom = incremental ? -text.positive(15) : r - text.positive(15);
     text.line("G{} G{} G0 {}{}", plane.code, text.whole(98, 99), plane.normal, text.length(20));
-    const std::string repeats = text.once_in(3) ? fmt::format(" L{}", text.whole(1, 3)) : "";
+    const bool taps = code == 74 || code == 84; // these do not repeat
+    const std::string repeats = !taps && text.once_in(3) ? fmt::format(" L{}", text.whole(1, 3)) : "";
     text.line("{} G{}{} {}{} R{}{}{}", incremental ? "G91" : "G90", code,
               text.axis_words(plane.in_plane), plane.normal, bottom, r, own_words(text, code),
               repeats);
@@ -79,8 +80,8 @@ void odd_cycles(ProgramText& text) {
         break;
     case 3:
         text.line("G82 X1 Z-3 R1 P1");
-        text.line("G81 X5");
-        text.line("G85 Y5");
+        text.line("G81 X5 Z-4 R2");
+        text.line("G85 Y5 Z-4 R1");
         break;
     case 4:
         text.line("G81 X1 Z-3 R1");

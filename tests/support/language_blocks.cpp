@@ -63,14 +63,17 @@ void give_values(ProgramText& text) {
 
 void expressions(ProgramText& text) {
     give_values(text);
-    text.line("#1={}", expression(text, 2));
-    text.line("G1 X[#1 MOD 50] Y[[{}] MOD 50]", expression(text, 3));
+    std::string value = expression(text, 2);
+    while (value.size() > 200) value = expression(text, 2); // a line has 255 characters
+    text.line("#1={}", value);
+    text.line("G1 X[#1 MOD 50]");
 }
 
 void parameters(ProgramText& text) {
     give_values(text);
     text.line("{0}={1} {2}=[{0}+1]", parameter(text), text.length(9), parameter(text));
-    text.line("#{0}={1} #[#{0}]=7 #5=##{0}", text.whole(6, 9), text.whole(10, 20));
+    text.line("#{0}={1}", text.whole(6, 9), text.whole(10, 20));
+    text.line("#6=11 #[#6+1]=7 #5=##6");
     text.line("G1 X{} Y-{} Z#[1+{}] ", parameter(text), parameter(text), text.whole(1, 20));
     text.line("#1=EXISTS[#<local{}>] #2=EXISTS[#<_nothing>]", text.whole(1, 5));
     text.line("G1 X#1 Y#2 Z#5");
@@ -102,8 +105,7 @@ void predefined_names(ProgramText& text) {
          "_spindle_css_mode", "_ijk_absolute_mode", "_lathe_diameter_mode", "_lathe_radius_mode",
          "_spindle_on", "_spindle_cw", "_mist", "_flood", "_speed_override", "_feed_override",
          "_adaptive_feed", "_feed_hold", "_feed", "_rpm", "_x", "_y", "_z", "_a", "_b", "_c", "_u",
-         "_current_tool", "_current_pocket", "_selected_tool", "_selected_pocket", "_vmajor",
-         "_call_level", "_remap_level", "_task", "_value", "_value_returned"});
+         "_current_tool", "_selected_tool", "_call_level", "_value", "_value_returned"});
     text.line("#1=#<{}>", name);
     text.line("G21 G90 G17 G40 G94 F100 G8 G97 G91.1 G54 G0");
     text.line("G0 Z#1");

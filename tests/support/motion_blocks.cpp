@@ -167,7 +167,7 @@ void compensation(ProgramText& text) {
             text.line("G{} X{:.5f} Y{:.5f} R{:.5f}", turns_left ? 3 : 2, x, y, size);
         else
             text.line("G1 X{:.5f} Y{:.5f}{}", x, y, text.once_in(4) ? " Z-1" : "");
-        if (text.once_in(12)) text.line("Z{}", text.length());
+        if (text.once_in(12)) text.line("G1 Z{}", text.length());
     }
     text.line("G40");
     text.line("G1 X{} Y{}", -3 * size, 3 * size);

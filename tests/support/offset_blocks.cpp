@@ -63,7 +63,7 @@ void axis_offsets(ProgramText& text) {
 }
 
 void tool_offsets(ProgramText& text) {
-    switch (text.whole(0, 6)) {
+    switch (text.whole(0, 5)) {
     case 0:
         text.line("T{} M6 G43", text.whole(1, 9));
         break;
@@ -78,9 +78,6 @@ void tool_offsets(ProgramText& text) {
         break;
     case 4:
         text.line("G49");
-        break;
-    case 5:
-        text.line("G43.2{}", text.axis_words("XYZ"));
         break;
     default:
         text.line("T{} M6", text.whole(1, 9));

