@@ -66,9 +66,10 @@ void tapping(ProgramText& text) {
 /// Depth above the plane of return, Z left out, L0, other modes in the middle of a cycle.
 void odd_cycles(ProgramText& text) {
     text.line("G0 X0 Y0 Z{}", text.length(10));
+    const double r = text.positive(5);
     switch (text.whole(0, 5)) {
     case 0:
-        text.line("G81 X1 Z-3 R{}", text.length(10));
+        text.line("G81 X1 Z-3 R{}", r);
         text.line("G99 X2 Z-4");
         break;
     case 1:

@@ -23,7 +23,7 @@ std::string expression(ProgramText& text, int depth);
 
 std::string operand(ProgramText& text, int depth) {
     if (depth <= 0 || text.once_in(3)) return fmt::format("{}", text.length(9));
-    switch (text.whole(0, 7)) {
+    switch (text.whole(0, 8)) {
     case 0:
         return parameter(text);
     case 1:
@@ -39,6 +39,8 @@ std::string operand(ProgramText& text, int depth) {
         return fmt::format("EXP[{}]", text.whole(-30, 30) / 10.0);
     case 6:
         return fmt::format("LN[{}]", text.positive());
+    case 7:
+        return fmt::format("[{}**{}]", text.positive(3), text.whole(-3, 3));
     default:
         return expression(text, depth - 1);
     }
@@ -49,7 +51,7 @@ std::string expression(ProgramText& text, int depth) {
     for (int i = text.whole(0, 3); i > 0; --i)
         all += " "
                + text.one_of({"+", "-", "*", "/", "+", "-", "MOD", "AND", "OR", "XOR", "EQ", "NE",
-                              "GT", "GE", "LT", "LE", "**"})
+                              "GT", "GE", "LT", "LE"})
                + " " + (text.once_in(3) ? "-" : "") + operand(text, depth);
     return all + "]";
 }
@@ -73,7 +75,8 @@ void parameters(ProgramText& text) {
     give_values(text);
     text.line("{0}={1} {2}=[{0}+1]", parameter(text), text.length(9), parameter(text));
     text.line("#{0}={1}", text.whole(6, 9), text.whole(10, 20));
-    text.line("#6=11 #[#6+1]=7 #5=##6");
+    text.line("#6=11");
+    text.line("#[#6+1]=7 #5=##6 #6=[#6+1]");
     text.line("G1 X{} Y-{} Z#[1+{}] ", parameter(text), parameter(text), text.whole(1, 20));
     text.line("#1=EXISTS[#<local{}>] #2=EXISTS[#<_nothing>]", text.whole(1, 5));
     text.line("G1 X#1 Y#2 Z#5");
@@ -104,7 +107,7 @@ void predefined_names(ProgramText& text) {
          "_tool_offset", "_retract_r_plane", "_retract_old_z", "_spindle_rpm_mode",
          "_spindle_css_mode", "_ijk_absolute_mode", "_lathe_diameter_mode", "_lathe_radius_mode",
          "_spindle_on", "_spindle_cw", "_mist", "_flood", "_speed_override", "_feed_override",
-         "_adaptive_feed", "_feed_hold", "_feed", "_rpm", "_x", "_y", "_z", "_a", "_b", "_c", "_u",
+         "_adaptive_feed", "_feed_hold", "_rpm", "_x", "_y", "_z", "_a", "_b", "_c", "_u",
          "_current_tool", "_selected_tool", "_call_level", "_value", "_value_returned"});
     text.line("#1=#<{}>", name);
     text.line("G21 G90 G17 G40 G94 F100 G8 G97 G91.1 G54 G0");

@@ -117,7 +117,7 @@ void odd_arcs(ProgramText& text) {
         break;
     case 2:
         text.line("G{} X{:.4f} Y{:.4f} I{}", text.whole(2, 3), radius,
-                  radius + text.one_of({0.0005, -0.0005, 0.001, 0.0015, 0.01, 0.05}), radius);
+                  radius + text.one_of({0.0005, -0.0005, 0.001, 0.0015, 0.01}), radius);
         break;
     case 3:
         text.line("G{} I{} Z{} P{}", text.whole(2, 3), radius, text.length(), text.whole(1, 3));

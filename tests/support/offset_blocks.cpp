@@ -89,7 +89,7 @@ void tool_offsets(ProgramText& text) {
 /// The tool table is written to while other offsets hold.
 void tool_table(ProgramText& text) {
     const int tool = text.whole(1, 9);
-    switch (text.whole(0, 3)) {
+    switch (text.whole(0, 2)) {
     case 0:
         text.line("G10 L1 P{}{}{}", tool, text.axis_words("XYZ"),
                   text.once_in(2) ? fmt::format(" R{}", text.positive()) : "");
@@ -97,11 +97,8 @@ void tool_table(ProgramText& text) {
     case 1:
         text.line("G10 L10 P{}{}", tool, text.axis_words("XYZ"));
         break;
-    case 2:
-        text.line("G10 L11 P{}{}", tool, text.axis_words("XYZ"));
-        break;
     default:
-        text.line("T{} M6", tool);
+        text.line("G10 L11 P{}{}", tool, text.axis_words("XYZ"));
     }
     text.line("G43 H{}", text.once_in(2) ? tool : text.whole(1, 9));
     if (text.once_in(3)) text.line("G92{}", text.axis_words("XYZ"));

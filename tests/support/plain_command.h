@@ -49,6 +49,7 @@ struct PlainRun {
     bool is_endless = false;      // had to be stopped
     std::optional<size_t> refused; // the line
     std::string message;          // why
+    std::string doubt;            // its two sources have other numbers
     std::string problem;          // the reference contradicts itself, or crashed
 };
 

@@ -58,6 +58,7 @@ int judge(int count) {
             accepted += !run.refused;
             if (run.refused) why = fmt::format("{}: {}", *run.refused, run.message);
             if (!run.problem.empty()) fmt::print("  {}\n", run.problem);
+            if (!run.doubt.empty()) fmt::print("  doubt: {}\n", run.doubt);
         }
         fmt::print("{} {} of {} {}\n", feature.name, accepted, count, why);
     }

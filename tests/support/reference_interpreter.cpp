@@ -133,6 +133,8 @@ std::vector<PlainRun> runs_of(const std::string& answer) {
             runs.back().prints.push_back(words.text());
         } else if (first == "problem") {
             runs.back().problem = words.text();
+        } else if (first == "doubt") {
+            runs.back().doubt = words.text();
         } else if (first == "no_actions") {
             runs.back().has_actions = false;
         } else if (first == "refused") {

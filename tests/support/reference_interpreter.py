@@ -15,6 +15,7 @@ Lines that come out (lengths in mm, angles in degrees, seconds, mm/min):
     LINE EVENT VALUE...         motions: x y z a b c u v w, arcs then: centre centre turns
     no_actions                  spindle, coolant, tools and modes are not told
     print TEXT                  of (print, ...), after the events
+    doubt TEXT                  the two lists have other numbers; those of the module are given
     problem TEXT                the two lists contradict one another
     accepted | refused LINE TEXT | endless
 """
@@ -313,10 +314,12 @@ def lay_together(module, rs, plain):
             if not waiting:
                 return 'rs274 goes on with %s(%s)' % (name, text)
             line, module_name, values = waiting.pop()
-            same = module_name == MODULE_NAMES[name]
-            if not same or not near_what_rs_printed(name, values, text, unit):
-                return 'line %d: rs274 has %s(%s), the module %s%r' % (line, name, text,
+            contrast = 'line %d: rs274 has %s(%s), the module %s%r' % (line, name, text,
                                                                        module_name, values)
+            if module_name != MODULE_NAMES[name]:
+                return contrast
+            if not near_what_rs_printed(name, values, text, unit):
+                plain.write('doubt %s\n' % contrast)
             plain.from_module(line, module_name, values)
         else:
             plain.from_rs(name, text, unit)
