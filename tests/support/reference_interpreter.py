@@ -126,7 +126,7 @@ class Canon:
         return lambda *values: self.calls.append((self.line, name, values))
 
 
-def module_calls(path, rows, folder, seconds):
+def module_calls(gcode, path, rows, folder, seconds):
     """The calls of the module and how it ended: ('accepted'|'refused'|'endless', line, text)."""
     answer = folder + '/answer'
     child = os.fork()
@@ -135,7 +135,6 @@ def module_calls(path, rows, folder, seconds):
         silent = os.open(os.devnull, os.O_WRONLY)
         os.dup2(silent, 1)
         os.dup2(silent, 2)
-        import gcode
         canon = Canon(rows, folder)
         result, line = gcode.parse(path, canon, 'G21')
         refused = result > gcode.MIN_ERROR
@@ -327,13 +326,13 @@ def lay_together(module, rs, plain):
     return 'the module goes on with %s' % (waiting[-1],) if waiting else ''
 
 
-def answer(path, rows, fresh, seconds, write):
+def answer(gcode, path, rows, fresh, seconds, write):
     with tempfile.TemporaryDirectory(prefix='reference') as folder:
         shutil.copy(fresh + '/tool.tbl', folder)
         for name in ('rs.var', 'module.var'):
             open(folder + '/' + name, 'w').close()
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
-        module, ending = module_calls(path, rows, folder, seconds)
+        module, ending = module_calls(gcode, path, rows, folder, seconds)
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
         rs, rs_ending, said = rs_calls(path, folder, seconds)
     plain = Plain(write)
@@ -367,9 +366,10 @@ def main():
         shutil.copy(home + '/.tool.mmap', home + '/pristine.mmap')
         library = ctypes.CDLL('libtooldata.so.0', mode=ctypes.RTLD_GLOBAL)
         library._Z14tool_mmap_userv()
+        import gcode  # not before the tool table is there
         for index, path in enumerate(paths):
             sys.stdout.write('program %d\n' % index)
-            answer(os.path.abspath(path), rows, home, seconds, sys.stdout.write)
+            answer(gcode, os.path.abspath(path), rows, home, seconds, sys.stdout.write)
             sys.stdout.flush()
 
 
