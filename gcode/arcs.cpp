@@ -95,7 +95,7 @@ core::Result<void> centre_from_radius(const FlatArc& arc, const Word& word, doub
 
 core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const PlaneAxes& axes,
                                double* centre) {
-    constexpr char offset_letters[] = {'I', 'J', 'K'};
+    constexpr char offset_letters[] = {'I', 'J', 'K', 0, 0, 0, 'I', 'J', 'K'};
     const Statement& statement = execution.statement;
     const CentreWords words = {statement.word(offset_letters[axes.first]),
                                statement.word(offset_letters[axes.second])};
@@ -121,7 +121,7 @@ core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const P
 
 core::Result<FlatArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
                                const Position& end) {
-    const bool clockwise = execution.modal().motion == MotionMode::arc_clockwise;
+    const bool clockwise = execution.modal().motion == tenths(2);
     FlatArc arc{.where = moving_word(execution).span,
                 .code = clockwise ? "G2" : "G3",
                 .clockwise = clockwise,
@@ -129,13 +129,13 @@ core::Result<FlatArc> flat_arc(const Execution& execution, const PlaneAxes& axes
                 .end = {}};
     const Position& start = execution.modal().position;
     for (int i = 0; i < 2; ++i) {
-        const size_t axis = static_cast<size_t>(i == 0 ? axes.first : axes.second);
+        const size_t axis = i == 0 ? axes.first : axes.second;
         if (!start[axis] || !end[axis])
             return core::fail(
                 ErrorCode::missing_value,
                 fmt::format("{}: where the arc starts is unknown along {}; move there "
                             "first, or say where the machine starts",
-                            arc.code, "XYZ"[axis]),
+                            arc.code, axis_letters[axis]),
                 arc.where);
         arc.start[i] = *start[axis];
         arc.end[i] = *end[axis];
@@ -160,7 +160,7 @@ core::Result<void> move_along_arc(Execution& execution) {
     ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
     if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
     FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));
-    const auto normal = static_cast<size_t>(axes.normal);
+    const size_t normal = axes.normal;
     std::optional<double> rise;
     if (modal.position[normal] && end[normal]) rise = *end[normal] - *modal.position[normal];
     if (modal.position[normal] == end[normal]) rise = 0.0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -26,6 +27,19 @@ struct ArcFeed {
     int turns;        // as LinuxCNC: +1 up to one turn counter-clockwise, -2 up to two clockwise
     double feed;
 };
+/// Towards a contact; without one, as a feed to its end.
+struct StraightProbe {
+    Position end;
+    double feed;
+    bool towards;      // until contact is made, else until it is lost
+    bool must_succeed; // an error if it never is
+};
+/// A feed that keeps pace with the spindle.
+struct ThreadFeed {
+    Position end;
+    double pitch;    // mm a revolution
+    bool back_again; // G33.1: reverses at the end and returns to where it came from
+};
 struct Dwell {
     double seconds;
 };
@@ -37,7 +51,7 @@ struct ChangeTool {
 };
 struct Spindle {
     core::SpindleDirection direction;
-    double speed; // rev/min
+    double speed; // rev/min; m/min under G96
 };
 struct Coolant {
     bool mist, flood;
@@ -51,15 +65,46 @@ struct SetOffset {
 };
 struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
-    double length;                            // mm along Z
+    AxisValues offset;                        // mm and degrees; the length is along Z
+};
+struct UseSpindleMode {
+    bool surface_speed;   // G96, else G97
+    double speed;         // m/min, or rev/min
+    double fastest_speed; // rev/min, 0 without a limit
+};
+struct SetPathMode {
+    PathMode mode;
+    double tolerance, naive_tolerance; // mm
+};
+enum class OverrideKind : uint8_t { feed, speed, adaptive_feed, feed_hold };
+struct EnableOverride {
+    OverrideKind kind;
+    bool enabled;
+};
+struct SetOutput {
+    int number;
+    double value;
+    bool is_analog;
+    bool with_motion; // when the next motion begins, else at once
+};
+struct WaitForInput {
+    int number;
+    bool is_analog;
+    double seconds; // 0 waits for nothing
+};
+/// What a program says to the operator.
+struct Message {
+    std::string text;
 };
 struct ProgramStop {};
 struct OptionalStop {};
 struct ProgramEnd {};
 
-using CanonicalCommand = std::variant<StraightTraverse, StraightFeed, ArcFeed, Dwell, SelectTool,
-                                      ChangeTool, Spindle, Coolant, SelectPlane, SetOffset,
-                                      UseToolLengthOffset, ProgramStop, OptionalStop, ProgramEnd>;
+using CanonicalCommand =
+    std::variant<StraightTraverse, StraightFeed, ArcFeed, StraightProbe, ThreadFeed, Dwell,
+                 SelectTool, ChangeTool, Spindle, UseSpindleMode, Coolant, SelectPlane, SetOffset,
+                 UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput, WaitForInput, Message,
+                 ProgramStop, OptionalStop, ProgramEnd>;
 
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);

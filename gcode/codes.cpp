@@ -184,17 +184,33 @@ constexpr bool before(const Code& a, const Code& b) {
 }
 static_assert(std::is_sorted(std::begin(codes), std::end(codes), before));
 
+/// For each letter, where the codes stand in the table by tenths, counted from 1; 0 for none.
+struct Positions {
+    static constexpr int most = 2000;
+    std::array<uint8_t, most> g{}, m{};
+};
+
+constexpr Positions positions = [] {
+    static_assert(std::size(codes) < 256);
+    Positions found;
+    for (size_t i = 0; i < std::size(codes); ++i)
+        (codes[i].letter == 'G' ? found.g : found.m)[static_cast<size_t>(codes[i].tenths)] =
+            static_cast<uint8_t>(i + 1);
+    return found;
+}();
+
 } // namespace
 
 const Code* find_code(char letter, double value, DialectId id) {
     const double scaled = value * 10.0;
-    const double rounded = std::round(scaled);
-    if (std::abs(scaled - rounded) > 1e-6 || !(rounded >= 0.0 && rounded < 100000.0))
-        return nullptr;
-    const Code wanted = {letter, static_cast<int>(rounded), other, {}, 0, {}};
-    const auto* found = std::lower_bound(std::begin(codes), std::end(codes), wanted, before);
-    if (found == std::end(codes) || before(wanted, *found)) return nullptr;
-    return found->dialects & bit(id) ? found : nullptr;
+    if (!(scaled > -0.5 && scaled < Positions::most - 0.5)) return nullptr;
+    const auto rounded = static_cast<int>(scaled + 0.5);
+    if (std::abs(scaled - rounded) > 1e-6) return nullptr;
+    const auto& by_tenths = letter == 'G' ? positions.g : positions.m;
+    const uint8_t place = by_tenths[static_cast<size_t>(rounded)];
+    if (place == 0) return nullptr;
+    const Code& found = codes[place - 1];
+    return found.dialects & bit(id) ? &found : nullptr;
 }
 
 } // namespace gcode

@@ -9,7 +9,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr char letters[] = {'X', 'Y', 'Z'};
 constexpr size_t most_commands = 200000; // of one block
 
 /// A cycle with its levels along the drilling axis, program coordinates.
@@ -48,7 +47,7 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
 core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
     CannedCycle cycle = *execution.modal().cycle;
     const Statement& statement = execution.statement;
-    if (const Word* word = statement.word(letters[normal]))
+    if (const Word* word = statement.word(axis_letters[normal]))
         cycle.bottom = length_of(execution, *word);
     if (const Word* word = statement.word('R')) cycle.r = length_of(execution, *word);
     if (const Word* word = statement.word('Q')) {
@@ -63,7 +62,7 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
             execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
         cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
     }
-    if (!cycle.bottom) return missing(execution, cycle, letters[normal]);
+    if (!cycle.bottom) return missing(execution, cycle, axis_letters[normal]);
     if (!cycle.r) return missing(execution, cycle, 'R');
     const bool pecks = cycle.code == tenths(73) || cycle.code == tenths(83);
     if (pecks && !cycle.peck) return missing(execution, cycle, 'Q');
@@ -102,7 +101,7 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     if (incremental && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("G{} under G91 counts from a level that is unknown along {}",
-                                      cycle.code / 10, letters[axes.normal]),
+                                      cycle.code / 10, axis_letters[axes.normal]),
                           where);
     const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
     const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
@@ -112,15 +111,7 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     const bool too_low = execution.dialect.cycle_stays_above_r && clear && *clear < r;
     if (modal.retract == RetractMode::r_level || too_low) clear = r;
     FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
-    return Drilling{execution,
-                    cycle,
-                    static_cast<size_t>(axes.first),
-                    static_cast<size_t>(axes.second),
-                    static_cast<size_t>(axes.normal),
-                    r,
-                    bottom,
-                    clear,
-                    rate};
+    return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
 }
 
 /// G83: out of the hole after each peck; G73: only a little back.
@@ -198,13 +189,13 @@ void approach(Drilling& hole, const Position& target) {
 
 /// The same step again, for the holes of L under G91.
 void advance(Position& target, const Position& step) {
-    for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t axis = 0; axis < axis_count; ++axis)
         if (target[axis] && step[axis]) *target[axis] += *step[axis];
 }
 
 Position step_between(const Position& from, const Position& to) {
     Position step;
-    for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t axis = 0; axis < axis_count; ++axis)
         if (from[axis] && to[axis]) step[axis] = *to[axis] - *from[axis];
     return step;
 }
@@ -213,7 +204,7 @@ Position step_between(const Position& from, const Position& to) {
 
 core::Result<void> run_canned_cycle(Execution& execution) {
     ModalState& modal = execution.modal();
-    const auto normal = static_cast<size_t>(axes_of(modal.plane).normal);
+    const size_t normal = axes_of(modal.plane).normal;
     FEELER_TRY(Position target, target_of(execution));
     FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, normal));
     FEELER_TRY(const int repeats, repeats_of(execution));

@@ -48,12 +48,24 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .local_offset_is_axis_offset = true,
                               .p0_is_active_offset = true,
                               .offset_writes_follow_g91 = false,
+                              .work_offsets_turn = true,
                               .feed_before_units = true,
                               .g98_cycle_starts_high = true,
                               .cycle_stays_above_r = true,
                               .repeats_with_k = false,
                               .tape_mark_ends_program = true,
-                              .repeated_codes_are_errors = true};
+                              .repeated_codes_are_errors = true,
+                              .expressions = ExpressionSyntax::rs274,
+                              .arithmetic = {.equality = 0.0001},
+                              .has_o_words = true,
+                              .has_fanuc_flow = false,
+                              .has_corner_words = false,
+                              .has_polar_words = true,
+                              .offset_words_may_repeat = false,
+                              .brackets_optional_in_assignments = false,
+                              .unset_is_vacant = false,
+                              .local_count = 30,
+                              .deepest_calls = 10};
 
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
@@ -75,12 +87,24 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .local_offset_is_axis_offset = false,
                            .p0_is_active_offset = false,
                            .offset_writes_follow_g91 = true,
+                           .work_offsets_turn = false,
                            .feed_before_units = false,
                            .g98_cycle_starts_high = false,
                            .cycle_stays_above_r = false,
                            .repeats_with_k = true,
                            .tape_mark_ends_program = false,
-                           .repeated_codes_are_errors = false};
+                           .repeated_codes_are_errors = false,
+                           .expressions = ExpressionSyntax::fanuc,
+                           .arithmetic = {.bitwise_logic = true},
+                           .has_o_words = false,
+                           .has_fanuc_flow = true,
+                           .has_corner_words = true,
+                           .has_polar_words = false,
+                           .offset_words_may_repeat = true,
+                           .brackets_optional_in_assignments = true,
+                           .unset_is_vacant = true,
+                           .local_count = 33,
+                           .deepest_calls = 15};
 
 constexpr Dialect haas = [] {
     Dialect entry = fanuc;
@@ -99,7 +123,10 @@ constexpr Dialect grbl = [] {
     entry.unit = LengthUnit::mm;
     entry.arc = grbl_arc;
     entry.local_offset_is_axis_offset = false;
+    entry.work_offsets_turn = false;
     entry.feed_before_units = false;
+    entry.has_o_words = false;
+    entry.has_polar_words = false;
     return entry;
 }();
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/expression_parser.h"
 #include "gcode/modal_state.h"
 #include "gcode/source.h"
 
@@ -43,12 +44,26 @@ struct Dialect {
     bool local_offset_is_axis_offset;         // G52 and G92 write the same place
     bool p0_is_active_offset;                 // G10 L2 P0; else the external offset
     bool offset_writes_follow_g91;            // G10 L2 under G91 adds
+    bool work_offsets_turn;                   // G10 L2 R
     bool feed_before_units;                   // F is read in the units of the blocks before
     bool g98_cycle_starts_high;     // under G98 the way to the hole climbs to the initial level
     bool cycle_stays_above_r;       // from below R a cycle first climbs to R, and G98 ends there
     bool repeats_with_k;            // K repeats a canned cycle, as L does
     bool tape_mark_ends_program;    // a second % is as good as M2
     bool repeated_codes_are_errors; // the same G code twice in a block
+
+    // the language around the words
+    ExpressionSyntax expressions;
+    Arithmetic arithmetic;
+    bool has_o_words;                      // o<name> sub, if, while ...
+    bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
+    bool has_corner_words;                 // ,R and ,C
+    bool has_polar_words;                  // @ and ^
+    bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
+    bool brackets_optional_in_assignments; // #1=#2+1
+    bool unset_is_vacant;                  // an unset parameter is nothing, else 0
+    int local_count;                       // #1 to this are of each level of calls
+    size_t deepest_calls;
 };
 
 const Dialect& dialect(DialectId id);

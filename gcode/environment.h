@@ -3,32 +3,38 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "core/base/ids.h"
 #include "gcode/dialect.h"
-#include "gcode/offsets.h"
+#include "gcode/modal_state.h"
+#include "gcode/tables.h"
 
 namespace gcode {
 
-/// An entry of the control's offset table.
-struct LengthOffset {
-    double length = 0.0;   // mm
-    double wear = 0.0;     // mm, added to the length
-    double diameter = 0.0; // mm
-
-    bool operator==(const LengthOffset&) const = default;
+/// How long and how deep a program may run.
+struct Limits {
+    uint64_t blocks = 50'000'000;
+    size_t calls = 0; // 0: as many as the dialect's control has
 };
 
 /// What the control holds before the program starts. Lengths in mm, places in machine coordinates.
 struct Environment {
     DialectId dialect = DialectId::linuxcnc;
-    bool block_delete = false; // true: blocks with `/` are left out
-    std::array<core::Vec3, work_offset_count> work_offsets{};
+    bool block_delete = false;                // true: blocks with `/` are left out
+    LengthUnit machine_unit = LengthUnit::mm; // in which the parameters of offsets are kept
+    std::array<AxisValues, plain_offset_count> work_offsets{};
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
     std::map<core::ToolNumber, double> tool_lengths{}; // for H numbers without an entry
-    Position start{};                                  // gauge line; empty where nobody knows
-    std::optional<core::Vec3> home{};                  // G28; machine zero when nobody says
-    std::optional<core::Vec3> second_home{};           // G30; likewise
+    Position start{};                        // gauge line; X, Y, Z empty where nobody knows
+    std::optional<AxisValues> home{};        // G28; machine zero when nobody says
+    std::optional<AxisValues> second_home{}; // G30; likewise
+    std::map<int, double> parameters{};      // numbered ones, as in a variables file
+    std::vector<std::string> search_path{};  // folders of subprograms; else the program's own
+    std::set<int> known_m_codes{};           // of the machine's builder, passed over in silence
+    Limits limits{};
 };
 
 } // namespace gcode

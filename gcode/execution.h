@@ -11,16 +11,21 @@ namespace gcode {
 /// One block on its way: what it says, the state it changes and what comes of it. The functions
 /// below are the steps of a block; each does what its words ask for, or nothing.
 struct Execution {
+    ProgramLibrary& library;
     const Environment& environment;
     const Dialect& dialect;
     const Block& block;
     const Statement& statement;
     InterpreterState& state;
     BlockResult& result;
+    uint32_t column = 1; // of the word that is being carried out
 
     ModalState& modal() { return state.modal; }
     const ModalState& modal() const { return state.modal; }
-    void emit(CanonicalCommand command) { result.commands.push_back(std::move(command)); }
+    void emit(CanonicalCommand command) {
+        result.commands.push_back(std::move(command));
+        result.columns.push_back(column);
+    }
     void warn(core::SourceSpan where, std::string message, Severity severity = Severity::warning) {
         result.warnings.push_back({severity, where, std::move(message)});
     }
@@ -39,10 +44,15 @@ double length_of(const Execution& execution, const Word& word);
 /// Whether the block's H word stands without G43 and changes the length offset that is on.
 bool changes_length_alone(const Execution& execution);
 
+/// What an axis word says: mm, degrees of a rotary axis, half of it for X under G7.
+double axis_value(const Execution& execution, size_t axis, const Word& word);
+
 /// Where the axis words lead, axis by axis, in program coordinates.
-///
-/// Errors: unsupported when a rotary axis would turn.
 core::Result<Position> target_of(const Execution& execution);
+
+/// The length of a straight way as feed rates count it: of X, Y and Z; of U, V and W where these
+/// stand; else of the rotary axes, in degrees. Empty where an end is not known.
+std::optional<double> way_between(const Position& from, const Position& to);
 
 /// The feed rate along a path in mm/min.
 ///

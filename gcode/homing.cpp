@@ -5,8 +5,6 @@
 namespace gcode {
 namespace {
 
-constexpr char letters[] = {'X', 'Y', 'Z'};
-
 /// Home in machine coordinates; machine zero where nobody said, which is said once.
 Position home_of(Execution& execution, const CodeWord& entry) {
     Position home =
@@ -36,8 +34,8 @@ core::Result<void> go_home(Execution& execution) {
     }
     const Position home = program_from_machine(modal.offsets, home_of(execution, entry));
     Position end = modal.position;
-    for (size_t axis = 0; axis < 3; ++axis)
-        if (all || execution.statement.word(letters[axis])) end[axis] = home[axis];
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (all || execution.statement.word(axis_letters[axis])) end[axis] = home[axis];
     execution.traverse(end);
     return {};
 }
@@ -47,14 +45,14 @@ core::Result<void> store_home(Execution& execution) {
     ModalState& modal = execution.modal();
     Position& home = entry.code->tenths == tenths(28, 1) ? modal.home : modal.second_home;
     const Position machine = machine_from_program(modal.offsets, modal.position);
-    for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
         if (machine[axis])
             home[axis] = machine[axis];
         else
             execution.warn(entry.word->span,
                            fmt::format("{}: where the machine is along {} is unknown, so nothing "
                                        "is stored for it",
-                                       written(*entry.word), letters[axis]));
+                                       written(*entry.word), axis_letters[axis]));
     }
     return {};
 }

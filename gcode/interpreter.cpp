@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/flow.h"
 #include "gcode/parser.h"
+#include "gcode/program_parameters.h"
 
 namespace gcode {
 namespace {
@@ -35,17 +37,36 @@ constexpr Step steps[] = {
     stop,
 };
 
-core::Result<BlockResult> execute(const Block& block, const Environment& environment,
-                                  InterpreterState& state) {
-    const Dialect& rules = dialect(environment.dialect);
-    FEELER_TRY(const Statement statement, statement_from_block(block, rules));
-    BlockResult result{
-        .block = core::BlockIndex(state.next_block), .line = block.line, .text = block.text};
-    Execution execution{environment, rules, block, statement, state, result};
-    for (const Step step : steps)
-        if (auto done = step(execution); !done) return tl::unexpected(std::move(done).error());
-    ++state.next_block;
-    return result;
+/// What a block may change, kept until it has succeeded.
+struct Before {
+    ModalState modal;
+    Place next;
+    uint32_t next_block;
+    bool tape_open, said_unit, said_home;
+    Ending ending;
+    Shared<Tables> tables;
+};
+
+void keep(const InterpreterState& state, Before& before) {
+    before.modal = state.modal;
+    before.next = state.next;
+    before.next_block = state.next_block;
+    before.tape_open = state.tape_open;
+    before.said_unit = state.said_unit;
+    before.said_home = state.said_home;
+    before.ending = state.ending;
+    before.tables = state.tables;
+}
+
+void restore(InterpreterState& state, const Before& before) {
+    state.modal = before.modal;
+    state.next = before.next;
+    state.next_block = before.next_block;
+    state.tape_open = before.tape_open;
+    state.said_unit = before.said_unit;
+    state.said_home = before.said_home;
+    state.ending = before.ending;
+    state.tables = before.tables;
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -54,68 +75,235 @@ bool is_deleted(std::string_view line) {
     return first != std::string_view::npos && line[first] == '/';
 }
 
-/// The next block with words; empty at the end of the program.
-core::Result<std::optional<Block>>
-next_block(const Program& program, const Environment& environment, InterpreterState& state) {
-    while (state.next_line <= program.line_count()) {
-        const size_t number = state.next_line++;
+} // namespace
+
+struct Interpreter::Scratch {
+    /// A parameter that a block has set, and what it was before.
+    struct Undo {
+        bool is_named;
+        double number;
+        std::string name;
+        Value value;
+    };
+
+    ProgramLibrary& library;
+    const Environment& environment;
+    const Dialect& dialect;
+    Block block{};
+    Statement statement{};
+    BlockResult result{};
+    Before before{};
+    std::vector<Undo> undos{};
+    std::vector<Value> values{};
+
+    core::Result<bool> read_line(InterpreterState& state);
+    core::Result<bool> end_of_text(InterpreterState& state);
+    core::Result<void> run_block(InterpreterState& state);
+    core::Result<void> work_out_words(const ProgramParameters& parameters);
+    core::Result<void> assign(InterpreterState& state, ProgramParameters& parameters);
+    void take_back(InterpreterState& state);
+    void begin_result(const InterpreterState& state, Place place);
+    core::Result<bool> try_next(InterpreterState& state);
+};
+
+/// Reads the next line that says something; false at the end of the text.
+core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
+    while (true) {
+        const Program& program = library.program(state.next.source);
+        if (state.next.line > program.line_count()) return false;
+        const uint32_t number = state.next.line++;
         const std::string_view text = program.line(number);
         if (environment.block_delete && is_deleted(text)) continue;
-        FEELER_TRY(Block block, parse_line(text, static_cast<uint32_t>(number)));
-        if (block.tape_mark && (state.tape_open || state.next_block > 0)) {
+        if (auto parsed = parse_line(text, number, dialect, block); !parsed)
+            return tl::unexpected(std::move(parsed).error());
+        if (block.tape_mark && state.next.source == 0
+            && (state.tape_open || state.next_block > 0)) {
             state.ending = Ending::tape_mark;
-            return std::nullopt;
+            return false;
         }
-        state.tape_open |= block.tape_mark;
-        if (block.words.empty() || (environment.block_delete && block.block_delete)) continue;
-        return block;
+        if (state.next.source == 0) state.tape_open |= block.tape_mark;
+        if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
+        return true;
     }
-    state.ending = Ending::text_end;
-    return std::nullopt;
 }
 
-core::Result<std::optional<BlockResult>>
-try_next(const Program& program, const Environment& environment, InterpreterState& state) {
-    const Dialect& rules = dialect(environment.dialect);
-    if (!rules.supported)
+/// What the end of a text means: the end of the run, or, on some controls, of a subprogram's file.
+core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
+    if (state.ending == Ending::running) state.ending = Ending::text_end;
+    return false;
+}
+
+void Interpreter::Scratch::begin_result(const InterpreterState& state, Place place) {
+    result.block = core::BlockIndex(state.next_block);
+    result.line = block.line;
+    result.text = block.text;
+    result.file = place.source == 0 ? std::string_view() : library.program(place.source).file;
+    result.calls.clear();
+    for (size_t level = 1; level < state.frames.size(); ++level)
+        result.calls.push_back(state.frames[level].called_from.line);
+    result.is_cycle = false;
+    result.commands.clear();
+    result.columns.clear();
+    result.warnings.clear();
+}
+
+core::Result<void> Interpreter::Scratch::work_out_words(const ProgramParameters& parameters) {
+    size_t kept = 0;
+    for (size_t i = 0; i < block.words.size(); ++i) {
+        Word& word = block.words[i];
+        if (word.expression) {
+            FEELER_TRY(const Value value, evaluate(block.pool, word.expression, block.line,
+                                                   parameters, dialect.arithmetic));
+            if (!value) continue; // Fanuc: a vacant variable, as if the word were not there
+            word.value = *value;
+        }
+        if (kept != i) block.words[kept] = word;
+        ++kept;
+    }
+    block.words.resize(kept);
+    return {};
+}
+
+/// All right-hand sides are worked out before the first parameter is set.
+core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
+                                                ProgramParameters& parameters) {
+    undos.clear();
+    values.clear();
+    std::vector<double> numbers;
+    for (const Assignment& entry : block.assignments) {
+        Value value = entry.plain;
+        if (entry.value) {
+            FEELER_TRY(value, evaluate(block.pool, entry.value, block.line, parameters,
+                                       dialect.arithmetic));
+        }
+        values.push_back(value);
+        Value number = 0.0;
+        if (!entry.is_named) {
+            FEELER_TRY(number, evaluate(block.pool, entry.number, block.line, parameters,
+                                        dialect.arithmetic));
+        }
+        numbers.push_back(number.value_or(0.0));
+    }
+    for (size_t i = 0; i < block.assignments.size(); ++i) {
+        const Assignment& entry = block.assignments[i];
+        if (entry.is_named) {
+            const std::string& name = block.pool.names[entry.name];
+            const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
+                                                     : core::Result<Value>(Value{});
+            undos.push_back({true, 0.0, name, *old});
+            if (auto set = parameters.set_named(name, values[i], entry.span); !set) return set;
+        } else {
+            FEELER_TRY(const Value old, parameters.numbered(numbers[i], entry.span));
+            undos.push_back({false, numbers[i], {}, old});
+            if (auto set = parameters.set_numbered(numbers[i], values[i], entry.span); !set)
+                return set;
+        }
+    }
+    (void)state;
+    return {};
+}
+
+/// Gives the parameters of a block that failed their old values.
+void Interpreter::Scratch::take_back(InterpreterState& state) {
+    ProgramParameters parameters(state, environment);
+    for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
+        if (undo->is_named)
+            parameters.restore_named(undo->name, undo->value);
+        else
+            (void)parameters.set_numbered(undo->number, undo->value, {});
+    }
+    undos.clear();
+    restore(state, before);
+}
+
+core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
+    ProgramParameters parameters(state, environment);
+    const bool is_plain = block.flow.kind == FlowKind::none && block.pool.instructions.empty()
+                          && block.assignments.empty();
+    undos.clear();
+    if (!is_plain) {
+        if (block.flow.kind == FlowKind::if_then) {
+            FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
+            if (!holds) return {};
+        }
+        if (auto done = work_out_words(parameters); !done) return done;
+        if (auto done = assign(state, parameters); !done) return done;
+        if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
+            return run_flow({library, environment, dialect, block, state, result});
+    }
+    if (auto looked_up = look_up(block, dialect, environment, statement); !looked_up)
+        return looked_up;
+    Execution execution{library, environment, dialect, block, statement, state, result};
+    for (const Step step : steps)
+        if (auto done = step(execution); !done) return done;
+    return {};
+}
+
+core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
+    if (!dialect.supported)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("the dialect {} is not supported yet", rules.name));
-    FEELER_TRY(const std::optional<Block> block, next_block(program, environment, state));
-    if (!block) return std::nullopt;
-    return execute(*block, environment, state);
+                          fmt::format("the dialect {} is not supported yet", dialect.name));
+    FEELER_TRY(const bool found, read_line(state));
+    if (!found) return end_of_text(state);
+    const Place place{state.next.source, block.line};
+    begin_result(state, place);
+    if (state.next_block >= environment.limits.blocks)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("the program was stopped after {} blocks; if it is meant to "
+                                      "be that long, raise the limit with --max-blocks",
+                                      environment.limits.blocks),
+                          {.line = block.line, .column = 1});
+    if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
+    ++state.next_block;
+    if (auto watched = watch_for_endless_loop(state, place); !watched)
+        return tl::unexpected(std::move(watched).error());
+    return true;
 }
 
-} // namespace
+Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment)
+    : scratch_(new Scratch{library, environment, gcode::dialect(environment.dialect)}) {}
+
+Interpreter::~Interpreter() = default;
+
+core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
+    if (state.ending != Ending::running) return nullptr;
+    keep(state, scratch_->before);
+    scratch_->undos.clear();
+    const uint32_t source = state.next.source;
+    auto found = scratch_->try_next(state);
+    if (found) return *found ? &scratch_->result : nullptr;
+    scratch_->take_back(state);
+    if (found.error().file.empty()) found.error().file = scratch_->library.program(source).file;
+    return tl::unexpected(std::move(found).error());
+}
 
 InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;
     ModalState& modal = state.modal;
     modal.unit = dialect(environment.dialect).unit;
     modal.retract = dialect(environment.dialect).retract;
-    modal.offsets.work = environment.work_offsets;
-    modal.position = program_from_machine(modal.offsets, environment.start);
-    for (int axis = 0; axis < 3; ++axis) {
+    Tables& tables = state.tables.write();
+    for (size_t i = 0; i < plain_offset_count; ++i)
+        tables.work[i].origin = environment.work_offsets[i];
+    tables.lengths = environment.length_offsets;
+    tables.tool_lengths = environment.tool_lengths;
+    load_parameters(state, environment);
+    modal.offsets.work = tables.work[0];
+    Position start = environment.start;
+    // Axes beyond X, Y and Z that nobody speaks of stand at zero, or are not there.
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (!start[axis]) start[axis] = 0.0;
+    modal.position = program_from_machine(modal.offsets, start);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
         if (environment.home) modal.home[axis] = (*environment.home)[axis];
         if (environment.second_home) modal.second_home[axis] = (*environment.second_home)[axis];
     }
     return state;
 }
 
-core::Result<std::optional<BlockResult>>
-execute_next(const Program& program, const Environment& environment, InterpreterState& state) {
-    if (state.ending != Ending::running) return std::nullopt;
-    InterpreterState after = state;
-    auto result = try_next(program, environment, after);
-    if (result)
-        state = after;
-    else
-        result.error().file = program.file;
-    return result;
-}
-
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state) {
-    const core::SourceSpan where{.line = static_cast<uint32_t>(state.next_line - 1)};
+    const core::SourceSpan where{.line = static_cast<uint32_t>(state.next.line - 1)};
     if (state.ending == Ending::main_return)
         return Warning{Severity::warning, where,
                        "M99 in a main program starts it again; one pass was looked at"};
@@ -128,15 +316,18 @@ std::optional<Warning> ending_warning(const Environment& environment,
 
 Run run(const Program& program, const Environment& environment) {
     Run whole;
+    whole.library = std::make_shared<ProgramLibrary>(program, dialect(environment.dialect),
+                                                     environment.search_path);
+    Interpreter interpreter(*whole.library, environment);
     whole.state = initial_state(environment);
     while (true) {
-        auto result = execute_next(program, environment, whole.state);
+        auto result = interpreter.next(whole.state);
         if (!result) {
             whole.error = std::move(result).error();
             return whole;
         }
         if (!*result) break;
-        whole.blocks.push_back(**std::move(result));
+        whole.blocks.push_back(**result);
     }
     whole.ending = ending_warning(environment, whole.state);
     return whole;

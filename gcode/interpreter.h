@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,12 @@
 #include "core/base/result.h"
 #include "gcode/canonical.h"
 #include "gcode/environment.h"
+#include "gcode/frame.h"
+#include "gcode/parameters.h"
+#include "gcode/program_library.h"
+#include "gcode/shared.h"
 #include "gcode/source.h"
+#include "gcode/tables.h"
 
 namespace gcode {
 
@@ -27,38 +33,74 @@ struct Warning {
 struct BlockResult {
     core::BlockIndex block{};
     uint32_t line = 0;
-    std::string_view text; // the line, as long as the program stays where it is
-    bool is_cycle = false; // a canned cycle, G28 or G30: one block, several motions
+    std::string_view text{};       // the line, as long as the library stays where it is
+    std::string_view file{};       // of a subprogram's file; empty for the main program
+    std::vector<uint32_t> calls{}; // lines that called it, the outermost first
+    bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
     std::vector<CanonicalCommand> commands{};
+    std::vector<uint32_t> columns{}; // of the words that the commands come from
     std::vector<Warning> warnings{};
 };
 
 /// Whether and how a program came to its end.
 enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
 
-/// Everything between two blocks. A plain value: copy it to go back in time.
+/// Remembers one state of a loop, at farther and farther intervals, so that a loop in which a state
+/// comes again is found in the end however long it is.
+///
+/// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
+struct LoopWatch {
+    uint64_t jumps = 0, next_note = 1, noted = 0;
+
+    bool operator==(const LoopWatch&) const { return true; }
+};
+
+/// Everything between two blocks. A plain value: copy it to go back in time; copies share what is
+/// large until one of them changes it.
 struct InterpreterState {
     ModalState modal;
-    size_t next_line = 1;
+    Place next; // the line that is read next
     uint32_t next_block = 0;
     bool tape_open = false; // a % was seen
     bool said_unit = false; // the note that units were assumed
     bool said_home = false; // the warning that home was assumed
     Ending ending = Ending::running;
+    std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
+    std::optional<ModalMacro> modal_macro;             // G66
+    Shared<Parameters> parameters;
+    Shared<Tables> tables;
+    LoopWatch watch;
 
     bool operator==(const InterpreterState&) const = default;
 };
 
+/// A number that follows from all that decides how a program goes on: everything but the count of
+/// blocks and the watch over loops.
+uint64_t digest_of(const InterpreterState& state);
+
 /// The state before the first block.
 InterpreterState initial_state(const Environment& environment);
 
-/// Executes the next block that has words; empty when the program has ended (see `state.ending`).
-///
-/// Errors: those of parse_line and of the codes, with file, line, column and word. Nothing has
-///         changed then: `state` is as before.
-/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
-core::Result<std::optional<BlockResult>>
-execute_next(const Program& program, const Environment& environment, InterpreterState& state);
+/// Carries out programs block by block. It keeps no state of a program itself.
+class Interpreter {
+public:
+    /// The library and the environment must outlive it.
+    Interpreter(ProgramLibrary& library, const Environment& environment);
+    ~Interpreter();
+
+    /// Executes the next block that does something, and gives what came of it until the next call;
+    /// null when the program has ended (see `state.ending`).
+    ///
+    /// Errors: those of parse_line and of the codes, with file, line, column and word; programs
+    ///         that never end, as far as that can be seen. Nothing has changed then: `state` is as
+    ///         before the block at fault.
+    /// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+    core::Result<const BlockResult*> next(InterpreterState& state);
+
+private:
+    struct Scratch;
+    std::unique_ptr<Scratch> scratch_;
+};
 
 /// What is to be said about the way the program ended: no M2 or M30.
 std::optional<Warning> ending_warning(const Environment& environment,
@@ -66,6 +108,7 @@ std::optional<Warning> ending_warning(const Environment& environment,
 
 /// A whole program, up to its end or its first error.
 struct Run {
+    std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
     std::vector<BlockResult> blocks;
     std::optional<Warning> ending; // as ending_warning
     std::optional<core::Error> error;

@@ -1,36 +1,84 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "core/base/result.h"
+#include "gcode/block.h"
 
 namespace gcode {
 
-enum class TokenKind : uint8_t { end, word, comment, slash, percent };
-
-/// The next thing on a line.
-struct Token {
-    TokenKind kind = TokenKind::end;
-    core::SourceSpan span{};
-    char letter = '\0';      // of a word, upper case
-    double value = 0.0;      // of a word; of a slash, its switch (1 when it has no digit)
-    bool has_point = false;  // of a word
-    std::string_view text{}; // of a comment
+/// A number as it stands in a program.
+struct Number {
+    double value = 0.0;
+    bool has_point = false;
 };
 
-/// Takes a line apart. A plain cursor: copy it to look ahead.
+constexpr bool is_blank(char c) {
+    // Control characters that reach a line are the harmless ones of old tapes.
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == 0x1A;
+}
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+constexpr bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
+
+/// A place in a line that moves on as things are read. A plain value: copy it to look ahead.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, also inside numbers and
+///         names.
 struct Lexer {
     std::string_view line;
     uint32_t line_number = 1;
     size_t at = 0;
 
-    /// The next token; kind `end` at the end of the line.
+    /// The next character that is no blank, which stays to be read; NUL at the end.
+    char peek() {
+        while (at < line.size() && is_blank(line[at])) ++at;
+        return at < line.size() ? line[at] : '\0';
+    }
+
+    /// Whether the next character is this one, which is read then.
+    bool accept(char wanted) {
+        if (peek() != wanted) return false;
+        ++at;
+        return true;
+    }
+
+    /// Whether these letters or signs come next, in any case, which are read then.
+    bool accept_word(std::string_view wanted);
+
+    /// The letters from here on, upper case, blanks left out; they stay to be read.
+    std::string letters();
+
+    /// What stands from a place up to here.
+    core::SourceSpan span_from(size_t begin) const { return span(begin, at); }
+    core::SourceSpan span(size_t begin, size_t end) const {
+        return {line_number, static_cast<uint32_t>(begin + 1), static_cast<uint32_t>(end - begin)};
+    }
+    std::string written_from(size_t begin) const {
+        return std::string(line.substr(begin, at - begin));
+    }
+
+    /// Whether a number stands here: a sign, a digit or a point.
+    bool is_at_number();
+
+    /// The number that stands here.
     ///
-    /// Errors: syntax when a letter has no number, a number no letter, a comment no end, or a
-    ///         character no meaning; unsupported at expressions, parameters and keywords.
-    /// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, also inside numbers.
-    core::Result<Token> next();
+    /// Errors: syntax when there is none, or it has too many digits.
+    core::Result<Number> number();
+
+    /// The comment in brackets that begins here, which ends at the bracket that matches.
+    ///
+    /// Errors: syntax when it has no end on the line.
+    core::Result<Comment> bracket_comment();
+
+    /// All that is left of the line behind the character here.
+    Comment line_comment();
+
+    /// That the character here has no meaning; says what it may have been.
+    tl::unexpected<core::Error> unexpected_character();
 };
 
 } // namespace gcode

@@ -11,16 +11,21 @@ namespace gcode {
 /// which offsets are active, at the next command.
 struct Lowering {
     Offsets offsets;
-    core::AxisPosition machine; // gauge line
+    Position machine;                   // gauge line
+    double spindle_speed = 0.0;         // rev/min
+    std::optional<size_t> other_axis{}; // the first axis beyond X, Y and Z that was moved
 
     /// What a command does to the machine, in machine coordinates; empty for modes and messages.
     ///
     /// A motion along an arc keeps its shape; one whose ends are not all known becomes a feed
-    /// between the coordinates that are.
+    /// between the coordinates that are, and one whose plane the offsets tilt or distort becomes
+    /// chords within 0.001 mm of it. Axes beyond X, Y and Z are followed, but have no part in the
+    /// motions.
     std::vector<core::Event> lower(const CanonicalCommand& command);
 };
 
-/// Before the first command.
+/// Before the first command; of a run that begins in a state.
+Lowering initial_lowering(const InterpreterState& state);
 Lowering initial_lowering(const Environment& environment);
 
 /// The events of a whole block, in order.

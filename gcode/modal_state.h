@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/ids.h"
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
 
@@ -13,23 +14,29 @@ enum class LengthUnit : uint8_t { inch, mm };                         // G20, G2
 enum class DistanceMode : uint8_t { absolute, incremental };          // G90, G91
 enum class FeedMode : uint8_t { per_minute, inverse_time, per_turn }; // G94, G93, G95
 enum class RetractMode : uint8_t { initial_level, r_level };          // G98, G99
-enum class Plane : uint8_t { xy, zx, yz };                            // G17, G18, G19
-enum class MotionMode : uint8_t { traverse, feed, arc_clockwise, arc_counterclockwise }; // G0-G3
+enum class Plane : uint8_t { xy, zx, yz, uv, wu, vw };                // G17 G18 G19, G17.1 ...
+enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G61.1, G64
+enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
+
+/// What a block without a motion code goes on with: the code in tenths, 10 for G1, 385 for G38.5.
+using MotionCode = int;
 
 /// The only place where program units become mm.
 constexpr double to_mm(double programmed, LengthUnit unit) {
     return unit == LengthUnit::inch ? programmed * 25.4 : programmed;
 }
+constexpr double from_mm(double length, LengthUnit unit) {
+    return unit == LengthUnit::inch ? length / 25.4 : length;
+}
 
-/// The axes of a plane: the first two turn about the third, 0 X, 1 Y, 2 Z.
+/// The axes of a plane, as indices: the first two turn about the third.
 struct PlaneAxes {
-    int first, second, normal;
+    size_t first, second, normal;
 };
 
 constexpr PlaneAxes axes_of(Plane plane) {
-    if (plane == Plane::xy) return {0, 1, 2};
-    if (plane == Plane::zx) return {2, 0, 1};
-    return {1, 2, 0};
+    constexpr PlaneAxes axes[] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}, {6, 7, 8}, {8, 6, 7}, {7, 8, 6}};
+    return axes[static_cast<size_t>(plane)];
 }
 
 /// What a canned cycle keeps for the blocks after it; lengths as programmed, in mm.
@@ -38,7 +45,9 @@ struct CannedCycle {
     std::optional<double> bottom, r;     // Z and R in the XY plane
     std::optional<double> dwell;         // s
     std::optional<double> peck;          // Q
+    std::array<double, 3> shift{};       // I, J, K of G76 and G87
     std::optional<double> initial_level; // where the axis was before the first of the cycles
+    bool incremental = false;            // whether R and the bottom count from there
 
     bool operator==(const CannedCycle&) const = default;
 };
@@ -50,20 +59,29 @@ struct CannedCycle {
 struct ModalState {
     LengthUnit unit = LengthUnit::mm;
     bool unit_said = false;
-    std::optional<MotionMode> motion;
+    std::optional<MotionCode> motion;
     std::optional<CannedCycle> cycle; // takes the axis words while it is there
     Plane plane = Plane::xy;
     DistanceMode distance = DistanceMode::absolute;
     DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
     FeedMode feed_mode = FeedMode::per_minute;
     RetractMode retract = RetractMode::initial_level;
+    PathMode path = PathMode::continuous;
+    double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
+    Side compensation = Side::none;
+    double compensation_radius = 0.0; // mm
+    bool diameter_mode = false;       // G7: X words are diameters
+    bool surface_speed = false;       // G96
+    double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
+    bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 
-    Position position;                 // tool tip, program coordinates
-    std::array<double, 3> rotary = {}; // A, B, C in degrees; nothing turns them yet
-    Position home, second_home;        // G28, G30: machine coordinates
+    Position position;                               // tool tip, program coordinates
+    Position home, second_home;                      // G28, G30: machine coordinates
+    Position suspended_axis = zero_position;         // kept by G92.2 for G92.3
+    std::optional<double> polar_radius, polar_angle; // of the last @ and ^; mm and degrees
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
-    double speed = 0.0;         // rev/min
+    double speed = 0.0;         // rev/min, or m/min under G96
     core::SpindleDirection spindle = core::SpindleDirection::stopped;
     bool mist = false, flood = false;
 

@@ -1,3 +1,5 @@
+#include "gcode/modes.h"
+
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
@@ -122,14 +124,23 @@ core::Result<void> select_plane(Execution& execution) {
     if (!entry) return {};
     Plane& plane = execution.modal().plane;
     switch (entry->code->tenths) {
+    case tenths(17):
+        plane = Plane::xy;
+        break;
     case tenths(18):
         plane = Plane::zx;
         break;
     case tenths(19):
         plane = Plane::yz;
         break;
+    case tenths(17, 1):
+        plane = Plane::uv;
+        break;
+    case tenths(18, 1):
+        plane = Plane::wu;
+        break;
     default:
-        plane = Plane::xy;
+        plane = Plane::vw;
         break;
     }
     execution.emit(SelectPlane{plane});
@@ -161,6 +172,24 @@ core::Result<void> set_retract_mode(Execution& execution) {
         execution.modal().retract =
             entry->code->tenths == tenths(98) ? RetractMode::initial_level : RetractMode::r_level;
     return {};
+}
+
+void restore_modes(InterpreterState& state, const ModalState& saved) {
+    ModalState& modal = state.modal;
+    modal.unit = saved.unit;
+    modal.plane = saved.plane;
+    modal.distance = saved.distance;
+    modal.arc_distance = saved.arc_distance;
+    modal.feed_mode = saved.feed_mode;
+    modal.feed = saved.feed;
+    modal.speed = saved.speed;
+    modal.retract = saved.retract;
+    modal.path = saved.path;
+    modal.path_tolerance = saved.path_tolerance;
+    modal.naive_tolerance = saved.naive_tolerance;
+    modal.diameter_mode = saved.diameter_mode;
+    modal.surface_speed = saved.surface_speed;
+    modal.fastest_speed = saved.fastest_speed;
 }
 
 } // namespace gcode

@@ -9,44 +9,16 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr char linear_letters[] = {'X', 'Y', 'Z'};
-constexpr char rotary_letters[] = {'A', 'B', 'C'};
-
 bool in_machine_coordinates(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     return action && action->code->tenths == tenths(53);
 }
 
-/// The angles of the words, which must be those where the axes already are.
-core::Result<void> check_rotary_axes(const Execution& execution) {
-    const ModalState& modal = execution.modal();
-    for (size_t axis = 0; axis < 3; ++axis) {
-        const Word* word = execution.statement.word(rotary_letters[axis]);
-        if (!word) continue;
-        const bool absolute = modal.distance == DistanceMode::absolute;
-        const double target = absolute ? word->value : modal.rotary[axis] + word->value;
-        if (target != modal.rotary[axis])
-            return core::fail(ErrorCode::unsupported,
-                              fmt::format("{}: rotary axes are not supported yet", written(*word)),
-                              word->span);
-    }
-    return {};
+bool is_straight(std::optional<MotionCode> motion) {
+    return motion == tenths(0) || motion == tenths(1);
 }
 
-std::optional<MotionMode> motion_of(const CodeWord* entry) {
-    if (!entry) return std::nullopt;
-    return static_cast<MotionMode>(entry->code->tenths / 10); // G0 to G3
-}
-
-std::optional<double> distance_between(const Position& from, const Position& to) {
-    double squared = 0.0;
-    for (size_t axis = 0; axis < 3; ++axis) {
-        if (from[axis] == to[axis]) continue;
-        if (!from[axis] || !to[axis]) return std::nullopt;
-        squared += (*to[axis] - *from[axis]) * (*to[axis] - *from[axis]);
-    }
-    return std::sqrt(squared);
-}
+bool is_arc(std::optional<MotionCode> motion) { return motion == tenths(2) || motion == tenths(3); }
 
 core::Result<void> move_straight(Execution& execution, bool rapid) {
     FEELER_TRY(const Position end, target_of(execution));
@@ -55,7 +27,7 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
         return {};
     }
     FEELER_TRY(const double rate,
-               feed_rate(execution, distance_between(execution.modal().position, end)));
+               feed_rate(execution, way_between(execution.modal().position, end)));
     execution.feed(end, rate);
     return {};
 }
@@ -66,9 +38,7 @@ bool has_motion_words(const Execution& execution) {
     if (statement.taker_of_axis_words()) return false;
     if (statement.has_axis_word()) return true;
     const ModalState& modal = execution.modal();
-    const bool arc = !modal.cycle
-                     && (modal.motion == MotionMode::arc_clockwise
-                         || modal.motion == MotionMode::arc_counterclockwise);
+    const bool arc = !modal.cycle && is_arc(modal.motion);
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
 }
 
@@ -78,9 +48,8 @@ core::Result<void> set_motion_mode(Execution& execution) {
     ModalState& modal = execution.modal();
     const CodeWord* taker = statement.taker_of_axis_words();
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
-    const std::optional<MotionMode> motion = motion_of(statement.of(ModalGroup::motion));
-    const CodeWord* mover =
-        cycle && cycle->code->uses_axes() ? cycle : statement.of(ModalGroup::motion);
+    const CodeWord* motion = statement.of(ModalGroup::motion);
+    const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
     const bool homes = taker && taker->code->tenths != tenths(4) && statement.has_axis_word();
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
         return core::fail(ErrorCode::syntax,
@@ -89,7 +58,7 @@ core::Result<void> set_motion_mode(Execution& execution) {
                                       written(*taker->word), written(*mover->word)),
                           mover->word->span);
     if (motion) {
-        modal.motion = motion;
+        modal.motion = motion->code->tenths;
         modal.cycle.reset();
     }
     if (!cycle) return {};
@@ -105,7 +74,7 @@ core::Result<void> set_motion_mode(Execution& execution) {
 
 core::Result<void> refuse_without_mode(const Execution& execution) {
     for (const Word& word : execution.block.words)
-        if (std::string_view("XYZABC").find(word.letter) != std::string_view::npos)
+        if (axis_letters.find(word.letter) != std::string_view::npos)
             return core::fail(
                 ErrorCode::missing_value,
                 fmt::format("{}: no motion code is active; say G0, G1, G2 or G3", written(word)),
@@ -124,10 +93,9 @@ core::Result<void> move_to_machine_place(Execution& execution) {
                           "G53 under G91 is not the same on all controls of this kind: say G90",
                           action->word->span);
     if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
-    const bool straight = modal.motion == MotionMode::traverse || modal.motion == MotionMode::feed;
-    if (modal.cycle || !straight)
+    if (modal.cycle || !is_straight(modal.motion))
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
-    return move_straight(execution, modal.motion == MotionMode::traverse);
+    return move_straight(execution, modal.motion == tenths(0));
 }
 
 } // namespace
@@ -147,30 +115,56 @@ const Word& moving_word(const Execution& execution) {
     for (const ModalGroup group : {ModalGroup::cycle, ModalGroup::motion})
         if (const CodeWord* entry = statement.of(group)) return *entry->word;
     for (const Word& word : execution.block.words)
-        if (std::string_view("XYZABCIJK").find(word.letter) != std::string_view::npos) return word;
+        if (std::string_view("XYZABCUVWIJK@^").find(word.letter) != std::string_view::npos)
+            return word;
     return execution.block.words.front();
 }
 
+double axis_value(const Execution& execution, size_t axis, const Word& word) {
+    if (is_rotary(axis)) return word.value;
+    const double length = length_of(execution, word);
+    return axis == 0 && execution.modal().diameter_mode ? length / 2.0 : length;
+}
+
 core::Result<Position> target_of(const Execution& execution) {
-    if (auto checked = check_rotary_axes(execution); !checked)
-        return tl::unexpected(std::move(checked).error());
     const ModalState& modal = execution.modal();
-    const bool machine = in_machine_coordinates(execution);
-    const Position to_machine = machine_minus_program(modal.offsets);
     Position target = modal.position;
-    for (size_t axis = 0; axis < 3; ++axis) {
-        const Word* word = execution.statement.word(linear_letters[axis]);
+    if (in_machine_coordinates(execution)) {
+        Position machine = machine_from_program(modal.offsets, modal.position);
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (const Word* word = execution.statement.word(axis_letters[axis]))
+                machine[axis] = axis_value(execution, axis, *word);
+        const Position place = program_from_machine(modal.offsets, machine);
+        const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
+                target[axis] = place[axis];
+        return target;
+    }
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
-        const double length = length_of(execution, *word);
-        if (machine)
-            target[axis] =
-                to_machine[axis] ? std::optional(length - *to_machine[axis]) : std::nullopt;
-        else if (modal.distance == DistanceMode::absolute)
-            target[axis] = length;
+        const double value = axis_value(execution, axis, *word);
+        if (modal.distance == DistanceMode::absolute)
+            target[axis] = value;
         else if (target[axis])
-            *target[axis] += length;
+            *target[axis] += value;
     }
     return target;
+}
+
+std::optional<double> way_between(const Position& from, const Position& to) {
+    // The rate is along X, Y, Z, or, when these stand, along U, V, W, or the rotary axes.
+    for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
+        double squared = 0.0;
+        for (size_t axis = first; axis < first + 3; ++axis) {
+            if (from[axis] == to[axis]) continue;
+            if (!from[axis] || !to[axis]) return std::nullopt;
+            squared += (*to[axis] - *from[axis]) * (*to[axis] - *from[axis]);
+        }
+        if (squared > 0.0) return std::sqrt(squared);
+    }
+    return 0.0;
 }
 
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length) {
@@ -202,8 +196,7 @@ core::Result<void> move(Execution& execution) {
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
-    const bool straight = modal.motion == MotionMode::traverse || modal.motion == MotionMode::feed;
-    if (straight) return move_straight(execution, modal.motion == MotionMode::traverse);
+    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
     return move_along_arc(execution);
 }
 

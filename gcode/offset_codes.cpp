@@ -7,18 +7,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr char letters[] = {'X', 'Y', 'Z'};
-
-core::Result<void> refuse_rotary_offsets(const Execution& execution) {
-    for (const char letter : {'A', 'B', 'C', 'R'})
-        if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("{}: turned offsets are not supported yet", written(*word)),
-                word->span);
-    return {};
-}
-
 /// Which work offset a P word means: 1 is G54, 0 the active one.
 core::Result<size_t> work_offset_index(const Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('P');
@@ -26,7 +14,7 @@ core::Result<size_t> work_offset_index(const Execution& execution, const CodeWor
         return core::fail(ErrorCode::missing_value,
                           "G10 does not say which work offset: it needs a P word",
                           entry.word->span);
-    FEELER_TRY(const int number, whole_number(*word, 0, work_offset_count));
+    FEELER_TRY(const int number, whole_number(*word, 0, plain_offset_count));
     if (number > 0) return static_cast<size_t>(number - 1);
     if (!execution.dialect.p0_is_active_offset)
         return core::fail(ErrorCode::unsupported,
@@ -34,33 +22,58 @@ core::Result<size_t> work_offset_index(const Execution& execution, const CodeWor
     return execution.modal().offsets.active;
 }
 
-/// G10 L2: the origin itself. Under G91 some controls add to it.
-void write_origin(const Execution& execution, core::Vec3& origin) {
+/// G10 L2: the origin itself, and how far it is turned. Under G91 some controls add to it.
+void write_origin(const Execution& execution, WorkOffset& offset) {
     const bool adds = execution.dialect.offset_writes_follow_g91
                       && execution.modal().distance == DistanceMode::incremental;
-    for (int axis = 0; axis < 3; ++axis)
-        if (const Word* word = execution.statement.word(letters[axis]))
-            origin[axis] = (adds ? origin[axis] : 0.0) + length_of(execution, *word);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            offset.origin[axis] =
+                (adds ? offset.origin[axis] : 0.0) + axis_value(execution, axis, *word);
+    if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
 }
 
 /// G10 L20: the origin that makes the present place read as the words say.
-core::Result<void> write_origin_here(const Execution& execution, Offsets& offsets, size_t index) {
-    const Position machine = machine_from_program(offsets, execution.modal().position);
-    Offsets there = offsets;
-    there.active = index;
-    const Position wanted = machine_minus_program(there);
-    for (int axis = 0; axis < 3; ++axis) {
-        const Word* word = execution.statement.word(letters[axis]);
+core::Result<void> write_origin_here(const Execution& execution, WorkOffset& offset) {
+    const ModalState& modal = execution.modal();
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
+    Offsets there = modal.offsets;
+    there.work = offset;
+    Position read = program_from_machine(there, machine);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
-        if (!machine[axis] || !wanted[axis])
+        if (!read[axis])
             return core::fail(ErrorCode::missing_value,
                               fmt::format("{}: G10 L20 needs a known place, and where the machine "
                                           "is along {} is unknown",
-                                          written(*word), letters[axis]),
+                                          written(*word), axis_letters[axis]),
                               word->span);
-        offsets.work[index][axis] += *machine[axis] - *wanted[axis] - length_of(execution, *word);
+        read[axis] = axis_value(execution, axis, *word);
     }
+    // The origin moves by what the wanted reading is off from the machine's place.
+    const Position meant = machine_from_program(there, read);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (meant[axis] && machine[axis]) offset.origin[axis] += *machine[axis] - *meant[axis];
     return {};
+}
+
+/// Whether R may turn a work offset: not on all controls.
+core::Result<void> check_turn(const Execution& execution) {
+    const Word* word = execution.statement.word('R');
+    if (!word || execution.dialect.work_offsets_turn) return {};
+    return core::fail(
+        ErrorCode::unsupported,
+        fmt::format("{}: work offsets are not turned by this control; use G68", written(*word)),
+        word->span);
+}
+
+/// The offset as it is in effect: what the table has, and Fanuc's external one.
+WorkOffset in_effect(const Tables& tables, size_t index) {
+    WorkOffset offset = work_offset(tables, index);
+    for (size_t axis = 0; axis < axis_count; ++axis) offset.origin[axis] += tables.external[axis];
+    return offset;
 }
 
 void use(Execution& execution, const Offsets& offsets) {
@@ -72,10 +85,19 @@ void use(Execution& execution, const Offsets& offsets) {
 
 void change_offsets(Execution& execution, const Offsets& offsets) {
     ModalState& modal = execution.modal();
+    const auto turns = [](const Offsets& some) {
+        return some.has_frame || some.work.rotation_deg != 0.0;
+    };
+    if (turns(modal.offsets) || turns(offsets)) {
+        modal.position =
+            program_from_machine(offsets, machine_from_program(modal.offsets, modal.position));
+        modal.offsets = offsets;
+        return;
+    }
     const Position before = machine_minus_program(modal.offsets);
     const Position after = machine_minus_program(offsets);
     modal.offsets = offsets;
-    for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
         if (before[axis] == after[axis]) continue;
         std::optional<double>& place = modal.position[axis];
         if (place && before[axis] && after[axis])
@@ -92,6 +114,7 @@ core::Result<void> select_offset(Execution& execution) {
     const int code = entry->code->tenths;
     offsets.active =
         static_cast<size_t>(code <= tenths(59) ? (code - tenths(54)) / 10 : 5 + code - tenths(59));
+    offsets.work = in_effect(*execution.state.tables, offsets.active);
     use(execution, offsets);
     return {};
 }
@@ -108,54 +131,55 @@ core::Result<void> write_offset(Execution& execution) {
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: only G10 L2 and L20 are supported yet", written(*kind)),
                           kind->span);
-    if (auto checked = refuse_rotary_offsets(execution); !checked) return checked;
     FEELER_TRY(const size_t index, work_offset_index(execution, entry));
-    Offsets offsets = execution.modal().offsets;
+    if (auto checked = check_turn(execution); !checked) return checked;
+    WorkOffset offset = work_offset(*execution.state.tables, index);
     if (kind->value == 2.0)
-        write_origin(execution, offsets.work[index]);
-    else if (auto done = write_origin_here(execution, offsets, index); !done)
+        write_origin(execution, offset);
+    else if (auto done = write_origin_here(execution, offset); !done)
         return done;
+    writable_work_offset(execution.state.tables.write(), index) = offset;
+    Offsets offsets = execution.modal().offsets;
+    if (index == offsets.active) offsets.work = in_effect(*execution.state.tables, index);
     use(execution, offsets);
     return {};
 }
 
 core::Result<void> set_local_offset(Execution& execution) {
-    if (auto checked = refuse_rotary_offsets(execution); !checked) return checked;
     Offsets offsets = execution.modal().offsets;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Word* word = execution.statement.word(letters[axis]);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
-        const double length = length_of(execution, *word);
+        const double value = axis_value(execution, axis, *word);
         if (execution.dialect.local_offset_is_axis_offset)
-            offsets.axis[static_cast<size_t>(axis)] = length;
+            offsets.axis[axis] = value;
         else
-            offsets.local[axis] = length;
+            offsets.local[axis] = value;
     }
     use(execution, offsets);
     return {};
 }
 
 core::Result<void> set_axis_offset(Execution& execution) {
-    if (auto checked = refuse_rotary_offsets(execution); !checked) return checked;
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
     switch (execution.statement.of(ModalGroup::action)->code->tenths) {
     case tenths(92, 1):
-        offsets.axis = offsets.suspended_axis = zero_position;
+        offsets.axis = modal.suspended_axis = zero_position;
         break;
     case tenths(92, 2):
-        offsets.suspended_axis = offsets.axis;
+        modal.suspended_axis = offsets.axis;
         offsets.axis = zero_position;
         break;
     case tenths(92, 3):
-        offsets.axis = offsets.suspended_axis;
+        offsets.axis = modal.suspended_axis;
         break;
     default:
-        for (size_t axis = 0; axis < 3; ++axis) {
-            const Word* word = execution.statement.word(letters[axis]);
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            const Word* word = execution.statement.word(axis_letters[axis]);
             if (!word) continue;
             const std::optional<double> place = modal.position[axis];
-            const double wanted = length_of(execution, *word);
+            const double wanted = axis_value(execution, axis, *word);
             // The machine stays and this place takes a new name; of an unknown place, only the
             // name is known.
             if (place && offsets.axis[axis])
@@ -163,11 +187,11 @@ core::Result<void> set_axis_offset(Execution& execution) {
             else
                 offsets.axis[axis].reset();
         }
-        offsets.suspended_axis = offsets.axis;
+        modal.suspended_axis = offsets.axis;
         change_offsets(execution, offsets);
-        for (size_t axis = 0; axis < 3; ++axis)
-            if (const Word* word = execution.statement.word(letters[axis]))
-                modal.position[axis] = length_of(execution, *word);
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (const Word* word = execution.statement.word(axis_letters[axis]))
+                modal.position[axis] = axis_value(execution, axis, *word);
         execution.emit(SetOffset{offsets});
         return {};
     }

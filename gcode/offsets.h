@@ -1,36 +1,55 @@
 #pragma once
 
-#include <array>
-#include <optional>
-
+#include "core/base/transform.h"
 #include "core/sim/event.h"
+#include "gcode/axes.h"
 
 namespace gcode {
 
-/// mm, axis by axis; empty where nobody knows.
-using Position = core::AxisPosition;
+/// G54 to G59, G59.1 to G59.3; behind them the numbered ones, G54.1 P1 and on.
+constexpr size_t plain_offset_count = 9;
+constexpr size_t extended_offset_count = 300;
+constexpr size_t work_offset_count = plain_offset_count + extended_offset_count;
 
-constexpr Position zero_position = {0.0, 0.0, 0.0};
+/// The origin of a work offset in machine coordinates, and how far it is turned about Z.
+struct WorkOffset {
+    AxisValues origin{};
+    double rotation_deg = 0.0;
 
-/// G54 to G59, G59.1 to G59.3.
-constexpr size_t work_offset_count = 9;
+    bool operator==(const WorkOffset&) const = default;
+};
 
-/// Everything that stands between program and machine coordinates.
+/// What a program does to its coordinates by itself: scaling, mirror images, rotations, tilted
+/// planes. Maps the coordinates of the program to those of the work offset.
+struct ProgramFrame {
+    core::Mat3 linear = core::Mat3(1.0);
+    core::Vec3 shift = core::Vec3(0.0);
+
+    bool operator==(const ProgramFrame&) const = default;
+};
+
+/// Everything that stands between program and machine coordinates, as it is in effect:
+/// machine = work + turned(frame(program) + axis + local) + tool.
 struct Offsets {
-    std::array<core::Vec3, work_offset_count> work{}; // origins in machine coordinates
-    size_t active = 0;                                // index into `work`
-    core::Vec3 local = core::Vec3(0.0);               // G52
-    Position axis = zero_position;                    // G92; empty when set from an unknown place
-    Position suspended_axis = zero_position;          // kept by G92.2 for G92.3
-    double tool_length = 0.0;                         // along Z
+    size_t active = 0; // 0 is G54
+    WorkOffset work;
+    AxisValues local{};            // G52
+    Position axis = zero_position; // G92; empty when set from an unknown place
+    AxisValues tool{};             // length along Z, and along the other axes
+    ProgramFrame frame;
+    bool has_frame = false; // whether `frame` is more than the identity
 
     bool operator==(const Offsets&) const = default;
 };
 
-/// What to add to program coordinates to reach machine coordinates of the gauge line.
+/// What to add to program coordinates to reach machine coordinates of the gauge line, where nothing
+/// is turned.
 Position machine_minus_program(const Offsets& offsets);
 
 Position machine_from_program(const Offsets& offsets, const Position& program);
 Position program_from_machine(const Offsets& offsets, const Position& machine);
+
+/// The first three axes, as the simulator has them.
+core::AxisPosition linear_axes(const Position& position);
 
 } // namespace gcode

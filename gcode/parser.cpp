@@ -1,11 +1,11 @@
 #include "gcode/parser.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
+#include "gcode/expression_parser.h"
+#include "gcode/flow_parser.h"
 #include "gcode/lexer.h"
 
 namespace gcode {
@@ -13,83 +13,221 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr std::array flow_keywords = {"sub",      "endsub", "call",   "if",        "elseif",
-                                      "else",     "endif",  "while",  "endwhile",  "do",
-                                      "continue", "break",  "repeat", "endrepeat", "return"};
+constexpr std::string_view word_letters = "ABCDFGHIJKLMNOPQRSTUVWXYZ";
 
-/// The letters that follow, blanks left out, lower case.
-std::string keyword_at(const Lexer& lexer) {
-    std::string letters;
-    for (const char c : lexer.line.substr(lexer.at)) {
-        if (std::isblank(static_cast<unsigned char>(c))) continue;
-        if (!std::isalpha(static_cast<unsigned char>(c))) break;
-        letters.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-    }
-    return letters;
+/// Two or more letters in a row are a keyword of some control, which deserves a better message.
+core::Error missing_number(const Lexer& lexer, size_t begin) {
+    size_t end = begin;
+    while (end < lexer.line.size() && is_letter(lexer.line[end])) ++end;
+    if (end - begin > 1)
+        return {ErrorCode::unsupported, lexer.span(begin, end),
+                fmt::format("'{}' is no word of this control's language; a letter needs a number "
+                            "behind it",
+                            lexer.line.substr(begin, end - begin))};
+    return {ErrorCode::syntax, lexer.span(begin, begin + 1),
+            fmt::format("'{}' has no number behind it", lexer.line[begin])};
 }
 
-core::Result<void> refuse_flow_control(const Lexer& lexer, const Token& token) {
-    const std::string keyword = keyword_at(lexer);
-    if (std::find(flow_keywords.begin(), flow_keywords.end(), keyword) == flow_keywords.end())
+class LineParser {
+public:
+    LineParser(std::string_view text, uint32_t line, const Dialect& dialect, Block& block)
+        : lexer_{.line = text, .line_number = line}, dialect_(dialect), block_(block) {}
+
+    core::Result<void> parse() {
+        while (!block_.tape_mark) {
+            const char c = lexer_.peek();
+            if (c == '\0') break;
+            if (auto done = item(c); !done) return done;
+        }
         return {};
-    return core::fail(ErrorCode::unsupported,
-                      fmt::format("'O{:.12g} {}': O words are not supported by this version",
-                                  token.value, keyword),
-                      token.span);
-}
+    }
 
-core::Result<void> add_word(Block& block, const Lexer& lexer, const Token& token) {
-    if (token.letter == 'O')
-        if (auto allowed = refuse_flow_control(lexer, token); !allowed) return allowed;
-    const bool repeatable = token.letter == 'G' || token.letter == 'M';
-    const auto same_letter = [&](const Word& word) { return word.letter == token.letter; };
-    if (!repeatable && std::any_of(block.words.begin(), block.words.end(), same_letter))
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}': a block takes one {} word, this is the second",
-                                      lexer.line.substr(token.span.column - 1, token.span.length),
-                                      token.letter),
-                          token.span);
-    block.words.push_back({token.letter, token.value, token.span, token.has_point});
-    return {};
-}
+private:
+    core::Result<void> item(char c) {
+        if (c == '(') {
+            FEELER_TRY(const Comment comment, lexer_.bracket_comment());
+            block_.comments.push_back(comment);
+            return {};
+        }
+        if (c == ';') {
+            block_.comments.push_back(lexer_.line_comment());
+            return {};
+        }
+        if (c == '/') return block_delete();
+        if (c == '%') return tape_mark();
+        if (c == '#') return assignment();
+        if (c == ',' && dialect_.has_corner_words) return corner_word();
+        if ((c == '@' || c == '^') && dialect_.has_polar_words) return word(c, c);
+        if (is_letter(c)) return lettered(upper(c));
+        return stray(c);
+    }
 
-/// `/` stands first, or right after the N word.
-core::Result<void> set_block_delete(Block& block, const Token& token) {
-    const bool first = block.words.empty() && !block.block_delete;
-    const bool after_number = block.words.size() == 1 && block.words[0].letter == 'N';
-    if (!first && !(after_number && !block.block_delete))
-        return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block", token.span);
-    block.block_delete = static_cast<int>(token.value);
-    return {};
-}
+    /// `/` stands first, or right after the N word. `/10` is no switch.
+    core::Result<void> block_delete() {
+        const size_t begin = lexer_.at++;
+        int number = 1;
+        if (lexer_.at < lexer_.line.size() && lexer_.line[lexer_.at] >= '1'
+            && lexer_.line[lexer_.at] <= '9')
+            number = lexer_.line[lexer_.at++] - '0';
+        const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
+        const bool in_place = block_.is_empty() || (after_number && block_.assignments.empty());
+        if (!in_place || block_.block_delete)
+            return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
+                              lexer_.span_from(begin));
+        block_.block_delete = number;
+        return {};
+    }
 
-core::Result<void> add(Block& block, const Lexer& lexer, const Token& token) {
-    if (token.kind == TokenKind::comment)
-        block.comments.push_back({token.text, token.span});
-    else if (token.kind == TokenKind::slash)
-        return set_block_delete(block, token);
-    else if (token.kind == TokenKind::word)
-        return add_word(block, lexer, token);
-    else if (!block.words.empty())
-        return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line", token.span);
-    else
-        block.tape_mark = true;
-    return {};
-}
+    /// What follows a tape mark on its line is the name some controls put there.
+    core::Result<void> tape_mark() {
+        if (!block_.is_empty())
+            return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
+                              lexer_.span(lexer_.at, lexer_.at + 1));
+        block_.tape_mark = true;
+        return {};
+    }
+
+    core::Result<void> assignment() {
+        const size_t begin = lexer_.at++;
+        Assignment entry;
+        if (lexer_.peek() == '<') {
+            FEELER_TRY(std::string name, parse_name(lexer_));
+            entry.is_named = true;
+            entry.name = static_cast<uint32_t>(block_.pool.names.size());
+            block_.pool.names.push_back(std::move(name));
+        } else {
+            FEELER_TRY(entry.number, value_as_expression());
+        }
+        if (!lexer_.accept('='))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("'{}' stands alone: a parameter is set with '=', or "
+                                          "gives the value of a word",
+                                          lexer_.written_from(begin)),
+                              lexer_.span_from(begin));
+        Number plain;
+        FEELER_TRY(entry.value,
+                   dialect_.brackets_optional_in_assignments
+                       ? parse_sum(lexer_, dialect_.expressions, block_.pool, plain)
+                       : parse_value(lexer_, dialect_.expressions, block_.pool, plain));
+        entry.plain = plain.value;
+        entry.span = lexer_.span_from(begin);
+        block_.assignments.push_back(entry);
+        return {};
+    }
+
+    core::Result<Expression> value_as_expression() {
+        Number plain;
+        FEELER_TRY(const Expression found,
+                   parse_value(lexer_, dialect_.expressions, block_.pool, plain));
+        if (found) return found;
+        const auto first = static_cast<uint32_t>(block_.pool.instructions.size());
+        block_.pool.instructions.push_back(
+            {Operation::number, static_cast<uint32_t>(lexer_.at), plain.value});
+        return Expression{first, 1};
+    }
+
+    /// `,R5` and `,C2` between two moves.
+    core::Result<void> corner_word() {
+        const size_t begin = lexer_.at++;
+        const char letter = upper(lexer_.peek());
+        if (letter != 'R' && letter != 'C' && letter != 'A')
+            return core::fail(ErrorCode::syntax, "behind a ',' belongs R, C or A",
+                              lexer_.span_from(begin));
+        return word(letter, static_cast<char>(lower(letter)), begin);
+    }
+
+    core::Result<void> lettered(char letter) {
+        FEELER_TRY(const bool flows, parse_flow(lexer_, dialect_, block_));
+        if (flows) return {};
+        if (word_letters.find(letter) == std::string_view::npos)
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("'{}' is not a word of this language; an exponent such "
+                                          "as 1E3 is written out",
+                                          lexer_.line.substr(lexer_.at, 1)),
+                              lexer_.span(lexer_.at, lexer_.at + 1));
+        return word(letter, letter);
+    }
+
+    core::Result<void> word(char, char letter, std::optional<size_t> from = {}) {
+        const size_t begin = from.value_or(lexer_.at);
+        ++lexer_.at;
+        const char next = lexer_.peek();
+        const bool has_value =
+            lexer_.is_at_number() || next == '#' || next == '[' || is_letter(next);
+        if (!has_value) return tl::unexpected(missing_number(lexer_, begin));
+        Word entry{.letter = letter};
+        Number plain;
+        auto value = parse_value(lexer_, dialect_.expressions, block_.pool, plain);
+        if (!value) {
+            const bool no_digits = lexer_.is_at_number() && value.error().where.length == 1
+                                   && value.error().code == ErrorCode::syntax && next != '#';
+            if (is_letter(next) || no_digits) return tl::unexpected(missing_number(lexer_, begin));
+            return tl::unexpected(std::move(value).error());
+        }
+        entry.expression = *value;
+        entry.value = plain.value;
+        entry.has_point = plain.has_point;
+        entry.span = lexer_.span_from(begin);
+        return add(entry);
+    }
+
+    core::Result<void> add(const Word& entry) {
+        const bool is_offset = entry.letter == 'I' || entry.letter == 'J' || entry.letter == 'K';
+        const bool repeatable = entry.letter == 'G' || entry.letter == 'M'
+                                || (is_offset && dialect_.offset_words_may_repeat);
+        const auto same = [&](const Word& word) { return word.letter == entry.letter; };
+        if (!repeatable && std::any_of(block_.words.begin(), block_.words.end(), same))
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("'{}': a block takes one {} word, this is the second",
+                            lexer_.line.substr(entry.span.column - 1, entry.span.length),
+                            entry.letter),
+                entry.span);
+        block_.words.push_back(entry);
+        return {};
+    }
+
+    core::Result<void> stray(char c) {
+        if (lexer_.is_at_number()) {
+            const size_t begin = lexer_.at;
+            if (!lexer_.number()) ++lexer_.at;
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("'{}' has no letter before it", lexer_.written_from(begin)),
+                lexer_.span_from(begin));
+        }
+        if (c == '@' || c == '^' || c == ',')
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("'{}' has no meaning in the dialect {}", c, dialect_.name),
+                lexer_.span(lexer_.at, lexer_.at + 1));
+        return lexer_.unexpected_character();
+    }
+
+    Lexer lexer_;
+    const Dialect& dialect_;
+    Block& block_;
+};
 
 } // namespace
 
-core::Result<Block> parse_line(std::string_view text, uint32_t line) {
-    Block block{.line = line, .text = text};
-    Lexer lexer{.line = text, .line_number = line};
-    while (true) {
-        // What follows a tape mark on its line is the name some controls put there.
-        if (block.tape_mark) return block;
-        FEELER_TRY(const Token token, lexer.next());
-        if (token.kind == TokenKind::end) return block;
-        if (auto added = add(block, lexer, token); !added)
-            return tl::unexpected(std::move(added).error());
-    }
+void Block::clear() {
+    words.clear();
+    comments.clear();
+    assignments.clear();
+    pool.clear();
+    flow.arguments.clear();
+    flow = Flow{.arguments = std::move(flow.arguments)};
+    block_delete.reset();
+    tape_mark = false;
+}
+
+core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,
+                              Block& block) {
+    block.clear();
+    block.line = line;
+    block.text = text;
+    return LineParser(text, line, dialect, block).parse();
 }
 
 } // namespace gcode

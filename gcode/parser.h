@@ -1,14 +1,16 @@
 #pragma once
 
 #include "gcode/block.h"
+#include "gcode/dialect.h"
 
 namespace gcode {
 
-/// The words of one line. Blank lines and comments give a block without words.
+/// Reads one line of a program.
 ///
-/// Errors: those of Lexer::next; syntax when a letter other than G and M stands twice, or `/` or
-///         `%` stands where it has no meaning; unsupported at flow control (O words with a
-///         keyword).
-core::Result<Block> parse_line(std::string_view text, uint32_t line);
+/// Effect: `block` is overwritten; its vectors keep their room.
+/// Errors: syntax with line, column and what stands there: a letter without a number, a second X
+///         word, a comment without its end, an expression that is none.
+core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,
+                              Block& block);
 
 } // namespace gcode

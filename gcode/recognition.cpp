@@ -73,7 +73,7 @@ void observe(const Block& block, Habits& habits) {
     habits.has_tape_mark |= block.tape_mark;
     bool homes = false, length = false, offset_number = false, moves = false;
     for (const Word& word : block.words) {
-        const bool g = word.letter == 'G';
+        const bool g = word.letter == 'G' && !word.expression;
         homes |= g && (word.value == 28.0 || word.value == 30.0);
         length |= g && word.value == 43.0;
         moves |= g && word.value <= 3.0;
@@ -122,15 +122,19 @@ Clue program_number_clue(const Block& block) {
 
 Recognition recognise(const Program& program) {
     Habits habits;
+    Block block;
     for (size_t number = 1; number <= program.line_count(); ++number) {
         const std::string_view text = program.line(number);
         if (Clue clue = foreign_clue(text, number)) return *clue;
         if (Clue clue = linuxcnc_clue(text, number)) return *clue;
-        const auto block = parse_line(text, static_cast<uint32_t>(number));
-        habits.has_expressions |= !block && block.error().code == core::ErrorCode::unsupported;
-        if (!block) continue;
-        if (Clue clue = program_number_clue(*block)) return *clue;
-        observe(*block, habits);
+        // Fanuc's is the widest of the languages whose lines hold words.
+        if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
+            continue;
+        habits.has_expressions |= !block.pool.instructions.empty();
+        if (Clue clue = program_number_clue(block)) return *clue;
+        if (block.flow.kind != FlowKind::none)
+            return found(DialectId::fanuc, number, "has IF, WHILE or GOTO");
+        observe(block, habits);
     }
     return judge(habits);
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/lexer.h"
+
 namespace gcode {
 namespace {
 
@@ -35,7 +37,8 @@ bool goes_elsewhere(const Word& word) {
 /// An M code that the table does not have is passed over, unless the order of the blocks may hang
 /// on it or no control can read it.
 core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
-                                      const Dialect& dialect) {
+                                      const Dialect& dialect, const Environment& environment) {
+    if (environment.known_m_codes.count(static_cast<int>(word.value))) return {};
     if (word.value < 0.0 || std::abs(word.value - std::round(word.value)) > 1e-6)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: an M code is a whole number, not negative; take it out "
@@ -52,9 +55,11 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
     return {};
 }
 
-core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect) {
+core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect,
+                            const Environment& environment) {
     const Code* code = find_code(word.letter, word.value, dialect.id);
-    if (!code && word.letter == 'M') return add_unknown_m_code(statement, word, dialect);
+    if (!code && word.letter == 'M')
+        return add_unknown_m_code(statement, word, dialect, environment);
     if (!code)
         return core::fail(
             ErrorCode::unsupported,
@@ -70,20 +75,26 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
                           fmt::format("{} and {} are of one modal group: a block takes one of them",
                                       written(*other->word), written(word)),
                           word.span);
-    if (!repeated) statement.codes.push_back({code, &word});
+    if (repeated) return {};
+    if (statement.code_count == Statement::most_codes)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: there are too many codes in this block", written(word)),
+                          word.span);
+    statement.code_words[statement.code_count++] = {code, &word};
+    statement.groups |= 1u << static_cast<unsigned>(code->group);
     return {};
 }
 
 } // namespace
 
-const CodeWord* Statement::of(ModalGroup group) const {
-    for (const CodeWord& entry : codes)
+const CodeWord* Statement::find(ModalGroup group) const {
+    for (const CodeWord& entry : codes())
         if (entry.code->group == group) return &entry;
     return nullptr;
 }
 
 const CodeWord* Statement::taker_of_axis_words() const {
-    for (const CodeWord& entry : codes) {
+    for (const CodeWord& entry : codes()) {
         const Code& code = *entry.code;
         const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle
                            || (code.letter == 'G' && code.tenths == tenths(53));
@@ -93,20 +104,37 @@ const CodeWord* Statement::taker_of_axis_words() const {
     return nullptr;
 }
 
-core::Result<Statement> statement_from_block(const Block& block, const Dialect& dialect) {
-    Statement statement;
+core::Result<void> look_up(const Block& block, const Dialect& dialect,
+                           const Environment& environment, Statement& statement) {
+    statement.words.fill(nullptr);
+    statement.polar_radius = statement.polar_angle = nullptr;
+    statement.code_count = 0;
+    statement.groups = 0;
+    statement.unknown_m_codes.clear();
     for (const Word& word : block.words) {
-        if (word.letter != 'G' && word.letter != 'M') {
+        if (word.letter == 'G' || word.letter == 'M') {
+            if (auto added = add_code(statement, word, dialect, environment); !added) return added;
+        } else if (word.letter == '@') {
+            statement.polar_radius = &word;
+        } else if (word.letter == '^') {
+            statement.polar_angle = &word;
+        } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
-            continue;
+        } else {
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("{}: corners between moves are not supported yet", written(word)),
+                word.span);
         }
-        if (auto added = add_code(statement, word, dialect); !added)
-            return tl::unexpected(std::move(added).error());
     }
-    return statement;
+    return {};
 }
 
-std::string written(const Word& word) { return fmt::format("{}{:.12g}", word.letter, word.value); }
+std::string written(const Word& word) {
+    const bool comma = word.letter == 'r' || word.letter == 'c' || word.letter == 'a';
+    return fmt::format("{}{}{:.12g}", comma ? "," : "", comma ? upper(word.letter) : word.letter,
+                       word.value);
+}
 
 core::Result<int> whole_number(const Word& word, int lowest, int highest) {
     const double rounded = std::round(word.value);

@@ -1,41 +1,62 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
+#include "gcode/axes.h"
 #include "gcode/block.h"
 #include "gcode/codes.h"
+#include "gcode/environment.h"
 
 namespace gcode {
 
 /// A G or M word with the code it names.
 struct CodeWord {
-    const Code* code;
-    const Word* word;
+    const Code* code = nullptr;
+    const Word* word = nullptr;
 };
 
 /// A block with its words looked up. Refers to the block's words.
 struct Statement {
-    std::array<const Word*, 26> words{};      // by letter, without G and M
-    std::vector<CodeWord> codes;              // in the order written
-    std::vector<const Word*> unknown_m_codes; // a machine builder's
+    static constexpr size_t most_codes = 32;
 
+    std::array<const Word*, 26> words{};         // by letter, without G and M
+    const Word* polar_radius = nullptr;          // @
+    const Word* polar_angle = nullptr;           // ^
+    std::array<CodeWord, most_codes> code_words; // in the order written
+    size_t code_count = 0;
+    uint32_t groups = 0;                        // a bit for each modal group that is there
+    std::vector<const Word*> unknown_m_codes{}; // a machine builder's
+
+    std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
     const Word* word(char letter) const { return words[static_cast<size_t>(letter - 'A')]; }
-    const CodeWord* of(ModalGroup group) const;
-    bool has_axis_word() const { return word('X') || word('Y') || word('Z') || has_rotary_word(); }
-    bool has_rotary_word() const { return word('A') || word('B') || word('C'); }
+    const CodeWord* of(ModalGroup group) const {
+        if (!(groups & (1u << static_cast<unsigned>(group)))) return nullptr;
+        return find(group);
+    }
+    bool has_axis_word() const {
+        for (const char letter : axis_letters)
+            if (word(letter)) return true;
+        return polar_radius || polar_angle;
+    }
 
     /// The code that takes the axis words away from the motion: G10, G28, G30, G52, G92, G43.1, and
     /// a G4 that has no P.
     const CodeWord* taker_of_axis_words() const;
+
+private:
+    const CodeWord* find(ModalGroup group) const;
 };
 
-/// What a block's words mean in a dialect.
+/// Looks up what a block's words mean in a dialect.
 ///
+/// Effect: `statement` is overwritten.
 /// Errors: unsupported for a G code the dialect or this version does not have, and for an M code
 ///         that moves the machine, changes its state or jumps; syntax for two codes of one modal
 ///         group.
-core::Result<Statement> statement_from_block(const Block& block, const Dialect& dialect);
+core::Result<void> look_up(const Block& block, const Dialect& dialect,
+                           const Environment& environment, Statement& statement);
 
 /// The word as a person would write it, such as X10.5.
 std::string written(const Word& word);

@@ -11,22 +11,23 @@ using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 
-/// What the control has under a number: the table's entry, else the length of the tool of that
-/// number; empty when it has neither.
-std::optional<double> length_under(const Environment& environment, int number) {
-    const auto entry = environment.length_offsets.find(OffsetNumber(number));
-    if (entry != environment.length_offsets.end()) return entry->second.length + entry->second.wear;
-    const auto tool = environment.tool_lengths.find(ToolNumber(number));
-    if (tool != environment.tool_lengths.end()) return tool->second;
-    return std::nullopt;
-}
-
-void use_length(Execution& execution, std::optional<OffsetNumber> number, double length) {
+void use_offset(Execution& execution, std::optional<OffsetNumber> number,
+                const AxisValues& offset) {
     Offsets offsets = execution.modal().offsets;
-    offsets.tool_length = length;
+    offsets.tool = offset;
     change_offsets(execution, offsets);
     execution.modal().length_number = number;
-    execution.emit(UseToolLengthOffset{number, length});
+    execution.emit(UseToolLengthOffset{number, offset});
+}
+
+/// The offset under a number: along Z its length, else as the table says.
+AxisValues offset_under(const Execution& execution, int number, double length) {
+    AxisValues offset{};
+    const auto& lengths = execution.state.tables->lengths;
+    if (const auto entry = lengths.find(OffsetNumber(number)); entry != lengths.end())
+        offset = entry->second.shift;
+    offset[2] = length;
+    return offset;
 }
 
 /// The number G43 means: its H word, else what the dialect says.
@@ -49,30 +50,27 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
         execution.warn(where, fmt::format("{} has no H word and no tool to take it from: no length "
                                           "offset is applied",
                                           written(word)));
-        use_length(execution, std::nullopt, 0.0);
+        use_offset(execution, std::nullopt, {});
         return {};
     }
     const std::optional<double> length =
-        *number == 0 ? std::optional(0.0) : length_under(execution.environment, *number);
+        *number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, *number);
     if (!length)
         execution.warn(where, fmt::format("{}: nothing is known about length offset H{}, taken as "
                                           "0",
                                           written(word), *number));
-    use_length(execution, OffsetNumber(*number), sign * length.value_or(0.0));
+    use_offset(execution, OffsetNumber(*number),
+               offset_under(execution, *number, sign * length.value_or(0.0)));
     return {};
 }
 
 /// G43.1: the offset stands in the block.
-core::Result<void> use_given_length(Execution& execution) {
-    for (const char letter : {'X', 'Y'})
-        if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("{}: tool offsets along X and Y are not supported yet", written(*word)),
-                word->span);
-    const Word* word = execution.statement.word('Z');
-    use_length(execution, std::nullopt,
-               word ? length_of(execution, *word) : execution.modal().offsets.tool_length);
+core::Result<void> use_given_offset(Execution& execution) {
+    AxisValues offset = execution.modal().offsets.tool;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            offset[axis] = axis_value(execution, axis, *word);
+    use_offset(execution, std::nullopt, offset);
     return {};
 }
 
@@ -80,7 +78,7 @@ core::Result<void> use_given_length(Execution& execution) {
 
 bool changes_length_alone(const Execution& execution) {
     const auto uses = [](const CodeWord& entry) { return entry.code->uses('H'); };
-    const std::vector<CodeWord>& codes = execution.statement.codes;
+    const std::span<const CodeWord> codes = execution.statement.codes();
     return execution.dialect.lone_h_is_length_offset && execution.modal().length_sign != 0.0
            && execution.statement.word('H') && !execution.statement.of(ModalGroup::tool_length)
            && std::none_of(codes.begin(), codes.end(), uses);
@@ -127,10 +125,10 @@ core::Result<void> set_tool_length(Execution& execution) {
         return use_table_length(execution, *entry->word, -1.0);
     case tenths(43, 1):
         modal.length_sign = 0.0;
-        return use_given_length(execution);
+        return use_given_offset(execution);
     default:
         modal.length_sign = 0.0;
-        use_length(execution, std::nullopt, 0.0);
+        use_offset(execution, std::nullopt, {});
         return {}; // G49
     }
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/lexer.h"
+
 namespace gcode {
 namespace {
 
@@ -17,19 +19,40 @@ std::string number(double value) {
 
 std::string place(const Position& position) {
     std::string text;
-    for (size_t axis = 0; axis < 3; ++axis)
-        if (position[axis]) text += fmt::format(" {}={}", "xyz"[axis], number(*position[axis]));
+    // Axes beyond X, Y and Z that stand at zero are mostly not there.
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (position[axis] && (axis < 3 || *position[axis] != 0.0))
+            text += fmt::format(" {}={}", lower(axis_letters[axis]), number(*position[axis]));
+        else if (!position[axis] && axis >= 3)
+            text += fmt::format(" {}=?", lower(axis_letters[axis]));
     return text;
 }
 
+} // namespace
+
 std::string_view name_of(Plane plane) {
-    if (plane == Plane::xy) return "XY";
-    return plane == Plane::zx ? "ZX" : "YZ";
+    constexpr std::string_view names[] = {"XY", "ZX", "YZ", "UV", "WU", "VW"};
+    return names[static_cast<size_t>(plane)];
 }
+
+namespace {
 
 std::string_view name_of(core::SpindleDirection direction) {
     if (direction == core::SpindleDirection::stopped) return "stopped";
     return direction == core::SpindleDirection::clockwise ? "clockwise" : "counterclockwise";
+}
+
+std::string name_of_offset(size_t index) {
+    if (index < 6) return fmt::format("G{}", 54 + index);
+    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
+    return fmt::format("P{}", index - plain_offset_count + 1);
+}
+
+std::string frame(const ProgramFrame& frame) {
+    std::string text = " frame=";
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) text += number(frame.linear[column][row]) + ",";
+    return text + number(frame.shift.x) + "," + number(frame.shift.y) + "," + number(frame.shift.z);
 }
 
 /// What stands behind the name of a command.
@@ -64,20 +87,58 @@ struct Details {
     }
     std::string operator()(const SetOffset& command) const {
         const Offsets& offsets = command.offsets;
-        const size_t index = offsets.active;
-        const std::string name =
-            index < 6 ? fmt::format("G{}", 54 + index) : fmt::format("G59.{}", index - 5);
         Position sum;
-        for (int axis = 0; axis < 3; ++axis)
-            if (offsets.axis[static_cast<size_t>(axis)])
-                sum[static_cast<size_t>(axis)] = offsets.work[index][axis] + offsets.local[axis]
-                                                 + *offsets.axis[static_cast<size_t>(axis)];
-        return fmt::format(" offset={}{}", name, place(sum));
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (offsets.axis[axis])
+                sum[axis] = offsets.work.origin[axis] + offsets.local[axis] + *offsets.axis[axis];
+        const std::string turn = offsets.work.rotation_deg == 0.0
+                                     ? std::string()
+                                     : " rotation=" + number(offsets.work.rotation_deg);
+        return " offset=" + name_of_offset(offsets.active) + place(sum) + turn
+               + (offsets.has_frame ? frame(offsets.frame) : std::string());
     }
     std::string operator()(const UseToolLengthOffset& command) const {
         const std::string name =
             command.number ? fmt::format(" number={}", value_of(*command.number)) : "";
-        return name + " length=" + number(command.length);
+        std::string others;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (axis != 2 && command.offset[axis] != 0.0)
+                others +=
+                    fmt::format(" {}={}", lower(axis_letters[axis]), number(command.offset[axis]));
+        return name + " length=" + number(command.offset[2]) + others;
+    }
+    std::string operator()(const UseSpindleMode& command) const {
+        return fmt::format(" surface_speed={} speed={} fastest_speed={}",
+                           int(command.surface_speed), number(command.speed),
+                           number(command.fastest_speed));
+    }
+    std::string operator()(const SetPathMode& command) const {
+        constexpr std::string_view names[] = {"exact_path", "exact_stop", "continuous"};
+        return fmt::format(" mode={} tolerance={} naive_tolerance={}",
+                           names[static_cast<size_t>(command.mode)], number(command.tolerance),
+                           number(command.naive_tolerance));
+    }
+    std::string operator()(const EnableOverride& command) const {
+        constexpr std::string_view names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};
+        return fmt::format(" kind={} enabled={}", names[static_cast<size_t>(command.kind)],
+                           int(command.enabled));
+    }
+    std::string operator()(const SetOutput& command) const {
+        return fmt::format(" number={} value={} analog={} with_motion={}", command.number,
+                           number(command.value), int(command.is_analog), int(command.with_motion));
+    }
+    std::string operator()(const WaitForInput& command) const {
+        return fmt::format(" number={} analog={} seconds={}", command.number,
+                           int(command.is_analog), number(command.seconds));
+    }
+    std::string operator()(const Message& command) const { return " text=" + command.text; }
+    std::string operator()(const StraightProbe& command) const {
+        return fmt::format("{} feed={} towards={} must_succeed={}", place(command.end),
+                           number(command.feed), int(command.towards), int(command.must_succeed));
+    }
+    std::string operator()(const ThreadFeed& command) const {
+        return fmt::format("{} pitch={} back_again={}", place(command.end), number(command.pitch),
+                           int(command.back_again));
     }
     std::string operator()(const ProgramStop&) const { return {}; }
     std::string operator()(const OptionalStop&) const { return {}; }

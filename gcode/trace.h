@@ -10,6 +10,9 @@ namespace gcode {
 /// a millionth; coordinates that nobody knows are left out.
 std::string to_text(const CanonicalCommand& command);
 
+/// XY, ZX, YZ, UV, WU or VW.
+std::string_view name_of(Plane plane);
+
 /// The commands of a program, one a line behind the line they come from, then the warnings of each
 /// block, and the error that stopped it: what golden files hold.
 std::string to_text(const Run& run);

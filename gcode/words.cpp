@@ -16,7 +16,7 @@ constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 const Code* going_on(const Execution& execution) {
     const ModalState& modal = execution.modal();
     if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);
-    if (modal.motion) return find_code('G', static_cast<int>(*modal.motion), execution.dialect.id);
+    if (modal.motion) return find_code('G', *modal.motion / 10.0, execution.dialect.id);
     return nullptr;
 }
 
@@ -43,7 +43,7 @@ core::Result<void> refuse_more_places(const Execution& execution) {
     const CodeWord* offset = statement.of(ModalGroup::work_offset);
     const auto uses = [](const CodeWord& entry) { return entry.code->uses('P'); };
     if (offset && offset->code->tenths == tenths(54)
-        && std::none_of(statement.codes.begin(), statement.codes.end(), uses))
+        && std::none_of(statement.codes().begin(), statement.codes().end(), uses))
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: G54 with P is an extended work offset, these are not "
                                       "supported yet: use G54 to G59",
@@ -58,7 +58,7 @@ bool is_used(const Execution& execution, char letter) {
     if (letter == 'H' && changes_length_alone(execution)) return true;
     if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
-    if (std::any_of(statement.codes.begin(), statement.codes.end(), uses)) return true;
+    if (std::any_of(statement.codes().begin(), statement.codes().end(), uses)) return true;
     if (statement.of(ModalGroup::motion) || statement.of(ModalGroup::cycle)) return false;
     const Code* modal = going_on(execution);
     return modal && modal->uses(letter);
@@ -88,13 +88,6 @@ core::Result<void> check_words(Execution& execution) {
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))
             if (auto checked = check_word(execution, *word); !checked) return checked;
-    for (const char letter : {'U', 'V', 'W'})
-        if (const Word* word = execution.statement.word(letter);
-            word && !is_used(execution, letter))
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("{}: the axes U, V and W are not supported yet", written(*word)),
-                word->span);
     return {};
 }
 

@@ -20,23 +20,10 @@ struct Options {
     std::string format = "text";
 };
 
-/// Nine axes, of which this version moves three.
-Json end_json(const gcode::Position& end) {
+Json axes_json(const gcode::Position& end) {
     Json axes = Json::array();
     for (const std::optional<double>& value : end) axes.push_back(value ? Json(*value) : Json());
-    while (axes.size() < 9) axes.push_back(0.0);
     return axes;
-}
-
-const char* plane_name(gcode::Plane plane) {
-    switch (plane) {
-    case gcode::Plane::xy:
-        return "XY";
-    case gcode::Plane::zx:
-        return "ZX";
-    default:
-        return "YZ";
-    }
 }
 
 const char* direction_name(core::SpindleDirection direction) {
@@ -53,14 +40,14 @@ const char* direction_name(core::SpindleDirection direction) {
 struct Keys {
     Json& json;
 
-    void operator()(const gcode::StraightTraverse& c) const { json["end"] = end_json(c.end); }
+    void operator()(const gcode::StraightTraverse& c) const { json["end"] = axes_json(c.end); }
     void operator()(const gcode::StraightFeed& c) const {
-        json["end"] = end_json(c.end);
+        json["end"] = axes_json(c.end);
         json["feed"] = c.feed;
     }
     void operator()(const gcode::ArcFeed& c) const {
-        json["end"] = end_json(c.end);
-        json["plane"] = plane_name(c.plane);
+        json["end"] = axes_json(c.end);
+        json["plane"] = gcode::name_of(c.plane);
         json["centre"] = {c.centre[0], c.centre[1]};
         json["turns"] = c.turns;
         json["feed"] = c.feed;
@@ -78,16 +65,62 @@ struct Keys {
         json["mist"] = c.mist;
         json["flood"] = c.flood;
     }
-    void operator()(const gcode::SelectPlane& c) const { json["plane"] = plane_name(c.plane); }
+    void operator()(const gcode::SelectPlane& c) const { json["plane"] = gcode::name_of(c.plane); }
     void operator()(const gcode::SetOffset& c) const {
-        json["offset"] = Json::array();
-        for (const std::optional<double>& value : gcode::machine_minus_program(c.offsets))
-            json["offset"].push_back(value ? Json(*value) : Json());
+        json["number"] = c.offsets.active + 1;
+        json["offset"] = axes_json(gcode::machine_minus_program(c.offsets));
+        json["rotation_deg"] = c.offsets.work.rotation_deg;
+        if (!c.offsets.has_frame) return;
+        Json frame = Json::array();
+        for (int row = 0; row < 3; ++row)
+            frame.push_back({c.offsets.frame.linear[0][row], c.offsets.frame.linear[1][row],
+                             c.offsets.frame.linear[2][row], c.offsets.frame.shift[row]});
+        json["frame"] = std::move(frame);
     }
     void operator()(const gcode::UseToolLengthOffset& c) const {
         json["number"] = c.number ? Json(core::value_of(*c.number)) : Json(nullptr);
-        json["length"] = c.length;
+        json["length"] = c.offset[2];
+        json["tool_offset"] = c.offset;
     }
+    void operator()(const gcode::StraightProbe& c) const {
+        json["end"] = axes_json(c.end);
+        json["feed"] = c.feed;
+        json["towards"] = c.towards;
+        json["must_succeed"] = c.must_succeed;
+    }
+    void operator()(const gcode::ThreadFeed& c) const {
+        json["end"] = axes_json(c.end);
+        json["pitch"] = c.pitch;
+        json["back_again"] = c.back_again;
+    }
+    void operator()(const gcode::UseSpindleMode& c) const {
+        json["surface_speed"] = c.surface_speed;
+        json["speed"] = c.speed;
+        json["fastest_speed"] = c.fastest_speed;
+    }
+    void operator()(const gcode::SetPathMode& c) const {
+        constexpr const char* names[] = {"exact_path", "exact_stop", "continuous"};
+        json["mode"] = names[static_cast<size_t>(c.mode)];
+        json["tolerance"] = c.tolerance;
+        json["naive_tolerance"] = c.naive_tolerance;
+    }
+    void operator()(const gcode::EnableOverride& c) const {
+        constexpr const char* names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};
+        json["kind"] = names[static_cast<size_t>(c.kind)];
+        json["enabled"] = c.enabled;
+    }
+    void operator()(const gcode::SetOutput& c) const {
+        json["number"] = c.number;
+        json["value"] = c.value;
+        json["analog"] = c.is_analog;
+        json["with_motion"] = c.with_motion;
+    }
+    void operator()(const gcode::WaitForInput& c) const {
+        json["number"] = c.number;
+        json["analog"] = c.is_analog;
+        json["seconds"] = c.seconds;
+    }
+    void operator()(const gcode::Message& c) const { json["message"] = c.text; }
     void operator()(const gcode::ProgramStop&) const {}
     void operator()(const gcode::OptionalStop&) const {}
     void operator()(const gcode::ProgramEnd&) const {}
@@ -96,10 +129,14 @@ struct Keys {
 std::string json_lines(const gcode::Run& run) {
     std::string text;
     for (const gcode::BlockResult& block : run.blocks) {
-        for (const gcode::CanonicalCommand& command : block.commands) {
+        for (size_t i = 0; i < block.commands.size(); ++i) {
+            const gcode::CanonicalCommand& command = block.commands[i];
             Json json;
             json["block"] = core::value_of(block.block);
+            if (!block.file.empty()) json["file"] = std::string(block.file);
             json["line"] = block.line;
+            json["column"] = block.columns[i];
+            if (!block.calls.empty()) json["calls"] = block.calls;
             json["command"] = gcode::command_name(command);
             std::visit(Keys{json}, command);
             json["text"] = std::string(block.text);

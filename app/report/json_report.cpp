@@ -42,7 +42,9 @@ Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
     const core::BlockResult& result = block.result;
     Json json;
     json["block"] = core::value_of(block.block);
+    if (!block.file.empty()) json["file"] = block.file;
     json["line"] = block.line;
+    if (!block.calls.empty()) json["calls"] = block.calls;
     json["calls"] = Json::array();
     json["text"] = block.text;
     json["motion"] = core::name_of(result.motion);

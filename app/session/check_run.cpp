@@ -72,9 +72,12 @@ void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_to
 
 /// Whether any block up to the end or the first error changes the tool.
 bool calls_tools(const gcode::Program& program, const gcode::Environment& environment) {
+    gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
+                                  environment.search_path);
+    gcode::Interpreter interpreter(library, environment);
     gcode::InterpreterState state = gcode::initial_state(environment);
     while (true) {
-        const auto block = gcode::execute_next(program, environment, state);
+        const auto block = interpreter.next(state);
         if (!block || !*block) return false;
         for (const gcode::CanonicalCommand& command : (*block)->commands)
             if (std::holds_alternative<gcode::ChangeTool>(command)) return true;
@@ -97,12 +100,30 @@ struct Runner {
     const gcode::Program& program;
     const gcode::Environment& environment;
     CheckRun& run;
-    gcode::InterpreterState interpreter = gcode::initial_state(environment);
+    gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
+                                  environment.search_path};
+    gcode::Interpreter interpreter{library, environment};
+    gcode::InterpreterState place = gcode::initial_state(environment);
     gcode::Lowering lowering = gcode::initial_lowering(environment);
 
-    void block(const gcode::BlockResult& block, core::SimulatorState& state) {
+    /// The simulator of this version has no axes beyond X, Y and Z.
+    std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
+        if (!lowering.other_axis) return std::nullopt;
+        return core::Error{core::ErrorCode::unsupported,
+                           {.line = block.line, .column = 1},
+                           fmt::format("this block moves axis {}, and machines with more than X, Y "
+                                       "and Z are not checked yet",
+                                       gcode::axis_letters[*lowering.other_axis]),
+                           std::string(block.file)};
+    }
+
+    /// Runs a block, or says why it cannot be.
+    std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
         const std::vector<core::Event> events = gcode::lower(block, lowering);
-        CheckedBlock checked{block.block, block.line, std::string(block.text), {}};
+        if (auto refused = refusal(block)) return refused;
+        CheckedBlock checked{
+            block.block, block.line, std::string(block.text), std::string(block.file),
+            block.calls, {}};
         checked.result = core::run_block(run.setup, {block.block, block.is_cycle, events}, state);
         for (const gcode::Warning& warning : block.warnings) {
             core::Finding finding = remark(run.setup, warning);
@@ -114,19 +135,23 @@ struct Runner {
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
+        return std::nullopt;
     }
 
     void to_the_end(core::SimulatorState& state) {
         while (true) {
-            const auto next = gcode::execute_next(program, environment, interpreter);
+            const auto next = interpreter.next(place);
             if (!next) {
                 run.stopped = named(next.error(), program.file);
                 return;
             }
             if (!*next) break;
-            block(**next, state);
+            if (const auto refused = block(**next, state)) {
+                run.stopped = named(*refused, program.file);
+                return;
+            }
         }
-        if (const auto warning = gcode::ending_warning(environment, interpreter))
+        if (const auto warning = gcode::ending_warning(environment, place))
             run.findings.push_back(remark(run.setup, *warning));
     }
 };
@@ -188,7 +213,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup, file.environment.start);
+    auto state = core::start_of_run(run.setup, gcode::linear_axes(file.environment.start));
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     run.times.model = seconds_since(modelling);
 

@@ -15,6 +15,8 @@ struct CheckedBlock {
     core::BlockIndex block{};
     uint32_t line = 0;
     std::string text;
+    std::string file;            // of a subprogram's file; empty for the main program
+    std::vector<uint32_t> calls; // lines that called it, the outermost first
     core::BlockResult result;
 };
 

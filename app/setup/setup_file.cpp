@@ -147,13 +147,14 @@ void read_machine_table(TableReader& table, BodyContext& context,
     read_machine(table, machine);
     const core::AxisPosition home = machine.home();
     if (home[0] && home[1] && home[2])
-        context.file.environment.home = core::Vec3(*home[0], *home[1], *home[2]);
+        context.file.environment.home = gcode::AxisValues{*home[0], *home[1], *home[2]};
 }
 
 void place_offsets(BodyContext& context) {
     context.frames.machine_from["machine"] = {};
     for (size_t i = 0; i < std::size(offset_names); ++i) {
-        const core::Vec3 origin = context.file.environment.work_offsets[i];
+        const gcode::AxisValues& set = context.file.environment.work_offsets[i];
+        const core::Vec3 origin(set[0], set[1], set[2]);
         context.frames.machine_from[offset_names[i]] =
             core::translation(context.file.setup.machine.place(origin));
     }

@@ -77,9 +77,10 @@ TEST(Trace, LeavesOutKeysThatMeanNothing) {
 TEST(Trace, TakesTheOffsetsOfASetup) {
     const ScopedFolder folder;
     const std::string setup = folder.write("s.toml", SetupWriter().text());
-    EXPECT_EQ(command("set_offset")["offset"], Json::array({0.0, 0.0, 0.0}));
+    EXPECT_EQ(command("set_offset")["offset"],
+              Json::array({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
     EXPECT_EQ(command("set_offset", {"--setup", setup})["offset"],
-              Json::array({-350.0, -200.0, -420.0}));
+              Json::array({-350.0, -200.0, -420.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
 }
 
 TEST(Trace, IsToldInWords) {

@@ -115,11 +115,12 @@ TEST(Codes, AWordThatNothingUsesIsAnErrorOrAWarning) {
     EXPECT_THAT(warnings_of("G0 X0 K2"), HasSubstr("K2: nothing in this block uses it"));
 }
 
-TEST(Codes, OtherAxesAreRefusedUnlessTheyStay) {
-    EXPECT_EQ(error_of("G0 X1 B0\nG91 B0"), "");
-    EXPECT_EQ(error_of("G0 X1\nG0 B90"), "2:4: B90: rotary axes are not supported yet");
-    EXPECT_EQ(error_of("G91 G1 C1 F5"), "1:8: C1: rotary axes are not supported yet");
-    EXPECT_EQ(error_of("G0 U1"), "1:4: U1: the axes U, V and W are not supported yet");
+TEST(Codes, NineAxesAreFollowed) {
+    EXPECT_EQ(trace("G0 X1 B90 U2\nG91 B-30 C1 W5"),
+              "straight_traverse x=1 y=0 z=0 b=90 u=2\n"
+              "straight_traverse x=1 y=0 z=0 b=60 c=1 u=2 w=5\n");
+    // Degrees are degrees in inches, too.
+    EXPECT_EQ(trace("G20 G0 X1 A90 V1"), "straight_traverse x=25.4 y=0 z=0 a=90 v=25.4\n");
 }
 
 } // namespace

@@ -75,7 +75,7 @@ TEST(Interpreter, LeavesTheStateAloneOnError) {
     const std::string_view mistakes[] = {"G1 X5",
                                          "G0 X5 G123",
                                          "T5 M6 S100 M3 G55 G20 G91 F5 G2 X5 R0.1",
-                                         "G43 H3 G0 B90",
+                                         "G43 H3 G0 B90 K1 G123",
                                          "G81 X1 Z5 R1 F10",
                                          "G10 L9 P1",
                                          "G52 X5 G2 X1 Y1 I1 F5",
@@ -85,10 +85,12 @@ TEST(Interpreter, LeavesTheStateAloneOnError) {
         const Environment environment = known_environment(DialectId::fanuc);
         const auto program = program_from_text("G0 X1\n" + std::string(mistake) + "\n");
         ASSERT_TRUE(program);
+        ProgramLibrary library(*program, dialect(environment.dialect));
+        Interpreter interpreter(library, environment);
         InterpreterState state = initial_state(environment);
-        ASSERT_TRUE(execute_next(*program, environment, state));
+        ASSERT_TRUE(interpreter.next(state));
         const InterpreterState before = state;
-        const auto result = execute_next(*program, environment, state);
+        const auto result = interpreter.next(state);
         ASSERT_FALSE(result) << mistake;
         EXPECT_EQ(result.error().where.line, 2u) << mistake;
         EXPECT_GT(result.error().where.column, 0u) << mistake;
@@ -100,12 +102,16 @@ TEST(Interpreter, GivesTheSameAgainFromACopiedState) {
     const Environment environment = known_environment(DialectId::fanuc);
     const auto program = program_from_text("G0 X1\nG91 X1\nG2 X2 I1 F100\n");
     ASSERT_TRUE(program);
+    ProgramLibrary library(*program, dialect(environment.dialect));
+    Interpreter interpreter(library, environment);
     InterpreterState state = initial_state(environment);
-    ASSERT_TRUE(execute_next(*program, environment, state));
+    ASSERT_TRUE(interpreter.next(state));
     InterpreterState copy = state;
-    while (state.ending == Ending::running) ASSERT_TRUE(execute_next(*program, environment, state));
-    while (copy.ending == Ending::running) ASSERT_TRUE(execute_next(*program, environment, copy));
+    while (state.ending == Ending::running) ASSERT_TRUE(interpreter.next(state));
+    EXPECT_NE(digest_of(state), digest_of(copy));
+    while (copy.ending == Ending::running) ASSERT_TRUE(interpreter.next(copy));
     EXPECT_EQ(state, copy);
+    EXPECT_EQ(digest_of(state), digest_of(copy));
 }
 
 TEST(Interpreter, NeedsAMotionCodeForAxisWords) {

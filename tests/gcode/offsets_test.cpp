@@ -175,14 +175,15 @@ TEST(LengthOffset, OfAnUnknownNumberIsAWarning) {
 
 TEST(LengthOffset, StaysAcrossAToolChange) {
     const Ran ran = run_text("G43 H1\nT7 M6\n", shop(DialectId::fanuc));
-    EXPECT_EQ(ran.run.state.modal.offsets.tool_length, 95.0);
+    EXPECT_EQ(ran.run.state.modal.offsets.tool[2], 95.0);
     EXPECT_EQ(ran.run.state.modal.length_number, core::OffsetNumber(1));
 }
 
 TEST(LengthOffset, G431GivesItInTheBlock) {
     EXPECT_EQ(trace("G21 G43.1 Z12.5\nG0 Z0", DialectId::grbl),
               "use_tool_length_offset length=12.5\nstraight_traverse x=0 y=0 z=0\n");
-    EXPECT_THAT(error_of("G43.1 X1", DialectId::linuxcnc), HasSubstr("1:7: X1"));
+    EXPECT_EQ(trace("G21 G43.1 X1 Z2\nG0 X0", DialectId::linuxcnc),
+              "use_tool_length_offset length=2 x=1\nstraight_traverse x=0 y=0 z=-2\n");
 }
 
 TEST(Homing, GoesThroughTheIntermediatePoint) {

@@ -14,8 +14,8 @@ inline Environment known_environment(DialectId dialect) {
     Environment environment;
     environment.dialect = dialect;
     environment.start = zero_position;
-    environment.home = core::Vec3(0.0);
-    environment.second_home = core::Vec3(0.0, 0.0, -50.0);
+    environment.home = AxisValues{};
+    environment.second_home = AxisValues{0.0, 0.0, -50.0};
     return environment;
 }
 

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace gcode {
+
+/// A value of an expression. Empty is Fanuc's vacant variable; it counts as 0 in arithmetic.
+using Value = std::optional<double>;
+
+/// What one step of an expression does with the values on the stack.
+enum class Operation : uint8_t {
+    number,   // pushes it
+    numbered, // replaces a number by the parameter of that number
+    named,    // pushes a named parameter
+    exists,   // 1 when the named parameter is there
+    // of one value
+    negate,
+    absolute,
+    arc_cosine,
+    arc_sine,
+    cosine,
+    exponential,
+    fix,
+    fup,
+    logarithm,
+    round,
+    sine,
+    square_root,
+    tangent,
+    from_decimal_code, // BIN
+    to_decimal_code,   // BCD
+    truth_not,
+    // of two
+    arc_tangent,
+    power,
+    multiply,
+    divide,
+    modulo,
+    divide_whole,
+    add,
+    subtract,
+    equal,
+    not_equal,
+    greater,
+    greater_or_equal,
+    less,
+    less_or_equal,
+    truth_and,
+    truth_or,
+    truth_xor,
+    bits_and,
+    bits_or,
+    bits_xor,
+};
+
+/// One step of an expression in postfix order.
+struct Instruction {
+    Operation operation = Operation::number;
+    uint32_t column = 0; // where it stands, for messages
+    double number = 0.0;
+    uint32_t name = 0; // index into ExpressionPool::names
+};
+
+/// A stretch of the pool's instructions; nothing when the word has a plain number.
+struct Expression {
+    uint32_t first = 0, count = 0;
+
+    explicit operator bool() const { return count > 0; }
+};
+
+/// The instructions and names of all expressions of a line.
+struct ExpressionPool {
+    std::vector<Instruction> instructions;
+    std::vector<std::string> names; // lower case, without blanks
+
+    void clear() {
+        instructions.clear();
+        names.clear();
+    }
+};
+
+/// Where an expression reads its parameters.
+class ParameterReader {
+public:
+    virtual ~ParameterReader() = default;
+
+    /// Errors: invalid_value when there is no such parameter.
+    virtual core::Result<Value> numbered(double number, core::SourceSpan where) const = 0;
+    virtual core::Result<Value> named(std::string_view name, core::SourceSpan where) const = 0;
+    virtual bool exists(std::string_view name) const = 0;
+};
+
+/// How the operators of a control behave where controls differ.
+struct Arithmetic {
+    double equality = 0.0;      // EQ holds up to this difference
+    bool bitwise_logic = false; // AND, OR and XOR work on bits, else on truth
+};
+
+/// The value of an expression.
+///
+/// Units:  angles in degrees, lengths as the program has them.
+/// Errors: invalid_value with the column at fault: a division by zero, a root of a negative number,
+///         a parameter that is not there, a result that is no number.
+core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
+                             const ParameterReader& parameters, const Arithmetic& arithmetic);
+
+} // namespace gcode

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "gcode/expression.h"
+#include "gcode/lexer.h"
+
+namespace gcode {
+
+/// The operators, functions and brackets of a family of controls.
+enum class ExpressionSyntax : uint8_t { rs274, fanuc, siemens, klartext };
+
+/// Reads what may stand for a number: a number, `#5`, `#<name>`, `[...]`, a function of brackets,
+/// each with a sign before it. `number` is set, and the result empty, for a plain number.
+///
+/// Effect: the instructions are added to the pool.
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
+                                     Number& number);
+
+/// Reads a value, or sums and products of values without brackets around them, as Fanuc and Siemens
+/// allow behind `=`.
+///
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
+                                   Number& number);
+
+/// Reads `[...]`.
+///
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
+                                         ExpressionPool& pool);
+
+/// Reads the name of a parameter between `<` and `>`: lower case, without blanks.
+///
+/// Errors: syntax when it has no end or no letters.
+core::Result<std::string> parse_name(Lexer& lexer);
+
+} // namespace gcode

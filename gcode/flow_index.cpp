@@ -1,0 +1,133 @@
+#include "gcode/flow_index.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/lexer.h"
+#include "gcode/parser.h"
+
+namespace gcode {
+namespace {
+
+bool by_line(const FlowMark& mark, uint32_t line) { return mark.line < line; }
+
+bool is_one_of(FlowKind kind, std::initializer_list<FlowKind> kinds) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+/// The block number a line begins with, and what comes behind it.
+std::optional<double> take_number(Lexer& lexer) {
+    while (lexer.accept('/'))
+        if (is_digit(lexer.peek())) ++lexer.at;
+    if (upper(lexer.peek()) != 'N') return std::nullopt;
+    ++lexer.at;
+    if (!lexer.is_at_number()) return std::nullopt;
+    const auto number = lexer.number();
+    lexer.accept('/');
+    return number ? std::optional(number->value) : std::nullopt;
+}
+
+} // namespace
+
+std::string label_of(double number) { return fmt::format("{:.12g}", number); }
+
+namespace {
+
+bool may_begin_flow(char c) {
+    return std::string_view("OIWDEG").find(upper(c)) != std::string_view::npos && c != '\0';
+}
+
+} // namespace
+
+const FlowMark* FlowIndex::at(uint32_t line) const {
+    const auto found = std::lower_bound(marks.begin(), marks.end(), line, by_line);
+    return found != marks.end() && found->line == line ? &*found : nullptr;
+}
+
+const FlowMark* FlowIndex::next(uint32_t line, uint32_t scope, std::string_view name,
+                                std::initializer_list<FlowKind> kinds) const {
+    for (auto mark = std::lower_bound(marks.begin(), marks.end(), line + 1, by_line);
+         mark != marks.end(); ++mark)
+        if (mark->scope == scope && mark->name == name && is_one_of(mark->kind, kinds))
+            return &*mark;
+    return nullptr;
+}
+
+const FlowMark* FlowIndex::previous(uint32_t line, uint32_t scope, std::string_view name,
+                                    std::initializer_list<FlowKind> kinds) const {
+    for (auto mark = std::lower_bound(marks.begin(), marks.end(), line, by_line);
+         mark != marks.begin();) {
+        --mark;
+        if (mark->scope == scope && mark->name == name && is_one_of(mark->kind, kinds))
+            return &*mark;
+    }
+    return nullptr;
+}
+
+const FlowMark* FlowIndex::first(FlowKind kind, std::string_view name) const {
+    for (const FlowMark& mark : marks)
+        if (mark.kind == kind && mark.name == name) return &mark;
+    return nullptr;
+}
+
+uint32_t FlowIndex::scope_of(uint32_t line) const {
+    auto mark = std::lower_bound(marks.begin(), marks.end(), line, by_line);
+    if (mark != marks.end() && mark->line == line) return mark->scope;
+    if (mark == marks.begin()) return 0;
+    --mark;
+    if (mark->kind == FlowKind::sub) return mark->line;
+    return mark->kind == FlowKind::end_sub ? 0 : mark->scope;
+}
+
+std::optional<uint32_t> FlowIndex::line_of_number(double number, uint32_t from,
+                                                  uint32_t up_to) const {
+    const auto begin = std::lower_bound(
+        numbers.begin(), numbers.end(), from,
+        [](const NumberedLine& entry, uint32_t line) { return entry.line < line; });
+    for (auto entry = begin; entry != numbers.end() && entry->line < up_to; ++entry)
+        if (entry->number == number) return entry->line;
+    return std::nullopt;
+}
+
+FlowIndex index_of(const Program& program, const Dialect& dialect) {
+    FlowIndex index;
+    Block block;
+    uint32_t scope = 0;
+    std::vector<std::string> open_loops;
+    for (size_t number = 1; number <= program.line_count(); ++number) {
+        const auto line = static_cast<uint32_t>(number);
+        Lexer lexer{.line = program.line(number), .line_number = line};
+        if (const auto block_number = take_number(lexer))
+            index.numbers.push_back({*block_number, line});
+        if (!may_begin_flow(lexer.peek())) continue;
+        if (upper(lexer.peek()) == 'O' && !dialect.has_o_words) {
+            ++lexer.at;
+            if (const auto name = lexer.number())
+                index.marks.push_back({FlowKind::program_number, label_of(name->value), line});
+            continue;
+        }
+        if (!parse_line(program.line(number), line, dialect, block)) continue;
+        if (block.flow.kind == FlowKind::none) continue;
+        FlowMark mark{.kind = block.flow.kind, .line = line, .scope = scope};
+        if (block.flow.has_label) mark.name = block.pool.names[block.flow.label_name];
+        const auto open = std::find(open_loops.begin(), open_loops.end(), mark.name);
+        if (mark.kind == FlowKind::do_loop) {
+            open_loops.push_back(mark.name);
+        } else if (mark.kind == FlowKind::while_loop && open != open_loops.end()) {
+            mark.closes_do_loop = true;
+            open_loops.erase(open);
+        } else if (mark.kind == FlowKind::sub) {
+            scope = line;
+            mark.scope = 0;
+        } else if (mark.kind == FlowKind::end_sub) {
+            scope = 0;
+            mark.scope = 0;
+            open_loops.clear();
+        }
+        index.marks.push_back(std::move(mark));
+    }
+    return index;
+}
+
+} // namespace gcode

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+namespace gcode {
+
+/// A value that its copies share until one of them is written to.
+template <typename T>
+class Shared {
+public:
+    const T& operator*() const { return *value_; }
+    const T* operator->() const { return value_.get(); }
+
+    /// The value to write to, a copy of its own where others look at it as well.
+    T& write() {
+        if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
+        return *value_;
+    }
+
+    bool operator==(const Shared& other) const {
+        return value_ == other.value_ || *value_ == *other.value_;
+    }
+
+private:
+    std::shared_ptr<T> value_ = std::make_shared<T>();
+};
+
+} // namespace gcode
