@@ -141,10 +141,16 @@ void saved_modes(ProgramText& text) {
 } // namespace
 
 std::vector<ProgramFeature> action_features() {
-    return {{"tools", tools},           {"spindle", spindle},     {"coolant", coolant},
-            {"stops", stops},           {"path_modes", path_modes}, {"overrides", overrides},
-            {"outputs", outputs},       {"messages", messages},
-            {"crowded_lines", crowded_lines}, {"saved_modes", saved_modes}};
+    return {{"tools", tools},
+            {"spindle", spindle},
+            {"coolant", coolant},
+            {"stops", stops},
+            {"path_modes", path_modes},
+            {"overrides", overrides},
+            {"outputs", outputs},
+            {"messages", messages},
+            {"crowded_lines", crowded_lines},
+            {"saved_modes", saved_modes}};
 }
 
 } // namespace test_support

@@ -30,7 +30,8 @@ void cycle(ProgramText& text, int code, const CyclePlane& plane) {
     const double bottom = incremental ? -text.positive(15) : r - text.positive(15);
     text.line("G{} G{} G0 {}{}", plane.code, text.whole(98, 99), plane.normal, text.length(20));
     const bool taps = code == 74 || code == 84; // these do not repeat
-    const std::string repeats = !taps && text.once_in(3) ? fmt::format(" L{}", text.whole(1, 3)) : "";
+    const std::string repeats =
+        !taps && text.once_in(3) ? fmt::format(" L{}", text.whole(1, 3)) : "";
     text.line("{} G{}{} {}{} R{}{}{}", incremental ? "G91" : "G90", code,
               text.axis_words(plane.in_plane), plane.normal, bottom, r, own_words(text, code),
               repeats);
@@ -109,8 +110,8 @@ void turned_threads(ProgramText& text) {
 } // namespace
 
 std::vector<ProgramFeature> cycle_features() {
-    return {{"drilling", drilling}, {"drilling_in_all_planes", drilling_in_all_planes},
-            {"boring", boring},     {"tapping", tapping},
+    return {{"drilling", drilling},     {"drilling_in_all_planes", drilling_in_all_planes},
+            {"boring", boring},         {"tapping", tapping},
             {"odd_cycles", odd_cycles}, {"turned_threads", turned_threads}};
 }
 

@@ -81,8 +81,8 @@ void loops(ProgramText& text) {
 
 void subprograms(ProgramText& text) {
     const int label = text.label();
-    const std::string name = text.once_in(2) ? fmt::format("{}", label)
-                                             : fmt::format("<sub {}>", label);
+    const std::string name =
+        text.once_in(2) ? fmt::format("{}", label) : fmt::format("<sub {}>", label);
     text.line("o{} sub", name);
     text.line("G1 X#1 Y#2 Z#3");
     text.line("#1=[#1+1] #30=5 #31=[#31+1] #<_shared>=#1");
@@ -133,8 +133,10 @@ void nested_calls(ProgramText& text) {
 } // namespace
 
 std::vector<ProgramFeature> flow_features() {
-    return {{"branches", branches},   {"loops", loops},
-            {"subprograms", subprograms}, {"recursion", recursion},
+    return {{"branches", branches},
+            {"loops", loops},
+            {"subprograms", subprograms},
+            {"recursion", recursion},
             {"nested_calls", nested_calls}};
 }
 

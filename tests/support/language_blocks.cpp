@@ -97,30 +97,83 @@ void positions(ProgramText& text) {
 }
 
 void predefined_names(ProgramText& text) {
-    text.line("{}", text.one_of({"G91", "G90", "G20", "G21", "G18", "G93", "G95", "S100 M3", "M5",
-                                 "M7", "M8", "M9", "G61", "G64", "G99", "G98", "T3 M6", "G55",
-                                 "G43 H2", "G41.1 D1", "G40", "G90.1", "G91.1", "M49", "M48",
-                                 "G7", "G8", "G96 S9", "G97 S9", "M51 P0", "F33"}));
-    const std::string name = text.one_of(
-        {"_line", "_motion_mode", "_plane", "_ccomp", "_metric", "_imperial", "_absolute",
-         "_incremental", "_inverse_time", "_units_per_minute", "_units_per_rev", "_coord_system",
-         "_tool_offset", "_retract_r_plane", "_retract_old_z", "_spindle_rpm_mode",
-         "_spindle_css_mode", "_ijk_absolute_mode", "_lathe_diameter_mode", "_lathe_radius_mode",
-         "_spindle_on", "_spindle_cw", "_mist", "_flood", "_speed_override", "_feed_override",
-         "_adaptive_feed", "_feed_hold", "_rpm", "_x", "_y", "_z", "_a", "_b", "_c", "_u",
-         "_current_tool", "_selected_tool", "_call_level", "_value", "_value_returned"});
+    text.line(
+        "{}",
+        text.one_of({"G91",   "G90", "G20",    "G21",      "G18",    "G93",    "G95",   "S100 M3",
+                     "M5",    "M7",  "M8",     "M9",       "G61",    "G64",    "G99",   "G98",
+                     "T3 M6", "G55", "G43 H2", "G41.1 D1", "G40",    "G90.1",  "G91.1", "M49",
+                     "M48",   "G7",  "G8",     "G96 S9",   "G97 S9", "M51 P0", "F33"}));
+    const std::string name = text.one_of({"_line",
+                                          "_motion_mode",
+                                          "_plane",
+                                          "_ccomp",
+                                          "_metric",
+                                          "_imperial",
+                                          "_absolute",
+                                          "_incremental",
+                                          "_inverse_time",
+                                          "_units_per_minute",
+                                          "_units_per_rev",
+                                          "_coord_system",
+                                          "_tool_offset",
+                                          "_retract_r_plane",
+                                          "_retract_old_z",
+                                          "_spindle_rpm_mode",
+                                          "_spindle_css_mode",
+                                          "_ijk_absolute_mode",
+                                          "_lathe_diameter_mode",
+                                          "_lathe_radius_mode",
+                                          "_spindle_on",
+                                          "_spindle_cw",
+                                          "_mist",
+                                          "_flood",
+                                          "_speed_override",
+                                          "_feed_override",
+                                          "_adaptive_feed",
+                                          "_feed_hold",
+                                          "_rpm",
+                                          "_x",
+                                          "_y",
+                                          "_z",
+                                          "_a",
+                                          "_b",
+                                          "_c",
+                                          "_u",
+                                          "_current_tool",
+                                          "_selected_tool",
+                                          "_call_level",
+                                          "_value",
+                                          "_value_returned"});
     text.line("#1=#<{}>", name);
     text.line("G21 G90 G17 G40 G94 F100 G8 G97 G91.1 G54 G0");
     text.line("G0 Z#1");
 }
 
 void formats(ProgramText& text) {
-    text.line("{}", text.one_of({"g0x1y2z3", "G00X+01.500Y-.25Z5.", "G 1 X 1 2 . 5 Y - 0 . 5",
-                                 "N10 G1 X1", "n0020g1y2", "G1 (words) X3 (more) Y4",
-                                 "G1 X1 ; the rest", "x 0.000 y +.5", "G01 X-0 Y+0",
-                                 "g1 x#[ 1 + 2 ]", "G1 X[1+[2*3]]Y[-4]", "N1.5 G1 Y1", "  G1   X7 ",
-                                 "G1\tX8", "G1 X1Y1Z1F100", "G1X1.Y1.", "m9", "G1.0 X1", "G 5 4",
-                                 "x[ 1.0 2 ]", "G1 X1 2 3", "Y1 X2 G1", "M09 G001 X3", ""}));
+    text.line("{}", text.one_of({"g0x1y2z3",
+                                 "G00X+01.500Y-.25Z5.",
+                                 "G 1 X 1 2 . 5 Y - 0 . 5",
+                                 "N10 G1 X1",
+                                 "n0020g1y2",
+                                 "G1 (words) X3 (more) Y4",
+                                 "G1 X1 ; the rest",
+                                 "x 0.000 y +.5",
+                                 "G01 X-0 Y+0",
+                                 "g1 x#[ 1 + 2 ]",
+                                 "G1 X[1+[2*3]]Y[-4]",
+                                 "N1.5 G1 Y1",
+                                 "  G1   X7 ",
+                                 "G1\tX8",
+                                 "G1 X1Y1Z1F100",
+                                 "G1X1.Y1.",
+                                 "m9",
+                                 "G1.0 X1",
+                                 "G 5 4",
+                                 "x[ 1.0 2 ]",
+                                 "G1 X1 2 3",
+                                 "Y1 X2 G1",
+                                 "M09 G001 X3",
+                                 ""}));
 }
 
 } // namespace

@@ -12,7 +12,8 @@ void straight(ProgramText& text) {
     text.line("{}", text.one_of({"G90", "G91", "G90", "G0", "G1", "G20", "G21"}));
     if (text.once_in(3)) text.line("F{}", text.positive(900));
     text.move();
-    if (text.once_in(4)) text.line("G90 G53 {}{}", text.one_of({"G0", "G1"}), text.axis_words("XYZ"));
+    if (text.once_in(4))
+        text.line("G90 G53 {}{}", text.one_of({"G0", "G1"}), text.axis_words("XYZ"));
     text.line("G90");
 }
 
@@ -33,13 +34,13 @@ void secondary_axes(ProgramText& text) {
 }
 
 struct ArcWords {
-    char plane_code;             // of G17 ...
-    const char *ends, *centres;  // letters
+    char plane_code;            // of G17 ...
+    const char *ends, *centres; // letters
 };
 
 ArcWords arc_words(ProgramText& text) {
-    return text.one_of({ArcWords{'7', "XYZ", "IJK"}, ArcWords{'8', "ZXY", "KIJ"},
-                        ArcWords{'9', "YZX", "JKI"}});
+    return text.one_of(
+        {ArcWords{'7', "XYZ", "IJK"}, ArcWords{'8', "ZXY", "KIJ"}, ArcWords{'9', "YZX", "JKI"}});
 }
 
 /// A circle through a place where the program stands, and an end on it.
@@ -133,7 +134,8 @@ void feed_modes(ProgramText& text) {
     switch (text.whole(0, 2)) {
     case 0:
         text.line("G93 G1{} F{}", text.axis_words("XYZ"), text.positive(5));
-        if (text.once_in(2)) text.line("X{} A{} F{}", text.length(), text.length(), text.positive());
+        if (text.once_in(2))
+            text.line("X{} A{} F{}", text.length(), text.length(), text.positive());
         text.line("G1 X0 Y0 F1");
         text.line("G3 X{0} Y{0} I{0} F{1}", text.positive(), text.positive());
         text.line("G94 G1 F{}", text.positive(500));
@@ -185,8 +187,7 @@ void splines(ProgramText& text) {
         break;
     default:
         text.line("G5.2 {} P1 L3", control());
-        for (int i = 0; i < text.whole(3, 5); ++i)
-            text.line("{} P{}", control(), text.whole(1, 3));
+        for (int i = 0; i < text.whole(3, 5); ++i) text.line("{} P{}", control(), text.whole(1, 3));
         text.line("G5.3");
     }
     text.line("G1");
@@ -195,7 +196,8 @@ void splines(ProgramText& text) {
 void polar(ProgramText& text) {
     text.line("G0 X{} Y{}", text.positive(), text.positive());
     text.line("{} @{} ^{}", text.one_of({"G0", "G1"}), text.positive(), text.length(180));
-    text.line("{}", text.one_of({"@5", "^45", "@-3", "^-90 Z1", "G91 ^30", "G91 @1", "G91 @2 ^15"}));
+    text.line("{}",
+              text.one_of({"@5", "^45", "@-3", "^-90 Z1", "G91 ^30", "G91 @1", "G91 @2 ^15"}));
     text.line("G90");
 }
 
@@ -216,12 +218,18 @@ void probes(ProgramText& text) {
 } // namespace
 
 std::vector<ProgramFeature> motion_features() {
-    return {{"straight", straight},         {"rotary_axes", rotary_axes},
-            {"secondary_axes", secondary_axes}, {"centre_arcs", centre_arcs},
-            {"radius_arcs", radius_arcs},   {"odd_arcs", odd_arcs},
-            {"feed_modes", feed_modes},     {"compensation", compensation},
-            {"splines", splines},           {"polar", polar},
-            {"threads", threads},           {"probes", probes}};
+    return {{"straight", straight},
+            {"rotary_axes", rotary_axes},
+            {"secondary_axes", secondary_axes},
+            {"centre_arcs", centre_arcs},
+            {"radius_arcs", radius_arcs},
+            {"odd_arcs", odd_arcs},
+            {"feed_modes", feed_modes},
+            {"compensation", compensation},
+            {"splines", splines},
+            {"polar", polar},
+            {"threads", threads},
+            {"probes", probes}};
 }
 
 } // namespace test_support

@@ -7,20 +7,10 @@ namespace test_support {
 namespace {
 
 /// What is not known stands at zero, where the reference starts.
-template <typename Values>
-Axes axes_of(const Values& values) {
+Axes axes_of(const gcode::Position& position) {
     Axes axes{};
-    for (size_t axis = 0; axis < std::size(values); ++axis)
-        if constexpr (requires { *values[axis]; })
-            axes[axis] = values[axis].value_or(0.0);
-        else
-            axes[axis] = values[axis];
+    for (size_t axis = 0; axis < 9; ++axis) axes[axis] = position[axis].value_or(0.0);
     return axes;
-}
-
-std::string name_of(gcode::Plane plane) {
-    constexpr const char* names[] = {"XY", "ZX", "YZ", "UV", "WU", "VW"};
-    return names[static_cast<size_t>(plane)];
 }
 
 std::string name_of(core::SpindleDirection direction) {
@@ -28,21 +18,12 @@ std::string name_of(core::SpindleDirection direction) {
     return direction == core::SpindleDirection::clockwise ? "clockwise" : "counterclockwise";
 }
 
-template <typename T>
-void take_offsets(const T& command, PlainState& state) {
-    const auto& offsets = command.offsets;
+void take_offsets(const gcode::Offsets& offsets, PlainState& state) {
     state.work_offset = static_cast<int>(offsets.active) + 1;
-    if constexpr (requires { offsets.work.origin; }) {
-        state.work = axes_of(offsets.work.origin);
-        state.rotation_deg = offsets.work.rotation_deg;
-    } else {
-        for (size_t axis = 0; axis < 3; ++axis)
-            state.work[axis] = offsets.work[offsets.active][static_cast<int>(axis)];
-    }
-    const Axes g92 = axes_of(offsets.axis);
-    for (size_t axis = 0; axis < 9; ++axis) state.axis[axis] = g92[axis];
-    for (int axis = 0; axis < 3; ++axis)
-        state.axis[static_cast<size_t>(axis)] += offsets.local[static_cast<size_t>(axis)];
+    state.work = offsets.work.origin;
+    state.rotation_deg = offsets.work.rotation_deg;
+    state.axis = axes_of(offsets.axis);
+    for (size_t axis = 0; axis < 9; ++axis) state.axis[axis] += offsets.local[axis];
 }
 
 template <typename T>
@@ -54,8 +35,8 @@ void take_override(const T& command, PlainState& state) {
 
 /// Modes that a command changes, by the names of its fields.
 template <typename T>
-void take_state(const T& command, const std::string& kind, PlainState& state) {
-    if constexpr (requires { command.offsets; }) take_offsets(command, state);
+void take_state(const T& command, PlainState& state) {
+    if constexpr (requires { command.offsets; }) take_offsets(command.offsets, state);
     if constexpr (requires { command.mist; })
         state.mist = command.mist, state.flood = command.flood;
     if constexpr (requires { command.direction; })
@@ -64,17 +45,14 @@ void take_state(const T& command, const std::string& kind, PlainState& state) {
         state.speed = command.speed;
         state.fastest_speed = command.fastest_speed;
     }
-    if constexpr (requires { command.plane; }) state.plane = name_of(command.plane);
+    if constexpr (requires { command.plane; }) state.plane = gcode::name_of(command.plane);
     if constexpr (requires { command.naive_tolerance; }) {
         constexpr const char* names[] = {"exact_path", "exact_stop", "continuous"};
         state.path = names[static_cast<size_t>(command.mode)];
         state.tolerance = command.tolerance, state.naive_tolerance = command.naive_tolerance;
     }
     if constexpr (requires { command.enabled; }) take_override(command, state);
-    if (kind == "use_tool_length_offset") {
-        if constexpr (requires { command.length; }) state.tool_offset = {0, 0, command.length};
-        if constexpr (requires { command.offset[8]; }) state.tool_offset = axes_of(command.offset);
-    }
+    if constexpr (requires { command.offset[8]; }) state.tool_offset = command.offset;
     if constexpr (requires { command.feed; }) state.feed = command.feed;
     if constexpr (requires { command.pitch; }) state.pitch = command.pitch;
     if constexpr (requires { *command.tool; })
@@ -100,12 +78,11 @@ std::vector<double> values_of(const T& command) {
 /// Modes take effect with the next command that is none; what the reference does not tell of is
 /// left out.
 bool is_mode(const std::string& kind) {
-    constexpr const char* modes[] = {"select_tool",     "spindle",
-                                     "coolant",         "select_plane",
-                                     "set_offset",      "use_tool_length_offset",
-                                     "set_path_mode",   "enable_override",
-                                     "wait_for_input",  "use_spindle_mode",
-                                     "orient_spindle",  "set_feed_mode"};
+    constexpr const char* modes[] = {
+        "select_tool",      "spindle",         "coolant",
+        "select_plane",     "set_offset",      "use_tool_length_offset",
+        "set_path_mode",    "enable_override", "wait_for_input",
+        "use_spindle_mode", "orient_spindle",  "set_feed_mode"};
     return std::find(std::begin(modes), std::end(modes), kind) != std::end(modes);
 }
 
@@ -115,7 +92,7 @@ void take(const T& said, size_t line, const std::string& kind, PlainState& state
         run.messages.push_back(said.text);
         return;
     }
-    take_state(said, kind, state);
+    take_state(said, state);
     if (is_mode(kind)) return;
     PlainCommand command;
     command.line = line;
@@ -134,20 +111,16 @@ void take(const T& said, size_t line, const std::string& kind, PlainState& state
     run.commands.push_back(command);
 }
 
-template <typename Environment>
-void add_tools(Environment& environment) {
+void add_tools(gcode::Environment& environment) {
     for (const ReferenceTool& tool : reference_tools()) {
-        auto& row = environment.length_offsets[core::OffsetNumber{tool.number}];
+        gcode::LengthOffset row;
         row.length = tool.offset[2];
         row.diameter = tool.diameter;
-        if constexpr (requires { row.shift; }) {
-            row.shift = tool.offset;
-            row.shift[2] = 0.0;
-        }
-        if constexpr (requires { row.front_deg; }) {
-            row.front_deg = tool.front_deg, row.back_deg = tool.back_deg;
-            row.orientation = tool.orientation;
-        }
+        row.shift = tool.offset;
+        row.shift[2] = 0.0;
+        row.front_deg = tool.front_deg, row.back_deg = tool.back_deg;
+        row.orientation = tool.orientation;
+        environment.length_offsets[core::OffsetNumber{tool.number}] = row;
     }
 }
 
@@ -168,8 +141,7 @@ PlainRun plain_run(const gcode::Run& run) {
         for (const gcode::CanonicalCommand& command : block.commands)
             std::visit(
                 [&](const auto& said) {
-                    take(said, block.line, std::string(gcode::command_name(command)), state,
-                         plain);
+                    take(said, block.line, std::string(gcode::command_name(command)), state, plain);
                 },
                 command);
     if (!run.error) return plain;

@@ -58,7 +58,8 @@ void spoil(std::vector<std::string>& words, ProgramText& random) {
         word += random.one_of({" G41", " G2", " G81", " G4", " G92", " G28", " G10", " M3 M4"});
         break;
     default:
-        word += random.one_of({" R5", " P2.5", " L0", " Q-1", " H50", " D3", " K1", " S-5", " T77"});
+        word +=
+            random.one_of({" R5", " P2.5", " L0", " Q-1", " H50", " D3", " K1", " S-5", " T77"});
         break;
     }
 }
@@ -78,8 +79,7 @@ std::string generated_program(const std::string& feature, uint32_t seed, int blo
     ProgramText text(seed);
     text.line("{} G90 G17 G40 G94 G0 F{}", text.one_of({"G21", "G21", "G20"}), text.whole(20, 900));
     for (int i = 0; i < blocks; ++i) {
-        const auto any =
-            static_cast<size_t>(text.whole(0, static_cast<int>(features.size()) - 1));
+        const auto any = static_cast<size_t>(text.whole(0, static_cast<int>(features.size()) - 1));
         (found == features.end() ? features[any] : *found).write(text);
         text.move();
     }

@@ -75,8 +75,7 @@ int chosen(const std::vector<std::string>& words) {
     if ((first == "--generate" || first == "--spoil") && words.size() == 4) {
         const int seed = std::stoi(words[2]), count = std::stoi(words[3]);
         std::vector<std::string> names;
-        for (int i = 0; i < count; ++i)
-            names.push_back(fmt::format("{} {}", words[1], seed + i));
+        for (int i = 0; i < count; ++i) names.push_back(fmt::format("{} {}", words[1], seed + i));
         return compare(generated(words[1], static_cast<uint32_t>(seed), count, first == "--spoil"),
                        names);
     }
@@ -88,6 +87,4 @@ int chosen(const std::vector<std::string>& words) {
 } // namespace
 } // namespace test_support
 
-int main(int count, char** words) {
-    return test_support::chosen({words + 1, words + count});
-}
+int main(int count, char** words) { return test_support::chosen({words + 1, words + count}); }

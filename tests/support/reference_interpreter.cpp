@@ -70,19 +70,23 @@ void take_offset(const std::string& key, Words& words, PlainState& state) {
 }
 
 void take_state(Words& words, PlainState& state) {
-    const std::map<std::string, double*> numbers = {
-        {"feed", &state.feed},   {"pitch", &state.pitch},
-        {"speed", &state.speed}, {"fastest_speed", &state.fastest_speed},
-        {"tolerance", &state.tolerance}, {"naive_tolerance", &state.naive_tolerance},
-        {"rotation", &state.rotation_deg}};
+    const std::map<std::string, double*> numbers = {{"feed", &state.feed},
+                                                    {"pitch", &state.pitch},
+                                                    {"speed", &state.speed},
+                                                    {"fastest_speed", &state.fastest_speed},
+                                                    {"tolerance", &state.tolerance},
+                                                    {"naive_tolerance", &state.naive_tolerance},
+                                                    {"rotation", &state.rotation_deg}};
     const std::map<std::string, std::string*> names = {
         {"plane", &state.plane}, {"spindle", &state.spindle}, {"path", &state.path}};
     const std::map<std::string, int*> counts = {{"selected", &state.selected_tool},
                                                 {"tool", &state.tool}};
-    const std::map<std::string, bool*> switches = {
-        {"mist", &state.mist}, {"flood", &state.flood},
-        {"feed_override", &state.feed_override}, {"speed_override", &state.speed_override},
-        {"adaptive_feed", &state.adaptive_feed}, {"feed_hold", &state.feed_hold}};
+    const std::map<std::string, bool*> switches = {{"mist", &state.mist},
+                                                   {"flood", &state.flood},
+                                                   {"feed_override", &state.feed_override},
+                                                   {"speed_override", &state.speed_override},
+                                                   {"adaptive_feed", &state.adaptive_feed},
+                                                   {"feed_hold", &state.feed_hold}};
     const std::string key = words.word();
     if (numbers.contains(key))
         *numbers.at(key) = words.number();
@@ -155,11 +159,15 @@ std::vector<PlainRun> runs_of(const std::string& answer) {
 
 const std::vector<ReferenceTool>& reference_tools() {
     static const std::vector<ReferenceTool> tools = {
-        {1, {0, 0, 51}, 3, 0, 0, 0},    {2, {0, 0, 52.5}, 4, 0, 0, 0},
-        {3, {0, 0, 40.25}, 6, 0, 0, 0}, {4, {1, -2, 30}, 8, 0, 0, 0},
+        {1, {0, 0, 51}, 3, 0, 0, 0},
+        {2, {0, 0, 52.5}, 4, 0, 0, 0},
+        {3, {0, 0, 40.25}, 6, 0, 0, 0},
+        {4, {1, -2, 30}, 8, 0, 0, 0},
         {5, {0.5, 1.5, 25, 3, -4, 5, 0.25, -0.75, 2}, 10, 0, 0, 0},
-        {6, {-3, 0, 12}, 0.8, 95, 155, 2}, {7, {0, 0, 0}, 0.5, 0, 0, 0},
-        {8, {0, 0, -7}, 1.5, 0, 0, 0},  {9, {0, 0, 77.7}, 12, 0, 0, 0}};
+        {6, {-3, 0, 12}, 0.8, 95, 155, 2},
+        {7, {0, 0, 0}, 0.5, 0, 0, 0},
+        {8, {0, 0, -7}, 1.5, 0, 0, 0},
+        {9, {0, 0, 77.7}, 12, 0, 0, 0}};
     return tools;
 }
 

@@ -69,8 +69,7 @@ std::string mode_difference(const PlainState& reference, const PlainState& ours)
         return "path tolerance";
     if (reference.feed_override != ours.feed_override
         || reference.speed_override != ours.speed_override
-        || reference.adaptive_feed != ours.adaptive_feed
-        || reference.feed_hold != ours.feed_hold)
+        || reference.adaptive_feed != ours.adaptive_feed || reference.feed_hold != ours.feed_hold)
         return "override";
     return {};
 }
@@ -97,8 +96,7 @@ std::string difference_of(const PlainCommand& reference, const PlainCommand& our
     std::string what = own_difference(reference, ours);
     const bool is_end = reference.kind == "program_end";
     if (what.empty() && !is_end) what = place_difference(reference.state, ours.state);
-    if (what.empty() && has_actions && !is_end)
-        what = mode_difference(reference.state, ours.state);
+    if (what.empty() && has_actions && !is_end) what = mode_difference(reference.state, ours.state);
     if (what.empty() && is_motion(reference) && reference.line != ours.line) what = "line";
     return what;
 }
@@ -130,13 +128,27 @@ std::string ending_of(const PlainRun& run) {
                        : std::string("accepted");
 }
 
+/// Whether a straight move ends where the move before it did, which one interpreter says and the
+/// other may not.
+bool goes_nowhere(const PlainCommand& command, const PlainCommand& before) {
+    const PlainState &now = command.state, &then = before.state;
+    return (command.kind == "straight_traverse" || command.kind == "straight_feed")
+           && all_near(command.end, before.end, exact) && now.work == then.work
+           && now.axis == then.axis && now.tool_offset == then.tool_offset
+           && now.rotation_deg == then.rotation_deg;
+}
+
 /// Orienting the spindle and shuttling pallets move nothing that we know.
 std::vector<PlainCommand> comparable(const PlainRun& run, std::optional<size_t> refused) {
     std::vector<PlainCommand> commands;
-    for (const PlainCommand& command : run.commands)
-        if (command.kind != "orient_spindle" && command.kind != "pallet_shuttle"
-            && (run.has_actions || is_motion(command) || command.kind == "dwell"))
+    PlainCommand last_move;
+    for (const PlainCommand& command : run.commands) {
+        const bool is_told = run.has_actions || is_motion(command) || command.kind == "dwell";
+        if (is_told && command.kind != "orient_spindle" && command.kind != "pallet_shuttle"
+            && !goes_nowhere(command, last_move))
             commands.push_back(command);
+        if (is_motion(command) && command.kind != "rigid_tap") last_move = command;
+    }
     // What a refused line did before it was refused.
     while (refused && !commands.empty() && commands.back().line == *refused) commands.pop_back();
     return commands;
