@@ -77,7 +77,8 @@ std::string generated_program(const std::string& feature, uint32_t seed, int blo
                                     [&](const auto& one) { return one.name == feature; });
     if (found == features.end() && feature != "everything") return {};
     ProgramText text(seed);
-    text.line("{} G90 G17 G40 G94 G0 F{}", text.one_of({"G21", "G21", "G20"}), text.whole(20, 900));
+    text.line("{}", text.one_of({"G21", "G21", "G20"}));
+    text.line("G90 G17 G40 G94 G0 F{}", text.whole(20, 900));
     for (int i = 0; i < blocks; ++i) {
         const auto any = static_cast<size_t>(text.whole(0, static_cast<int>(features.size()) - 1));
         (found == features.end() ? features[any] : *found).write(text);
