@@ -103,7 +103,7 @@ void crowded_lines(ProgramText& text) {
         text.line("G4 P{} M{} S{}", text.positive(2), text.whole(3, 5), text.whole(1, 999));
         break;
     case 1:
-        text.line("T{} M6 G43 {}{}", text.whole(1, 9), text.one_of({"G0", "G1"}),
+        text.line("T{} M6 {}{}", text.whole(1, 9), text.one_of({"G0", "G1"}),
                   text.axis_words("XYZ"));
         break;
     case 2:

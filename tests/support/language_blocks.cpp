@@ -88,7 +88,7 @@ void positions(ProgramText& text) {
     if (text.once_in(3)) text.line("G10 L2 P{} R{}", text.whole(1, 3), text.whole(0, 90));
     if (text.once_in(3)) text.line("G92{}", text.axis_words("XYZ"));
     if (text.once_in(4)) text.line("G{}.1", text.one_of({28, 30}));
-    if (text.once_in(4)) text.line("T{} M6 G43", text.whole(1, 9));
+    if (text.once_in(4)) text.line("T{} M6\nG43", text.whole(1, 9));
     if (text.once_in(5)) text.line("G{}", text.whole(20, 21));
     text.line("G1 X[#{}+1] Y[#{}-1] Z[#{}/2]", text.whole(5420, 5425),
               5161 + 20 * text.whole(0, 1) + text.whole(0, 5),

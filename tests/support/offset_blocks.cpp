@@ -65,7 +65,8 @@ void axis_offsets(ProgramText& text) {
 void tool_offsets(ProgramText& text) {
     switch (text.whole(0, 5)) {
     case 0:
-        text.line("T{} M6 G43", text.whole(1, 9));
+        text.line("T{} M6", text.whole(1, 9));
+        text.line("G43");
         break;
     case 1:
         text.line("G43 H{}", text.whole(0, 9));
