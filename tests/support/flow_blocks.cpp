@@ -25,10 +25,11 @@ void branch(ProgramText& text, int depth) {
     text.line("o{} endif", label);
 }
 
-void leave_or_go_on(ProgramText& text, int label) {
+/// The reference does not leave a `repeat` early, and forgets that it has left a `while`.
+void leave_or_go_on(ProgramText& text, int label, const char* how) {
     const int test = text.label();
     text.line("o{} if {}", test, condition(text));
-    text.line("  o{} {}", label, text.one_of({"break", "continue"}));
+    text.line("  o{} {}", label, how);
     text.line("o{} endif", test);
 }
 
@@ -42,14 +43,15 @@ void counted_loop(ProgramText& text, int depth) {
         text.line("o{} while [#{} LT {}]", label, counter, times);
         text.line("#{0}=[#{0}+1]", counter);
         body(text, depth - 1);
-        if (text.once_in(2)) leave_or_go_on(text, label);
+        if (text.once_in(2)) leave_or_go_on(text, label, "continue");
         text.line("o{} endwhile", label);
         break;
     case 1:
         text.line("o{} do", label);
         text.line("#{0}=[#{0}+1]", counter);
         body(text, depth - 1);
-        if (text.once_in(2)) leave_or_go_on(text, label);
+        if (text.once_in(2))
+            leave_or_go_on(text, label, text.once_in(2) ? "break" : "continue");
         text.line("o{} while [#{} LT {}]", label, counter, times);
         break;
     default:
