@@ -43,7 +43,7 @@ constexpr Held held[] = {
     {"crowded_lines", false, false}, {"saved_modes", false, false},
     {"expressions", false, false},   {"parameters", true, false},
     {"positions", false, false},     {"predefined_names", false, false},
-    {"formats", true, false},        {"branches", false, false},
+    {"formats", true, false},        {"branches", true, false},
     {"loops", false, false},         {"subprograms", true, false},
     {"recursion", true, false},      {"nested_calls", true, false},
 };

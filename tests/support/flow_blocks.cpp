@@ -50,8 +50,7 @@ void counted_loop(ProgramText& text, int depth) {
         text.line("o{} do", label);
         text.line("#{0}=[#{0}+1]", counter);
         body(text, depth - 1);
-        if (text.once_in(2))
-            leave_or_go_on(text, label, text.once_in(2) ? "break" : "continue");
+        if (text.once_in(2)) leave_or_go_on(text, label, text.once_in(2) ? "break" : "continue");
         text.line("o{} while [#{} LT {}]", label, counter, times);
         break;
     default:

@@ -152,7 +152,7 @@ def module_calls(gcode, path, rows, folder, seconds):
 
 
 def rs_calls(path, folder, seconds):
-    """The calls that rs274 prints, how it ended, and the lines it wrote beside them."""
+    """The calls that rs274 prints, how it ended, and what the program printed."""
     out = folder + '/out'
     try:
         ran = subprocess.run(['/usr/bin/rs274', '-t', folder + '/tool.tbl', '-v',
@@ -160,8 +160,8 @@ def rs_calls(path, folder, seconds):
                              stdin=subprocess.DEVNULL, capture_output=True, cwd=folder)
     except subprocess.TimeoutExpired:
         return [], ('endless', 0, ''), []
+    prints = ran.stdout.decode('latin-1').splitlines()
     said = ran.stderr.decode('latin-1').splitlines()
-    said = said[1:] if said[:1] == ['executing'] else said
     calls = []
     with open(out, encoding='latin-1') as text:
         for line in text:
@@ -169,8 +169,8 @@ def rs_calls(path, folder, seconds):
             if match:
                 calls.append((match[1], match[2]))
     if ran.returncode == 0:
-        return calls, ('accepted', 0, ''), said
-    return calls, ('refused', 0, said[-2] if len(said) > 1 else ''), said[:-2]
+        return calls, ('accepted', 0, ''), prints
+    return calls, ('refused', 0, said[-2] if len(said) > 1 else ''), prints
 
 
 def numbers(text):
@@ -240,7 +240,8 @@ class Plain:
         elif name == 'SET_SPINDLE_SPEED':
             self.state['speed'] = (numbers(text)[1],)
         elif name == 'SET_SPINDLE_MODE':
-            self.state['fastest_speed'] = (numbers(text)[1],)
+            fastest = numbers(text)[1]  # 1e30 is no limit
+            self.state['fastest_speed'] = (fastest if fastest < 1e29 else 0.0,)
         elif name == 'SET_FEED_MODE':
             self.state['feed_mode'] = (int(numbers(text)[1]),)
         elif name == 'SELECT_TOOL':
@@ -334,7 +335,7 @@ def answer(gcode, path, rows, fresh, seconds, write):
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
         module, ending = module_calls(gcode, path, rows, folder, seconds)
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
-        rs, rs_ending, said = rs_calls(path, folder, seconds)
+        rs, rs_ending, prints = rs_calls(path, folder, seconds)
     plain = Plain(write)
     if re.match("Bad character '[uvw]'", rs_ending[2]) and ending != rs_ending:
         write('no_actions\n')  # six axes are all that rs274 has
@@ -346,7 +347,7 @@ def answer(gcode, path, rows, fresh, seconds, write):
             problem = 'rs274: %s, the module: %s' % (rs_ending, ending)
         if problem:
             write('problem %s\n' % problem)
-    for line in said:
+    for line in prints:
         write('print %s\n' % line)
     write(' '.join(map(str, ending)) + '\n' if ending[0] == 'refused' else ending[0] + '\n')
 
