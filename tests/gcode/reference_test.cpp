@@ -30,7 +30,7 @@ constexpr Held held[] = {
     {"feed_modes", false, false},    {"compensation", false, false},
     {"splines", false, false},       {"polar", false, false},
     {"threads", false, false},       {"probes", false, false},
-    {"work_offsets", true, false},   {"rotated_offsets", true, false},
+    {"work_offsets", true, true},   {"rotated_offsets", true, false},
     {"axis_offsets", false, false},  {"tool_offsets", false, false},
     {"tool_table", false, false},    {"home", false, false},
     {"drilling", false, false},      {"drilling_in_all_planes", false, false},
@@ -43,8 +43,8 @@ constexpr Held held[] = {
     {"crowded_lines", false, false}, {"saved_modes", false, false},
     {"expressions", false, false},   {"parameters", true, false},
     {"positions", false, false},     {"predefined_names", false, false},
-    {"formats", true, false},        {"branches", true, false},
-    {"loops", false, false},         {"subprograms", true, false},
+    {"formats", true, true},        {"branches", true, false},
+    {"loops", true, false},         {"subprograms", true, false},
     {"recursion", true, false},      {"nested_calls", true, false},
 };
 

@@ -25,7 +25,8 @@ void branch(ProgramText& text, int depth) {
     text.line("o{} endif", label);
 }
 
-/// The reference does not leave a `repeat` early, and forgets that it has left a `while`.
+/// The reference does not leave a `repeat` early; after a `break` of a `while` or a `continue` of a
+/// `do` it miscounts the next loop.
 void leave_or_go_on(ProgramText& text, int label, const char* how) {
     const int test = text.label();
     text.line("o{} if {}", test, condition(text));
@@ -50,7 +51,7 @@ void counted_loop(ProgramText& text, int depth) {
         text.line("o{} do", label);
         text.line("#{0}=[#{0}+1]", counter);
         body(text, depth - 1);
-        if (text.once_in(2)) leave_or_go_on(text, label, text.once_in(2) ? "break" : "continue");
+        if (text.once_in(2)) leave_or_go_on(text, label, "break");
         text.line("o{} while [#{} LT {}]", label, counter, times);
         break;
     default:

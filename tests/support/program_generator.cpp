@@ -59,7 +59,7 @@ void spoil(std::vector<std::string>& words, ProgramText& random) {
         break;
     default:
         word +=
-            random.one_of({" R5", " P2.5", " L0", " Q-1", " H50", " D3", " K1", " S-5", " T77"});
+            random.one_of({" R5", " P2.5", " L0", " Q-2", " H50", " D3", " K1", " S-5", " T77"});
         break;
     }
 }

@@ -170,7 +170,21 @@ def rs_calls(path, folder, seconds):
                 calls.append((match[1], match[2]))
     if ran.returncode == 0:
         return calls, ('accepted', 0, ''), prints
-    return calls, ('refused', 0, said[-2] if len(said) > 1 else ''), prints
+    message, line = said[-2:] if len(said) > 1 else ('', '')
+    return calls, ('refused', line, message), prints
+
+
+def line_of_refusal(path, line, text):
+    """The module counts a line too many where a line could not be read, and names the call where the
+    line is in a subprogram; rs274 gives the text of the line."""
+    with open(path, encoding='latin-1') as program:
+        lines = [''] + [each.strip() for each in program]
+    if line < len(lines) and lines[line] == text.strip():
+        return line
+    if 0 < line <= len(lines) and lines[line - 1] == text.strip():
+        return line - 1
+    same = [number for number, each in enumerate(lines) if each == text.strip() and each]
+    return same[0] if len(same) == 1 else line
 
 
 def numbers(text):
@@ -336,8 +350,10 @@ def answer(gcode, path, rows, fresh, seconds, write):
         module, ending = module_calls(gcode, path, rows, folder, seconds)
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
         rs, rs_ending, prints = rs_calls(path, folder, seconds)
+    if ending[0] == rs_ending[0] == 'refused':
+        ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1]), ending[2])
     plain = Plain(write)
-    if re.match("Bad character '[uvw]'", rs_ending[2]) and ending != rs_ending:
+    if re.match("Bad character '[uvw]'", rs_ending[2]) and ending[2] != rs_ending[2]:
         write('no_actions\n')  # six axes are all that rs274 has
         for call in module:
             plain.from_module(*call)
