@@ -49,6 +49,10 @@ struct SelectTool {
 struct ChangeTool {
     std::optional<core::ToolNumber> tool; // empty: T0, an empty spindle
 };
+/// M61: that tool is in the spindle already.
+struct NameTool {
+    std::optional<core::ToolNumber> tool;
+};
 struct Spindle {
     core::SpindleDirection direction;
     double speed; // rev/min; m/min under G96
@@ -102,9 +106,9 @@ struct ProgramEnd {};
 
 using CanonicalCommand =
     std::variant<StraightTraverse, StraightFeed, ArcFeed, StraightProbe, ThreadFeed, Dwell,
-                 SelectTool, ChangeTool, Spindle, UseSpindleMode, Coolant, SelectPlane, SetOffset,
-                 UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput, WaitForInput, Message,
-                 ProgramStop, OptionalStop, ProgramEnd>;
+                 SelectTool, ChangeTool, NameTool, Spindle, UseSpindleMode, Coolant, SelectPlane,
+                 SetOffset, UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput,
+                 WaitForInput, Message, ProgramStop, OptionalStop, ProgramEnd>;
 
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);

@@ -68,6 +68,9 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .offset_words_may_repeat = false,
                               .brackets_optional_in_assignments = false,
                               .unset_is_vacant = false,
+                              .state_parameters = StateParameters::linuxcnc,
+                              .feed_mode_clears_feed = true,
+                              .bare_h0_is_tool = true,
                               .local_count = 30,
                               .deepest_calls = 10};
 
@@ -111,6 +114,9 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .offset_words_may_repeat = true,
                            .brackets_optional_in_assignments = true,
                            .unset_is_vacant = true,
+                           .state_parameters = StateParameters::fanuc,
+                           .feed_mode_clears_feed = false,
+                           .bare_h0_is_tool = false,
                            .local_count = 33,
                            .deepest_calls = 15};
 
@@ -136,6 +142,7 @@ constexpr Dialect grbl = [] {
     entry.tool_entries_by_axes = false;
     entry.has_active_comments = false;
     entry.has_o_words = false;
+    entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;
     return entry;
 }();

@@ -22,6 +22,9 @@ struct ArcTolerance {
     double warned_mm; // beyond the above but not beyond this: a warning; 0 refuses
 };
 
+/// Whose numbers and names show the control's state to expressions.
+enum class StateParameters : uint8_t { none, linuxcnc, fanuc };
+
 /// How the controls of one kind differ. Everything the interpreter asks about a dialect is here.
 struct Dialect {
     DialectId id;
@@ -66,7 +69,10 @@ struct Dialect {
     bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
     bool brackets_optional_in_assignments; // #1=#2+1
     bool unset_is_vacant;                  // an unset parameter is nothing, else 0
-    int local_count;                       // #1 to this are of each level of calls
+    StateParameters state_parameters;
+    bool feed_mode_clears_feed; // G94 and G95 leave no feed rate, the same mode again as well
+    bool bare_h0_is_tool;       // G43 H0 means the tool in the spindle
+    int local_count;            // #1 to this are of each level of calls
     size_t deepest_calls;
 };
 

@@ -275,7 +275,8 @@ core::Result<void> Parser::value() {
         Lexer ahead = lexer_;
         ++ahead.at;
         const char next = ahead.peek();
-        if (next == '#' || next == open() || is_letter(next)) {
+        const bool sign = next == '+' || next == '-';
+        if (next == '#' || next == open() || is_letter(next) || sign) {
             if (++depth_ > deepest) return lexer_.unexpected_character();
             lexer_ = ahead;
             auto done = value();
@@ -301,7 +302,7 @@ core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, Expr
             return Expression{};
         }
         const char next = (++(ahead = lexer).at, ahead.peek());
-        if (next != '#' && next != '[' && next != '(' && !is_letter(next))
+        if (std::string_view("#[(+-").find(next) == std::string_view::npos && !is_letter(next))
             return tl::unexpected(std::move(lexer.number()).error());
     }
     const auto first = static_cast<uint32_t>(pool.instructions.size());

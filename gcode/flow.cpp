@@ -140,7 +140,9 @@ core::Result<void> Flowing::give_back() {
     Parameters& parameters = step_.state.parameters.write();
     parameters.set_named("_value", value.value_or(0.0));
     parameters.set_named("_value_returned", value ? 1.0 : 0.0);
+    const ModalState before = step_.state.modal;
     leave(step_.state);
+    announce_modes(step_.result, step_.block.flow.span.column, before, step_.state.modal);
     return {};
 }
 

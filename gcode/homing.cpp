@@ -32,7 +32,11 @@ core::Result<void> go_home(Execution& execution) {
         FEELER_TRY(const Position between, target_of(execution));
         execution.traverse(between);
     }
-    const Position home = program_from_machine(modal.offsets, home_of(execution, entry));
+    // What a tool is offset by along rotary axes does not shift where these go.
+    Offsets offsets = modal.offsets;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis)) offsets.tool[axis] = 0.0;
+    const Position home = program_from_machine(offsets, home_of(execution, entry));
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (all || execution.statement.word(axis_letters[axis])) end[axis] = home[axis];

@@ -152,6 +152,9 @@ struct Visitor {
     void operator()(const ChangeTool& command) {
         events.emplace_back(core::ToolChange{command.tool});
     }
+    void operator()(const NameTool& command) {
+        events.emplace_back(core::ToolChange{command.tool});
+    }
     void operator()(const Spindle& command) {
         lowering.spindle_speed = command.speed;
         events.emplace_back(core::SpindleChange{command.direction, command.speed});

@@ -52,7 +52,7 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
                                  : "M66 L1 to L4 waits: it needs the longest time as Q",
                           entry.word->span);
     execution.emit(WaitForInput{number, analog, kind > 0 ? time->value : 0.0});
-    execution.state.parameters.write().set_numbered(5399, kind > 0 ? -1.0 : 0.0);
+    execution.state.parameters.write().set_numbered(5399, 0.0);
     return {};
 }
 
@@ -73,16 +73,6 @@ void enable(Execution& execution, OverrideKind kind, bool enabled) {
         break;
     }
     execution.emit(EnableOverride{kind, enabled});
-}
-
-/// The diameter under X, the plane and the like are the program's; what they were is said again.
-void announce(Execution& execution, const ModalState& before) {
-    const ModalState& modal = execution.modal();
-    if (before.plane != modal.plane) execution.emit(SelectPlane{modal.plane});
-    if (before.path != modal.path || before.path_tolerance != modal.path_tolerance)
-        execution.emit(SetPathMode{modal.path, modal.path_tolerance, modal.naive_tolerance});
-    if (before.speed != modal.speed && modal.spindle != core::SpindleDirection::stopped)
-        execution.emit(Spindle{modal.spindle, modal.speed});
 }
 
 } // namespace
@@ -117,7 +107,7 @@ core::Result<void> save_or_restore_modes(Execution& execution) {
                                   entry.word->span);
             const ModalState before = state.modal;
             restore_modes(state, **frame.saved);
-            announce(execution, before);
+            announce_modes(execution.result, entry.word->span.column, before, state.modal);
         } else {
             frame.saved.write() = state.modal;
             frame.restores = code == 73;

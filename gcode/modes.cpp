@@ -27,7 +27,8 @@ core::Result<void> set_feed_mode(Execution& execution) {
         break;
     }
     // A rate of one mode means nothing in another.
-    if (mode != before) execution.modal().feed.reset();
+    const bool clears = execution.dialect.feed_mode_clears_feed && mode != FeedMode::inverse_time;
+    if (mode != before || clears) execution.modal().feed.reset();
     return {};
 }
 
@@ -211,6 +212,20 @@ core::Result<void> set_diameter_mode(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::diameter);
     if (entry) execution.modal().diameter_mode = entry->code->tenths == tenths(7);
     return {};
+}
+
+void announce_modes(BlockResult& result, uint32_t column, const ModalState& before,
+                    const ModalState& after) {
+    const auto say = [&](CanonicalCommand command) {
+        result.commands.push_back(std::move(command));
+        result.columns.push_back(column);
+    };
+    if (before.plane != after.plane) say(SelectPlane{after.plane});
+    if (before.path != after.path || before.path_tolerance != after.path_tolerance
+        || before.naive_tolerance != after.naive_tolerance)
+        say(SetPathMode{after.path, after.path_tolerance, after.naive_tolerance});
+    if (before.speed != after.speed && after.spindle != core::SpindleDirection::stopped)
+        say(Spindle{after.spindle, after.speed});
 }
 
 void restore_modes(InterpreterState& state, const ModalState& saved) {

@@ -159,6 +159,8 @@ core::Result<void> set_local_offset(Execution& execution) {
         else
             offsets.local[axis] = value;
     }
+    if (execution.dialect.local_offset_is_axis_offset)
+        execution.modal().suspended_axis = offsets.axis;
     use(execution, offsets);
     return {};
 }

@@ -1,30 +1,26 @@
-#include <fmt/format.h>
-
+#include "gcode/linuxcnc_parameters.h"
 #include "gcode/program_parameters.h"
 
 namespace gcode {
 
-std::optional<Value> system_parameter(const InterpreterState& state, const Environment&,
+std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       int number) {
-    const ModalState& modal = state.modal;
-    if (number >= 5420 && number < 5429) {
-        const auto axis = static_cast<size_t>(number - 5420);
-        const double place = modal.position[axis].value_or(0.0);
-        return is_rotary(axis) ? place : from_mm(place, modal.unit);
-    }
+    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
+        return linuxcnc_parameter(state, environment, number);
     return std::nullopt;
 }
 
-std::optional<Value> system_parameter(const InterpreterState&, const Environment&,
-                                      std::string_view) {
+std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
+                                      std::string_view name) {
+    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
+        return linuxcnc_parameter(state, name);
     return std::nullopt;
 }
 
-core::Result<bool> set_system_parameter(InterpreterState&, const Environment&, int number, Value,
-                                        core::SourceSpan where) {
-    if (number >= 5420 && number < 5429)
-        return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("#{} is the control's own and cannot be set", number), where);
+core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
+                                        int number, Value value, core::SourceSpan where) {
+    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
+        return set_linuxcnc_parameter(state, environment, number, value, where);
     return false;
 }
 

@@ -93,7 +93,7 @@ core::Result<void> name_tool(Execution& execution) {
                           execution.statement.of(ModalGroup::tool_change)->word->span);
     FEELER_TRY(const int tool, whole_number(*word));
     execution.modal().tool = ToolNumber(tool);
-    execution.emit(ChangeTool{tool == 0 ? std::nullopt : std::optional(ToolNumber(tool))});
+    execution.emit(NameTool{tool == 0 ? std::nullopt : std::optional(ToolNumber(tool))});
     return {};
 }
 

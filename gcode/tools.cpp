@@ -34,7 +34,7 @@ AxisValues offset_under(const Execution& execution, int number, double length) {
 core::Result<std::optional<int>> length_number(const Execution& execution) {
     if (const Word* word = execution.statement.word('H')) {
         FEELER_TRY(const int number, whole_number(*word));
-        return number;
+        if (number != 0 || !execution.dialect.bare_h0_is_tool) return number;
     }
     const ModalState& modal = execution.modal();
     if (execution.dialect.bare_length_offset_is_tool)

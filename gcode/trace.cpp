@@ -75,6 +75,9 @@ struct Details {
     std::string operator()(const ChangeTool& command) const {
         return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
     }
+    std::string operator()(const NameTool& command) const {
+        return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
+    }
     std::string operator()(const Spindle& command) const {
         return fmt::format(" direction={} speed={}", name_of(command.direction),
                            number(command.speed));

@@ -57,6 +57,9 @@ struct Keys {
     void operator()(const gcode::ChangeTool& c) const {
         json["tool"] = c.tool ? Json(core::value_of(*c.tool)) : Json(nullptr);
     }
+    void operator()(const gcode::NameTool& c) const {
+        json["tool"] = c.tool ? Json(core::value_of(*c.tool)) : Json(nullptr);
+    }
     void operator()(const gcode::Spindle& c) const {
         json["direction"] = direction_name(c.direction);
         json["speed"] = c.speed;

@@ -91,6 +91,40 @@ TEST(Linuxcnc, ToolTableEntriesAreWritten) {
                 HasSubstr("number=5 length=53\n"));
 }
 
+TEST(Linuxcnc, TheToolInTheSpindleCanBeNamed) {
+    EXPECT_EQ(traced("M61 Q3"), "name_tool tool=3\n");
+    EXPECT_THAT(refused("M61"), HasSubstr("M61 does not say"));
+}
+
+TEST(Linuxcnc, ParametersShowTheStateOfTheControl) {
+    EXPECT_THAT(traced("G55 G0 X3\nG0 Y#5220 Z#<_x>"), HasSubstr("x=3 y=2 z=3\n"));
+    EXPECT_THAT(traced("#5241=7\nG55 G0 X0 Y#<_metric>\nG0 X#<_coord_system>"),
+                HasSubstr("offset=G55 x=7 y=0 z=0\nstraight_traverse x=0 y=1 z=0\n"
+                          "straight_traverse x=550 y=1 z=0\n"));
+    EXPECT_THAT(refused("#5420=1"), HasSubstr("the control's own"));
+    EXPECT_THAT(refused("#<_x>=1"), HasSubstr("the control's own"));
+}
+
+TEST(Linuxcnc, ContoursMoveAsideByTheCuttersRadius) {
+    // Entry beside the first point, round an outside corner, and back on the way out.
+    EXPECT_EQ(traced("F100\nG0 X-10 Y-10\nG41.1 D4 G1 X0 Y0\nY20\nX20\nG40\nG0 X30"),
+              "straight_traverse x=-10 y=-10 z=0\n"
+              "straight_feed x=-2 y=0 z=0 feed=100\n"
+              "straight_feed x=-2 y=20 z=0 feed=100\n"
+              "arc_feed x=0 y=22 z=0 plane=XY centre=0,20 turns=-1 feed=100\n"
+              "straight_feed x=20 y=22 z=0 feed=100\n"
+              "straight_traverse x=30 y=20 z=0\n");
+    EXPECT_THAT(refused("F100 G41.1 D4 G1 X1"), HasSubstr("1:"));
+    EXPECT_THAT(refused("G21 F100 G41.1 D4 G1 X10\nG28"), HasSubstr("G28 is not possible"));
+}
+
+TEST(Linuxcnc, BlocksBeforeARefusedContourMoveAreGiven) {
+    const Ran ran = run_text("G21 F100 G41.1 D4 G1 X10\nX20\nG28", DialectId::linuxcnc);
+    ASSERT_TRUE(ran.run.error);
+    EXPECT_EQ(ran.run.error->where.line, 3u);
+    EXPECT_EQ(ran.run.blocks.size(), 2u);
+}
+
 TEST(Linuxcnc, TurnedWorkOffsetsTurnTheMachine) {
     const Ran ran = run_text("G21 G10 L2 P1 X10 R90\nG0 X5 Y0", DialectId::linuxcnc);
     ASSERT_FALSE(ran.run.error) << ran.run.error->message;

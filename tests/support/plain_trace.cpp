@@ -82,7 +82,8 @@ bool is_mode(const std::string& kind) {
         "select_tool",      "spindle",         "coolant",
         "select_plane",     "set_offset",      "use_tool_length_offset",
         "set_path_mode",    "enable_override", "wait_for_input",
-        "use_spindle_mode", "orient_spindle",  "set_feed_mode"};
+        "use_spindle_mode", "orient_spindle",  "set_feed_mode",
+        "name_tool"};
     return std::find(std::begin(modes), std::end(modes), kind) != std::end(modes);
 }
 

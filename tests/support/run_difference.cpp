@@ -59,7 +59,8 @@ std::string mode_difference(const PlainState& reference, const PlainState& ours)
     if (reference.tool != ours.tool) return "tool";
     if (reference.selected_tool != ours.selected_tool) return "selected tool";
     if (reference.spindle != ours.spindle) return "spindle";
-    if (!near(reference.speed, ours.speed, printed)) return "speed";
+    // A spindle that stands still has no speed; the reference keeps the last S word.
+    if (ours.spindle != "stopped" && !near(reference.speed, ours.speed, printed)) return "speed";
     if (!near(reference.fastest_speed, ours.fastest_speed, printed)) return "fastest speed";
     if (reference.mist != ours.mist || reference.flood != ours.flood) return "coolant";
     if (reference.path != ours.path) return "path mode";
