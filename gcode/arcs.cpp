@@ -155,6 +155,7 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const FlatArc arc, flat_arc(execution, axes, end));
     ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};

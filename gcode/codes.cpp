@@ -24,8 +24,6 @@ constexpr std::string_view no_thread = "motion synchronised with the spindle is 
 constexpr std::string_view no_probe = "probing is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_lathe = "turning is not supported yet";
-constexpr std::string_view no_rotation =
-    "rotated, scaled and polar coordinates are not supported yet";
 constexpr std::string_view no_macro = "macro calls are not supported yet";
 constexpr std::string_view no_subprogram =
     "subprograms are not supported yet: write their blocks where they are called";
@@ -62,7 +60,7 @@ constexpr Code codes[] = {
     {'G', tenths(12), action, "IJKQDLZ", haas, no_cycle},
     {'G', tenths(13), action, "IJKQDLZ", haas, no_cycle},
     {'G', tenths(15), polar, "", fanuc, {}},
-    {'G', tenths(16), polar, "", fanuc, no_rotation},
+    {'G', tenths(16), polar, "", fanuc, {}},
     {'G', tenths(17), ModalGroup::plane, "", every, {}},
     {'G', tenths(17, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
     {'G', tenths(18), ModalGroup::plane, "", every, {}},
@@ -95,9 +93,9 @@ constexpr Code codes[] = {
     {'G', tenths(44), tool_length, "H", fanuc, {}},
     {'G', tenths(49), tool_length, "", every, {}},
     {'G', tenths(50), scaling, "", fanuc, {}},
-    {'G', tenths(50, 1), mirror, "XYZ", fanuc, no_rotation},
-    {'G', tenths(51), scaling, "XYZPIJK", fanuc, no_rotation},
-    {'G', tenths(51, 1), mirror, "XYZ", fanuc, no_rotation},
+    {'G', tenths(50, 1), mirror, "XYZ", fanuc, {}},
+    {'G', tenths(51), scaling, "XYZPIJK", fanuc, {}},
+    {'G', tenths(51, 1), mirror, "XYZ", fanuc, {}},
     {'G', tenths(52), action, "XYZ", mills, {}},
     {'G', tenths(53), action, "XYZ", every, {}},
     {'G', tenths(54), work_offset, "", every, {}},
@@ -116,7 +114,7 @@ constexpr Code codes[] = {
     {'G', tenths(65), macro, "", fanuc, no_macro},
     {'G', tenths(66), macro, "", fanuc, no_macro},
     {'G', tenths(67), macro, "", fanuc, {}},
-    {'G', tenths(68), rotation, "XYZR", fanuc, no_rotation},
+    {'G', tenths(68), rotation, "XYZRIJK", fanuc, {}},
     {'G', tenths(68, 2), rotation, "XYZIJK", fanuc, no_five_axes},
     {'G', tenths(69), rotation, "", fanuc, {}},
     {'G', tenths(73), cycle, "XYZRQLPK", mills, {}},
@@ -147,6 +145,8 @@ constexpr Code codes[] = {
     {'G', tenths(97), spindle_mode, "", mills, {}},
     {'G', tenths(98), retract, "", mills, {}},
     {'G', tenths(99), retract, "", mills, {}},
+    {'G', tenths(100), mirror, "XYZ", haas, {}},
+    {'G', tenths(101), mirror, "XYZ", haas, {}},
     {'G', tenths(103), other, "P", haas, {}},
     {'G', tenths(187), other, "PE", haas, {}},
     {'M', tenths(0), stopping, "", every, {}},

@@ -52,6 +52,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .feed_before_units = true,
                               .g98_cycle_starts_high = true,
                               .cycle_stays_above_r = true,
+                              .scale_without_point_is_thousandths = false,
                               .repeats_with_k = false,
                               .tape_mark_ends_program = true,
                               .repeated_codes_are_errors = true,
@@ -91,6 +92,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .feed_before_units = false,
                            .g98_cycle_starts_high = false,
                            .cycle_stays_above_r = false,
+                           .scale_without_point_is_thousandths = true,
                            .repeats_with_k = true,
                            .tape_mark_ends_program = false,
                            .repeated_codes_are_errors = false,
@@ -112,6 +114,7 @@ constexpr Dialect haas = [] {
     entry.name = "haas";
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
+    entry.scale_without_point_is_thousandths = false;
     entry.repeats_with_k = false;
     return entry;
 }();

@@ -46,11 +46,12 @@ struct Dialect {
     bool offset_writes_follow_g91;            // G10 L2 under G91 adds
     bool work_offsets_turn;                   // G10 L2 R
     bool feed_before_units;                   // F is read in the units of the blocks before
-    bool g98_cycle_starts_high;     // under G98 the way to the hole climbs to the initial level
-    bool cycle_stays_above_r;       // from below R a cycle first climbs to R, and G98 ends there
-    bool repeats_with_k;            // K repeats a canned cycle, as L does
-    bool tape_mark_ends_program;    // a second % is as good as M2
-    bool repeated_codes_are_errors; // the same G code twice in a block
+    bool g98_cycle_starts_high; // under G98 the way to the hole climbs to the initial level
+    bool cycle_stays_above_r;   // from below R a cycle first climbs to R, and G98 ends there
+    bool scale_without_point_is_thousandths; // G51 P2000 doubles
+    bool repeats_with_k;                     // K repeats a canned cycle, as L does
+    bool tape_mark_ends_program;             // a second % is as good as M2
+    bool repeated_codes_are_errors;          // the same G code twice in a block
 
     // the language around the words
     ExpressionSyntax expressions;

@@ -63,6 +63,22 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 /// Lets a change of offsets leave the machine where it is: program coordinates move instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
 
+/// Puts transforms into effect where the machine is, and says so if they change anything.
+void use_transforms(Execution& execution, const ProgramTransforms& transforms);
+
+/// Takes the words of a motion under G16 into the state; nothing else.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Polar coordinate command (G15, G16)": a radius
+///         given under G90 counts from the program's zero, under G91 from where the tool is; an
+///         angle under G91 adds to the one before.
+core::Result<void> take_polar_words(Execution& execution);
+
+/// The target in the plane that the words of G16 have come to.
+void place_by_radius_and_angle(const Execution& execution, Position& target);
+
+/// Errors: unsupported for an arc that is scaled to something else than an arc.
+core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxes& axes);
+
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
 core::Result<void> set_feed_mode(Execution& execution);     // G93 G94 G95
@@ -79,6 +95,7 @@ core::Result<void> set_tool_length(Execution& execution);   // G43 G43.1 G44 G49
 core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);  // G98 G99
+core::Result<void> set_frame(Execution& execution);         // G15 G16 G50 G51 G50.1 G51.1 G68 G69
 core::Result<void> act(Execution& execution);               // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution);              // G0 to G3, G73 to G89, with G53
 core::Result<void> stop(Execution& execution);              // M0 M1 M2 M30 M60 M99

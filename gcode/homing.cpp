@@ -32,10 +32,19 @@ core::Result<void> go_home(Execution& execution) {
         FEELER_TRY(const Position between, target_of(execution));
         execution.traverse(between);
     }
-    const Position home = program_from_machine(modal.offsets, home_of(execution, entry));
+    const Position home = home_of(execution, entry);
+    Position machine = machine_from_program(modal.offsets, modal.position);
+    std::array<bool, axis_count> moves{};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        moves[axis] = all || execution.statement.word(axis_letters[axis]);
+        if (moves[axis]) machine[axis] = home[axis];
+    }
+    // In a turned frame a motion along one axis of the machine changes all three coordinates.
+    const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
+    const Position place = program_from_machine(modal.offsets, machine);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (all || execution.statement.word(axis_letters[axis])) end[axis] = home[axis];
+        if (moves[axis] || (turned && axis < 3)) end[axis] = place[axis];
     execution.traverse(end);
     return {};
 }

@@ -32,6 +32,7 @@ constexpr Step steps[] = {
     select_offset,
     set_distance_mode,
     set_retract_mode,
+    set_frame,
     act,
     move,
     stop,

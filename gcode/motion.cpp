@@ -20,6 +20,57 @@ bool is_straight(std::optional<MotionCode> motion) {
 
 bool is_arc(std::optional<MotionCode> motion) { return motion == tenths(2) || motion == tenths(3); }
 
+/// Whether the words of the plane are a radius and an angle (G16).
+bool moves_by_radius_and_angle(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (!modal.transforms.polar || execution.statement.taker_of_axis_words()) return false;
+    const PlaneAxes axes = axes_of(modal.plane);
+    return !in_machine_coordinates(execution)
+           && (execution.statement.word(axis_letters[axes.first])
+               || execution.statement.word(axis_letters[axes.second]));
+}
+
+/// The axis of the plane that the first absolute motion after G68 does not name. Its coordinate is
+/// what the program called it before.
+///
+/// Source: Fanuc 30i parameter manual B-63950EN, No. 11600#5, as delivered.
+std::optional<size_t> axis_left_out_of_rotation(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    const auto& before = modal.transforms.before_rotation;
+    if (!before || !modal.transforms.rotation || in_machine_coordinates(execution)
+        || modal.distance == DistanceMode::incremental || modal.transforms.polar)
+        return std::nullopt;
+    const auto normal = static_cast<size_t>(modal.transforms.rotation->normal);
+    const size_t first = (normal + 1) % 3, second = (normal + 2) % 3;
+    const bool has_first = execution.statement.word(axis_letters[first]);
+    const bool has_second = execution.statement.word(axis_letters[second]);
+    if (has_first == has_second) return std::nullopt;
+    const size_t left_out = has_first ? second : first;
+    const auto &old = (*before)[left_out], &now = modal.position[left_out];
+    if (old == now || (old && now && std::abs(*old - *now) < 1e-9)) return std::nullopt;
+    return left_out;
+}
+
+void warn_of_axis_left_out(Execution& execution) {
+    if (const auto axis = axis_left_out_of_rotation(execution))
+        execution.warn(moving_word(execution).span,
+                       fmt::format("the first move after G68 does not name {}, and a parameter of "
+                                   "the control says where that is: write both axes",
+                                   axis_letters[*axis]));
+}
+
+/// Once the plane was moved in, program and machine agree on the place again.
+void forget_place_before_rotation(Execution& execution) {
+    ProgramTransforms& transforms = execution.modal().transforms;
+    if (!transforms.before_rotation || !transforms.rotation) return;
+    const auto normal = static_cast<size_t>(transforms.rotation->normal);
+    for (const size_t axis : {(normal + 1) % 3, (normal + 2) % 3})
+        if (execution.statement.word(axis_letters[axis])) {
+            transforms.before_rotation.reset();
+            return;
+        }
+}
+
 core::Result<void> move_straight(Execution& execution, bool rapid) {
     FEELER_TRY(const Position end, target_of(execution));
     if (rapid) {
@@ -98,6 +149,14 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     return move_straight(execution, modal.motion == tenths(0));
 }
 
+core::Result<void> move_as_modes_say(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.cycle) return run_canned_cycle(execution);
+    if (!modal.motion) return refuse_without_mode(execution);
+    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
+    return move_along_arc(execution);
+}
+
 } // namespace
 
 void Execution::traverse(const Position& end) {
@@ -141,15 +200,20 @@ core::Result<Position> target_of(const Execution& execution) {
                 target[axis] = place[axis];
         return target;
     }
+    const bool polar = moves_by_radius_and_angle(execution);
+    if (polar) place_by_radius_and_angle(execution, target);
+    const PlaneAxes plane = axes_of(modal.plane);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
-        if (!word) continue;
+        if (!word || (polar && (axis == plane.first || axis == plane.second))) continue;
         const double value = axis_value(execution, axis, *word);
         if (modal.distance == DistanceMode::absolute)
             target[axis] = value;
         else if (target[axis])
             *target[axis] += value;
     }
+    if (const auto axis = axis_left_out_of_rotation(execution))
+        target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;
 }
 
@@ -192,12 +256,12 @@ core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
     if (!has_motion_words(execution) && !cycle_words) return {};
-    const ModalState& modal = execution.modal();
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
-    if (modal.cycle) return run_canned_cycle(execution);
-    if (!modal.motion) return refuse_without_mode(execution);
-    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    return move_along_arc(execution);
+    if (auto taken = take_polar_words(execution); !taken) return taken;
+    warn_of_axis_left_out(execution);
+    if (auto moved = move_as_modes_say(execution); !moved) return moved;
+    forget_place_before_rotation(execution);
+    return {};
 }
 
 } // namespace gcode
