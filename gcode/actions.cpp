@@ -25,6 +25,12 @@ core::Result<void> act(Execution& execution) {
     switch (entry->code->tenths) {
     case tenths(10):
         return write_offset(execution);
+    case tenths(27):
+        return check_home(execution);
+    case tenths(29):
+        return return_from_home(execution);
+    case tenths(31):
+        return skip_move(execution);
     case tenths(28):
     case tenths(30):
         return go_home(execution);

@@ -5,6 +5,7 @@
 
 #include "gcode/arc_geometry.h"
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {

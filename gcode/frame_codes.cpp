@@ -1,8 +1,9 @@
+#include "gcode/frame_codes.h"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "gcode/execution.h"
 #include "gcode/modes.h"
 
 namespace gcode {
@@ -149,6 +150,8 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
         return {};
     case tenths(68):
         return set_rotation(execution, entry);
+    case tenths(68, 2):
+        return set_tilted_plane(execution);
     case tenths(69):
         transforms.rotation.reset();
         transforms.tilt.reset();
@@ -184,7 +187,7 @@ core::Result<void> set_frame(Execution& execution) {
         if (auto changed = change_transforms(execution, *entry); !changed) return changed;
         use_transforms(execution, execution.modal().transforms);
     }
-    return {};
+    return turn_tool_to_plane(execution);
 }
 
 core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxes& axes) {

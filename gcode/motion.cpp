@@ -1,8 +1,10 @@
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -28,47 +30,6 @@ bool moves_by_radius_and_angle(const Execution& execution) {
     return !in_machine_coordinates(execution)
            && (execution.statement.word(axis_letters[axes.first])
                || execution.statement.word(axis_letters[axes.second]));
-}
-
-/// The axis of the plane that the first absolute motion after G68 does not name. Its coordinate is
-/// what the program called it before.
-///
-/// Source: Fanuc 30i parameter manual B-63950EN, No. 11600#5, as delivered.
-std::optional<size_t> axis_left_out_of_rotation(const Execution& execution) {
-    const ModalState& modal = execution.modal();
-    const auto& before = modal.transforms.before_rotation;
-    if (!before || !modal.transforms.rotation || in_machine_coordinates(execution)
-        || modal.distance == DistanceMode::incremental || modal.transforms.polar)
-        return std::nullopt;
-    const auto normal = static_cast<size_t>(modal.transforms.rotation->normal);
-    const size_t first = (normal + 1) % 3, second = (normal + 2) % 3;
-    const bool has_first = execution.statement.word(axis_letters[first]);
-    const bool has_second = execution.statement.word(axis_letters[second]);
-    if (has_first == has_second) return std::nullopt;
-    const size_t left_out = has_first ? second : first;
-    const auto &old = (*before)[left_out], &now = modal.position[left_out];
-    if (old == now || (old && now && std::abs(*old - *now) < 1e-9)) return std::nullopt;
-    return left_out;
-}
-
-void warn_of_axis_left_out(Execution& execution) {
-    if (const auto axis = axis_left_out_of_rotation(execution))
-        execution.warn(moving_word(execution).span,
-                       fmt::format("the first move after G68 does not name {}, and a parameter of "
-                                   "the control says where that is: write both axes",
-                                   axis_letters[*axis]));
-}
-
-/// Once the plane was moved in, program and machine agree on the place again.
-void forget_place_before_rotation(Execution& execution) {
-    ProgramTransforms& transforms = execution.modal().transforms;
-    if (!transforms.before_rotation || !transforms.rotation) return;
-    const auto normal = static_cast<size_t>(transforms.rotation->normal);
-    for (const size_t axis : {(normal + 1) % 3, (normal + 2) % 3})
-        if (execution.statement.word(axis_letters[axis])) {
-            transforms.before_rotation.reset();
-            return;
-        }
 }
 
 core::Result<void> move_straight(Execution& execution, bool rapid) {
@@ -154,7 +115,8 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    return move_along_arc(execution);
+    if (is_arc(modal.motion)) return move_along_arc(execution);
+    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace
@@ -185,6 +147,46 @@ double axis_value(const Execution& execution, size_t axis, const Word& word) {
     return axis == 0 && execution.modal().diameter_mode ? length / 2.0 : length;
 }
 
+namespace {
+
+/// @ and ^: X and Y by their distance from the origin and the angle there, in every plane. What is
+/// not said is that of the present place.
+core::Result<void> place_polar(const Execution& execution, Position& target) {
+    const Statement& statement = execution.statement;
+    const Word& first = statement.polar_radius ? *statement.polar_radius : *statement.polar_angle;
+    for (const char letter : {'X', 'Y'})
+        if (const Word* word = statement.word(letter))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{}: a place is given with @ and ^ or with X and Y, not "
+                                          "with both",
+                                          written(*word)),
+                              word->span);
+    const bool incremental = execution.modal().distance == DistanceMode::incremental;
+    const bool needs_place = incremental || !statement.polar_radius || !statement.polar_angle;
+    if (needs_place && !(target[0] && target[1]))
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{}: this counts from the present place, which is unknown; "
+                                      "give both @ and ^",
+                                      written(first)),
+                          first.span);
+    constexpr double radians = std::numbers::pi / 180.0;
+    double radius = needs_place ? std::hypot(*target[0], *target[1]) : 0.0;
+    double angle = needs_place ? std::atan2(*target[1], *target[0]) / radians : 0.0;
+    if (!statement.polar_angle && radius < 1e-9)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{}: at the origin there is no angle to keep: give ^", written(first)),
+            first.span);
+    if (statement.polar_radius)
+        radius = length_of(execution, *statement.polar_radius) + (incremental ? radius : 0.0);
+    if (statement.polar_angle) angle = statement.polar_angle->value + (incremental ? angle : 0.0);
+    target[0] = radius * std::cos(angle * radians);
+    target[1] = radius * std::sin(angle * radians);
+    return {};
+}
+
+} // namespace
+
 core::Result<Position> target_of(const Execution& execution) {
     const ModalState& modal = execution.modal();
     Position target = modal.position;
@@ -200,6 +202,9 @@ core::Result<Position> target_of(const Execution& execution) {
                 target[axis] = place[axis];
         return target;
     }
+    if (execution.statement.polar_radius || execution.statement.polar_angle)
+        if (auto placed = place_polar(execution, target); !placed)
+            return tl::unexpected(std::move(placed).error());
     const bool polar = moves_by_radius_and_angle(execution);
     if (polar) place_by_radius_and_angle(execution, target);
     const PlaneAxes plane = axes_of(modal.plane);

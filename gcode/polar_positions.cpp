@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {

@@ -60,7 +60,9 @@ ProgramFrame frame_of(const ProgramTransforms& transforms) {
     if (const auto& tilt = transforms.tilt) {
         frame.linear = tilt->axes * frame.linear;
         frame.shift = tilt->axes * frame.shift + tilt->origin;
+        frame.tilts_tool = tilt->axes[2] != core::Vec3(0.0, 0.0, 1.0);
     }
+    frame.tilts_tool |= transforms.follows_vectors;
     return frame;
 }
 

@@ -57,6 +57,7 @@ struct ProgramTransforms {
     MirrorImage mirror;
     std::optional<PlaneRotation> rotation;
     std::optional<TiltedPlane> tilt;
+    bool follows_vectors = false; // G43.5: motions say where the tool points to
     std::optional<PolarPositions> polar;
     std::optional<Position> before_rotation; // what the program called the place where G68 stood
 

@@ -33,6 +33,7 @@ void add(Digest& digest, const Offsets& offsets) {
         for (int column = 0; column < 3; ++column) digest.add(offsets.frame.linear[column][row]);
         digest.add(offsets.frame.shift[row]);
     }
+    digest.add(uint64_t{offsets.frame.tilts_tool});
 }
 
 void add(Digest& digest, const core::Vec3& vector) {
@@ -58,6 +59,7 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
         for (int column = 0; column < 3; ++column) add(digest, tilt->axes[column]);
         add(digest, tilt->origin);
     }
+    digest.add(uint64_t{transforms.follows_vectors});
     digest.add(uint64_t{transforms.polar.has_value()});
     if (const auto& polar = transforms.polar) {
         add_all(digest, polar->origin);
@@ -96,7 +98,7 @@ void add(Digest& digest, const ModalState& modal) {
     for (const Position* place :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *place);
-    for (const auto& value : {modal.feed, modal.polar_radius, modal.polar_angle}) digest.add(value);
+    digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
     add_id(digest, modal.selected_tool);
@@ -104,6 +106,8 @@ void add(Digest& digest, const ModalState& modal) {
     add_id(digest, modal.length_number);
     add(digest, modal.offsets);
     add(digest, modal.transforms);
+    digest.add(uint64_t{modal.way_home.has_value()});
+    if (modal.way_home) add_all(digest, *modal.way_home);
 }
 
 void add(Digest& digest, const Place& place) {

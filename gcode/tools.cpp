@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -74,6 +75,56 @@ core::Result<void> use_given_offset(Execution& execution) {
     return {};
 }
 
+/// G43.2: one more offset on top of what is on, from the table or from the block.
+core::Result<void> add_table_offset(Execution& execution, const Word& word) {
+    AxisValues sum = execution.modal().offsets.tool;
+    const Word* number = execution.statement.word('H');
+    AxisValues more{};
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* value = execution.statement.word(axis_letters[axis]))
+            more[axis] = axis_value(execution, axis, *value);
+    if (number) {
+        FEELER_TRY(const int entry, whole_number(*number));
+        const std::optional<double> length = length_under(*execution.state.tables, entry);
+        if (!length)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: nothing is known about length offset H{}", written(word), entry),
+                number->span);
+        more = offset_under(execution, entry, *length);
+    } else if (!execution.statement.has_axis_word()) {
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs an H word, or the offset itself as axis words", written(word)),
+            word.span);
+    }
+    for (size_t axis = 0; axis < axis_count; ++axis) sum[axis] += more[axis];
+    use_offset(execution, execution.modal().length_number, sum);
+    return {};
+}
+
+/// G43.4 and G43.5: the length is as under G43; what rotary axes do to the way of the tool is left
+/// to those who know the machine.
+core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
+    use_transforms(execution, transforms);
+    execution.warn(entry.word->span,
+                   fmt::format("{}: taken as G43; rotary axes are followed in the program's "
+                               "coordinates, not in those of the machine",
+                               written(*entry.word)),
+                   Severity::note);
+    return use_table_length(execution, *entry.word, +1.0);
+}
+
+/// Once a plain length offset or none is on, motions do not say where the tool points to.
+void leave_vectors(Execution& execution) {
+    if (!execution.modal().transforms.follows_vectors) return;
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = false;
+    use_transforms(execution, transforms);
+}
+
 } // namespace
 
 bool changes_length_alone(const Execution& execution) {
@@ -97,6 +148,8 @@ core::Result<void> change_tool(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
     if (!entry) return {};
     ModalState& modal = execution.modal();
+    execution.column = entry->word->span.column;
+    if (entry->code->tenths == tenths(61)) return name_tool(execution);
     if (!modal.selected_tool)
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word came before it",
@@ -118,11 +171,17 @@ core::Result<void> set_tool_length(Execution& execution) {
     if (!entry && changes_length_alone(execution))
         return use_table_length(execution, *execution.statement.word('H'), modal.length_sign);
     if (!entry) return {};
+    leave_vectors(execution);
     switch (entry->code->tenths) {
     case tenths(43):
         return use_table_length(execution, *entry->word, +1.0);
     case tenths(44):
         return use_table_length(execution, *entry->word, -1.0);
+    case tenths(43, 2):
+        return add_table_offset(execution, *entry->word);
+    case tenths(43, 4):
+    case tenths(43, 5):
+        return use_tool_centre_control(execution, *entry);
     case tenths(43, 1):
         modal.length_sign = 0.0;
         return use_given_offset(execution);

@@ -9,7 +9,7 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view letters_that_need_a_code = "DHIJKLPQR";
+constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 
 /// The code of the motion or cycle that a block without one goes on with.
@@ -28,8 +28,8 @@ bool names_second_home(const Execution& execution) {
            && place && place->value == 2.0;
 }
 
-/// A P that makes G54 another offset, or G30 another place.
-core::Result<void> refuse_more_places(const Execution& execution) {
+/// A P that makes G30 a place that nobody told.
+core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* place = statement.word('P');
     if (!place || !execution.dialect.p_names_more_places) return {};
@@ -40,22 +40,21 @@ core::Result<void> refuse_more_places(const Execution& execution) {
                                       "another one with G53",
                                       written(*place)),
                           place->span);
-    const CodeWord* offset = statement.of(ModalGroup::work_offset);
-    const auto uses = [](const CodeWord& entry) { return entry.code->uses('P'); };
-    if (offset && offset->code->tenths == tenths(54)
-        && std::none_of(statement.codes().begin(), statement.codes().end(), uses))
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: G54 with P is an extended work offset, these are not "
-                                      "supported yet: use G54 to G59",
-                                      written(*place)),
-                          place->span);
     return {};
+}
+
+/// G54 P3, which is G54.1 P3. A P that another code of the block wants is that one's.
+bool names_extended_offset(const Execution& execution) {
+    const CodeWord* offset = execution.statement.of(ModalGroup::work_offset);
+    return execution.dialect.has_extended_offsets && offset && offset->code->tenths == tenths(54);
 }
 
 bool is_used(const Execution& execution, char letter) {
     const Statement& statement = execution.statement;
     if (!statement.unknown_m_codes.empty()) return true;
     if (letter == 'H' && changes_length_alone(execution)) return true;
+    if (letter == 'P' && names_extended_offset(execution)) return true;
+    if (execution.modal().transforms.follows_vectors && letter >= 'I' && letter <= 'K') return true;
     if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
     if (std::any_of(statement.codes().begin(), statement.codes().end(), uses)) return true;
@@ -66,8 +65,11 @@ bool is_used(const Execution& execution, char letter) {
 
 core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
-    const std::string message = fmt::format("{}: nothing in this block uses it", written(word));
-    if (execution.dialect.unused_words_are_errors)
+    const bool exponent = word.letter == 'E'; // of a number, most likely
+    const std::string message =
+        fmt::format("{}: nothing in this block uses it{}", written(word),
+                    exponent ? "; an exponent such as 1E3 is written out" : "");
+    if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);
     return {};
@@ -80,7 +82,7 @@ double length_of(const Execution& execution, const Word& word) {
 }
 
 core::Result<void> check_words(Execution& execution) {
-    if (auto checked = refuse_more_places(execution); !checked) return checked;
+    if (auto checked = refuse_unknown_home(execution); !checked) return checked;
     for (const Word* word : execution.statement.unknown_m_codes)
         execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
                                                "builder; it is passed over",
