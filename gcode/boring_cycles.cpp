@@ -36,12 +36,6 @@ void shift(Drilling& hole, double sign) {
     hole.execution.traverse(end);
 }
 
-} // namespace
-
-bool works_from_the_back(const Dialect& dialect, int code) {
-    return code == tenths(77) || (code == tenths(87) && dialect.g87_is_back_boring);
-}
-
 void bore_finely(Drilling& hole) {
     const SpindleDirection direction = hole.execution.modal().spindle;
     warn_of_direction(hole);
@@ -79,6 +73,21 @@ void bore_and_retract_by_hand(Drilling& hole) {
     hole.execution.emit(ProgramStop{});
     hole.traverse(hole.clear);
     hole.turn(direction);
+}
+
+} // namespace
+
+bool works_from_the_back(const Dialect& dialect, int code) {
+    return code == tenths(77) || (code == tenths(87) && dialect.g87_is_back_boring);
+}
+
+void bore(Drilling& hole) {
+    if (works_from_the_back(hole.execution.dialect, hole.cycle.code))
+        bore_from_the_back(hole);
+    else if (hole.cycle.code == tenths(76))
+        bore_finely(hole);
+    else
+        bore_and_retract_by_hand(hole);
 }
 
 } // namespace gcode

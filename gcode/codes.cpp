@@ -18,7 +18,6 @@ constexpr DialectSet grbl = bit(DialectId::grbl);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
-constexpr std::string_view no_radius = "cutter radius compensation is not supported yet";
 constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_macro = "macro calls are not supported yet";
@@ -30,6 +29,10 @@ constexpr std::string_view no_other_change =
     "this way to change a tool is not supported yet: write M6";
 constexpr std::string_view no_pallet =
     "pallets are not supported yet: check the program of each pallet on its own";
+constexpr std::string_view no_pocket =
+    "pocket cycles are not supported yet: write their moves out with G1, G2 and G3";
+constexpr std::string_view no_engraving =
+    "engraving is not supported yet: write the letters out with G1, G2 and G3";
 
 // Sorted by letter and number. The groups are those of NISTIR 6556, table 4, where it has them.
 constexpr Code codes[] = {
@@ -50,8 +53,8 @@ constexpr Code codes[] = {
     {'G', tenths(9), exact_stop, "", fanuc, {}},
     {'G', tenths(10), action, "XYZPLRQIJH", every, {}},
     {'G', tenths(11), action, "", fanuc, {}},
-    {'G', tenths(12), action, "IJKQDLZ", haas, no_cycle},
-    {'G', tenths(13), action, "IJKQDLZ", haas, no_cycle},
+    {'G', tenths(12), action, "XYZIJKQDL", haas, no_pocket},
+    {'G', tenths(13), action, "XYZIJKQDL", haas, no_pocket},
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, {}},
     {'G', tenths(17), ModalGroup::plane, "", every, {}},
@@ -76,16 +79,17 @@ constexpr Code codes[] = {
     {'G', tenths(38, 4), motion, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(38, 5), motion, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(40), cutter_radius, "", every, {}},
-    {'G', tenths(41), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, no_radius},
-    {'G', tenths(42), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, no_radius},
+    {'G', tenths(41), cutter_radius, "D", mills, {}},
+    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, {}},
+    {'G', tenths(42), cutter_radius, "D", mills, {}},
+    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, {}},
     {'G', tenths(43), tool_length, "H", mills, {}},
     {'G', tenths(43, 1), tool_length, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(43, 2), tool_length, "HXYZ", linuxcnc, {}},
     {'G', tenths(43, 4), tool_length, "HPQR", fanuc, {}},
     {'G', tenths(43, 5), tool_length, "HIJKQ", fanuc, {}},
     {'G', tenths(44), tool_length, "H", fanuc, {}},
+    {'G', tenths(47), action, "XYZPEIJR", haas, no_engraving},
     {'G', tenths(49), tool_length, "", every, {}},
     {'G', tenths(50), scaling, "", fanuc, {}},
     {'G', tenths(50, 1), mirror, "XYZ", fanuc, {}},
@@ -115,6 +119,9 @@ constexpr Code codes[] = {
     {'G', tenths(68), rotation, "XYZRIJK", fanuc, {}},
     {'G', tenths(68, 2), rotation, "XYZIJKPQR", fanuc, {}},
     {'G', tenths(69), rotation, "", fanuc, {}},
+    {'G', tenths(70), action, "XYZIJL", haas, {}},
+    {'G', tenths(71), action, "XYZIJKL", haas, {}},
+    {'G', tenths(72), action, "XYZIJL", haas, {}},
     {'G', tenths(73), cycle, "XYZRQLPK", mills, {}},
     {'G', tenths(74), cycle, "XYZRQLPK", linuxcnc, no_cycle},
     {'G', tenths(74), cycle, "XYZRQLPKJ", fanuc, {}},
@@ -172,6 +179,7 @@ constexpr Code codes[] = {
     {'G', tenths(127), work_offset, "", haas, {}},
     {'G', tenths(128), work_offset, "", haas, {}},
     {'G', tenths(129), work_offset, "", haas, {}},
+    {'G', tenths(150), action, "XYZPIJKQRDS", haas, no_pocket},
     {'G', tenths(154), work_offset, "P", haas, {}},
     {'G', tenths(187), other, "PE", haas, {}},
     {'M', tenths(0), stopping, "", every, {}},

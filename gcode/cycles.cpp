@@ -31,6 +31,7 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
 
 /// I, J or K of a cycle that shifts the tool; K may be how often the cycle is repeated.
 const Word* shift_word(const Execution& execution, int code, size_t axis) {
+    if (hole_pattern(execution)) return nullptr;
     const bool shifts = code == tenths(76) || works_from_the_back(execution.dialect, code);
     if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
     return execution.statement.word("IJK"[axis]);
@@ -161,6 +162,18 @@ void bore_with_stop(Drilling& hole) {
     hole.execution.emit(Spindle{modal.spindle, modal.speed});
 }
 
+/// G85 and G89 come out as they went in; on some controls up to R only.
+void feed_out(Drilling& hole) {
+    if (hole.execution.dialect.boring_feeds_to_r) {
+        hole.feed(hole.r);
+        if (hole.clear != hole.r) hole.traverse(hole.clear);
+    } else if (hole.clear) {
+        hole.feed(*hole.clear);
+    } else {
+        hole.traverse(hole.clear);
+    }
+}
+
 void drill(Drilling& hole) {
     switch (hole.cycle.code) {
     case tenths(73):
@@ -178,13 +191,7 @@ void drill(Drilling& hole) {
     case tenths(89):
         hole.feed(hole.bottom);
         if (hole.cycle.code == tenths(89)) hole.dwell();
-        if (hole.execution.dialect.boring_feeds_to_r) {
-            hole.feed(hole.r);
-            if (hole.clear != hole.r) hole.traverse(hole.clear);
-        } else if (hole.clear)
-            hole.feed(*hole.clear);
-        else
-            hole.traverse(hole.clear);
+        feed_out(hole);
         return;
     case tenths(86):
         bore_with_stop(hole);
@@ -194,18 +201,10 @@ void drill(Drilling& hole) {
         tap(hole);
         return;
     case tenths(76):
-        bore_finely(hole);
-        return;
     case tenths(77):
-        bore_from_the_back(hole);
-        return;
     case tenths(87):
-        works_from_the_back(hole.execution.dialect, hole.cycle.code)
-            ? bore_from_the_back(hole)
-            : bore_and_retract_by_hand(hole);
-        return;
     case tenths(88):
-        bore_and_retract_by_hand(hole);
+        bore(hole);
         return;
     default: // G81
         hole.feed(hole.bottom);
@@ -215,6 +214,7 @@ void drill(Drilling& hole) {
 }
 
 core::Result<int> repeats_of(const Execution& execution) {
+    if (hole_pattern(execution)) return 1;
     const Word* word = execution.statement.word('L');
     if (!word && execution.dialect.repeats_with_k) word = execution.statement.word('K');
     if (!word) return 1;
@@ -265,6 +265,15 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     // hole is made at the level the axis has.
     const bool is_low = modal.position[normal] && *modal.position[normal] < hole.r;
     if (is_low && execution.dialect.cycle_stays_above_r) hole.traverse(hole.r);
+    if (const CodeWord* pattern = hole_pattern(execution)) {
+        FEELER_TRY(const std::vector<Position> holes,
+                   holes_of_pattern(execution, *pattern, target));
+        for (const Position& place : holes) {
+            approach(hole, place);
+            drill(hole);
+        }
+        return {};
+    }
     const Position step = modal.distance == DistanceMode::incremental
                               ? step_between(modal.position, target)
                               : zero_position;

@@ -40,20 +40,25 @@ struct Drilling {
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Rigid tapping" and "Peck rigid tapping cycle".
 void tap(Drilling& hole);
 
-/// G76: the tool leaves the wall at the bottom, before it comes out.
+/// Boring in which the tool is shifted or the operator retracts. G76: it leaves the wall at the
+/// bottom, before it comes out. G87, on Haas G77: through the hole off its middle, up from R to Z
+/// in a feed, out off the middle. G88, on Haas G87 too: the spindle stops, the operator retracts.
 ///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Fine boring cycle (G76)".
-void bore_finely(Drilling& hole);
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Fine boring cycle (G76)", "Back boring cycle
+///         (G87)", "Boring cycle (G88)"; Haas mill operator's manual 96-8000, G77, G87, G88.
+void bore(Drilling& hole);
 
-/// G87, Haas's G77: through the hole off its middle, up from R to Z in a feed, out off the middle.
-///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Back boring cycle (G87)".
-void bore_from_the_back(Drilling& hole);
+/// G70, G71 or G72 of a block, Haas's patterns of holes; null without.
+const CodeWord* hole_pattern(const Execution& execution);
 
-/// G88, Haas's G87: the spindle stops at the bottom and the operator retracts.
+/// Where a pattern's holes are: on a circle (G70), on an arc (G71), on a line from the start (G72).
 ///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Boring cycle (G88)".
-void bore_and_retract_by_hand(Drilling& hole);
+/// Source: Haas mill operator's manual 96-8000, "Bolt hole patterns".
+core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
+                                                     const CodeWord& entry, const Position& start);
+
+/// Drills a pattern with the cycle that is active; one in the same block does it by itself.
+core::Result<void> run_hole_pattern(Execution& execution);
 
 /// Whether a cycle works upwards, so that R lies below Z.
 bool works_from_the_back(const Dialect& dialect, int code);

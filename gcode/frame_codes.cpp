@@ -132,6 +132,22 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
+/// A contour that is moved aside cannot change its shape on the way.
+core::Result<void> check_contour_is_off(const Execution& execution, const CodeWord& entry) {
+    const ModalState& modal = execution.modal();
+    const int code = entry.code->tenths;
+    const bool is_on = modal.offsets.has_frame;
+    const bool cancels = code == tenths(50) || code == tenths(50, 1) || code == tenths(69);
+    if (modal.compensation == Side::none || entry.code->group == ModalGroup::polar
+        || (cancels && !is_on))
+        return {};
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{} between G41 or G42 and G40 is not supported yet: switch "
+                                  "cutter radius compensation off before",
+                                  written(*entry.word)),
+                      entry.word->span);
+}
+
 core::Result<void> change_transforms(Execution& execution, const CodeWord& entry) {
     ProgramTransforms& transforms = execution.modal().transforms;
     switch (entry.code->tenths) {
@@ -184,6 +200,7 @@ core::Result<void> set_frame(Execution& execution) {
     for (const ModalGroup group : {mirror, scaling, rotation, polar}) {
         const CodeWord* entry = execution.statement.of(group);
         if (!entry) continue;
+        if (auto checked = check_contour_is_off(execution, *entry); !checked) return checked;
         if (auto changed = change_transforms(execution, *entry); !changed) return changed;
         use_transforms(execution, execution.modal().transforms);
     }

@@ -34,6 +34,7 @@ constexpr Step steps[] = {
     select_plane,
     set_units,
     set_diameter_mode,
+    set_cutter_radius,
     set_tool_length,
     select_offset,
     set_path_mode,
@@ -274,15 +275,35 @@ Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment
 Interpreter::~Interpreter() = default;
 
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
-    if (state.ending != Ending::running) return nullptr;
-    keep(state, scratch_->before);
-    scratch_->undos.clear();
-    const uint32_t source = state.next.source;
-    auto found = scratch_->try_next(state);
-    if (found) return *found ? &scratch_->result : nullptr;
-    scratch_->take_back(state);
-    if (found.error().file.empty()) found.error().file = scratch_->library.program(source).file;
-    return tl::unexpected(std::move(found).error());
+    while (true) {
+        Contour& contour = state.contour;
+        if (!contour.ready.empty()) {
+            scratch_->result = std::move(contour.ready.front());
+            contour.ready.pop_front();
+            return &scratch_->result;
+        }
+        if (contour.failure) return tl::unexpected(*contour.failure);
+        if (state.ending != Ending::running) return nullptr;
+        keep(state, scratch_->before);
+        scratch_->undos.clear();
+        const uint32_t source = state.next.source;
+        auto found = scratch_->try_next(state);
+        const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
+        if (found && *found && straight_out) return &scratch_->result;
+        core::Result<void> taken;
+        if (found && *found)
+            taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
+        else if (found)
+            give_up(contour);
+        if (found && taken) continue;
+        core::Error error = found ? std::move(taken).error() : std::move(found).error();
+        scratch_->take_back(state);
+        if (error.file.empty()) error.file = scratch_->library.program(source).file;
+        if (contour.is_idle()) return tl::unexpected(std::move(error));
+        // What came before is complete but for the moves that waited for this one.
+        give_up(contour);
+        contour.failure = std::move(error);
+    }
 }
 
 InterpreterState initial_state(const Environment& environment) {
@@ -295,6 +316,7 @@ InterpreterState initial_state(const Environment& environment) {
         tables.work[i].origin = environment.work_offsets[i];
     tables.lengths = environment.length_offsets;
     tables.tool_lengths = environment.tool_lengths;
+    tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
     Position start = environment.start;

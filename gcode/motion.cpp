@@ -123,11 +123,13 @@ core::Result<void> move_as_modes_say(Execution& execution) {
 
 void Execution::traverse(const Position& end) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightTraverse{end});
 }
 
 void Execution::feed(const Position& end, double rate) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightFeed{end, rate});
 }
 

@@ -222,6 +222,11 @@ core::Result<void> set_local_offset(Execution& execution) {
 core::Result<void> set_axis_offset(Execution& execution) {
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
+    if (offsets.has_frame)
+        return core::fail(ErrorCode::invalid_value,
+                          "G92 cannot be used in coordinates that are scaled, reflected or turned: "
+                          "cancel that first with G50, G50.1 or G69",
+                          execution.statement.of(ModalGroup::action)->word->span);
     switch (execution.statement.of(ModalGroup::action)->code->tenths) {
     case tenths(92, 1):
         offsets.axis = modal.suspended_axis = zero_position;

@@ -91,9 +91,6 @@ TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
 }
 
 TEST(Codes, RefusedOnesSayWhy) {
-    EXPECT_EQ(error_of("G41 D1"), "1:1: G41: cutter radius compensation is not supported yet");
-    EXPECT_EQ(error_of("G0 X1\n G42 D1"),
-              "2:2: G42: cutter radius compensation is not supported yet");
     for (const std::string_view text : {"M98 P100", "G65 P9000"})
         EXPECT_THAT(error_of(text), HasSubstr("not supported yet")) << text;
 }

@@ -120,5 +120,42 @@ TEST(FanucCycle, ScalingLeavesPecksAsTheyAre) {
               " r1,10 r1,1 f1,-2 r1,1 r1,-1.5 f1,-4 r1,1");
 }
 
+/// Where a Haas program drills: the places along X and Y of its feeds.
+std::string holes(const std::string& text) {
+    const Ran ran = run_text("G21 G0 X10 Y20 Z20\n" + text, DialectId::haas);
+    if (ran.run.error) return ran.run.error->message;
+    std::string found;
+    for (const BlockResult& block : ran.run.blocks)
+        for (const CanonicalCommand& command : block.commands)
+            if (const auto* feed = std::get_if<StraightFeed>(&command))
+                found += fmt::format(" {:.4g},{:.4g}", *feed->end[0], *feed->end[1]);
+    return found;
+}
+
+TEST(HolePattern, G70DrillsACircle) {
+    const std::string circle = " 10,25 5,20 10,15 15,20";
+    EXPECT_EQ(holes("G81 Z-1 R1 F9 L0\nG70 I5 J90 L4\nG80"), circle);
+    EXPECT_EQ(holes("G81 Z-1 R1 F9 G70 I5 J90 L4\nG80"), circle);
+    EXPECT_EQ(holes("G81 Z-1 R1 F9 L0\nG70 X0 Y0 I5 L2"), " 5,0 -5,0");
+    EXPECT_EQ(holes("G76 Z-1 R1 Q0.1 F9 L0\nG70 I5 L2"), " 15,20 5,20");
+}
+
+TEST(HolePattern, G71DrillsAnArcAndG72ALine) {
+    EXPECT_EQ(holes("G81 Z-1 R1 F9 L0\nG71 I5 J0 K-90 L3"), " 15,20 10,15 5,20");
+    EXPECT_EQ(holes("G81 Z-1 R1 F9 L0\nG72 I5 J90 L3"), " 10,20 10,25 10,30");
+}
+
+TEST(HolePattern, PocketsAndEngravingAreRefusedWithACure) {
+    for (const std::string_view text : {"G12 I5 Z-1 F9", "G13 I5 Z-1 F9", "G150 P1 Z-1"})
+        EXPECT_THAT(error_of(text, DialectId::haas), HasSubstr("write their moves out"));
+    EXPECT_THAT(error_of("G47 P0 X1 Y1", DialectId::haas), HasSubstr("write the letters out"));
+}
+
+TEST(HolePattern, NeedsACycleAndItsWords) {
+    EXPECT_THAT(holes("G70 I5 L4"), HasSubstr("write one such as G81"));
+    EXPECT_THAT(holes("G81 Z-1 R1 F9 L0\nG70 I5"), HasSubstr("needs an L word"));
+    EXPECT_THAT(holes("G81 Z-1 R1 F9 L0\nG71 I5 L3"), HasSubstr("needs a K word"));
+}
+
 } // namespace
 } // namespace gcode

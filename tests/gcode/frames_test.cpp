@@ -149,6 +149,20 @@ TEST(Frames, G53AndG28GoToPlacesOfTheMachine) {
                      "G54 G0 X1 Y2\nG53 G0 X-5 Y-6\nG91 G28 Y0");
 }
 
+TEST(Frames, G92IsRefusedWhereCoordinatesAreTurned) {
+    EXPECT_THAT(error_of("G68 X0 Y0 R30\nG92 X5"), HasSubstr("cancel that first"));
+    EXPECT_EQ(error_of("G68 X0 Y0 R30\nG69\nG92 X5"), "");
+}
+
+TEST(Frames, ScalingLeavesTheRadiusOfTheCutter) {
+    // Beside a line that is scaled by 2, the tool stays 3 mm away.
+    const std::string entry = "G10 L12 P5 R3\nG0 X0 Y0\n";
+    expect_same_path(entry + "G51 X0 Y0 Z0 P2.\nG41 D5 G1 X5 Y5 F9\nX10 Y5\nG40 X20 Y20\nG50",
+                     entry + "G41 D5 G1 X10 Y10 F9\nX20 Y10\nG40 X40 Y40", DialectId::haas);
+    EXPECT_THAT(error_of(entry + "G41 D5 G1 X5 Y5 F9\nG68 X0 Y0 R9"),
+                HasSubstr("switch cutter radius compensation off before"));
+}
+
 TEST(Frames, CyclesDrillTurnedHoles) {
     expect_same_path("G0 X0 Y0 Z20\nG68 X0 Y0 R90\nG99 G81 X10 Y1 Z-2 R3 F100\nX20\nG80 G69",
                      "G0 X0 Y0 Z20\nG99 G81 X-1 Y10 Z-2 R3 F100\nY20\nG80");
