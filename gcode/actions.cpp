@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "gcode/execution.h"
+#include "gcode/cycles.h"
 
 namespace gcode {
 namespace {
@@ -25,6 +25,16 @@ core::Result<void> act(Execution& execution) {
     switch (entry->code->tenths) {
     case tenths(10):
         return write_offset(execution);
+    case tenths(27):
+        return check_home(execution);
+    case tenths(29):
+        return return_from_home(execution);
+    case tenths(31):
+        return skip_move(execution);
+    case tenths(70):
+    case tenths(71):
+    case tenths(72):
+        return run_hole_pattern(execution);
     case tenths(28):
     case tenths(30):
         return go_home(execution);

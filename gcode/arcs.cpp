@@ -5,6 +5,7 @@
 
 #include "gcode/arc_geometry.h"
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -155,6 +156,7 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
     if (modal.leaves_contour && execution.dialect.arc_after_contour_is_error)
         return core::fail(ErrorCode::syntax,
                           "the first move behind G40 must be straight: an arc would not start "

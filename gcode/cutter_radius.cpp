@@ -81,6 +81,20 @@ core::Result<double> diameter_of(Execution& execution, const CodeWord& entry) {
     return 0.0;
 }
 
+/// How much G51 scales the contour, which leaves the tool as it is.
+core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord& entry) {
+    const auto& scaling = execution.modal().transforms.scaling;
+    if (!scaling) return 1.0;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    const double first = std::abs(scaling->factors[static_cast<int>(axes.first)]);
+    if (first == std::abs(scaling->factors[static_cast<int>(axes.second)])) return first;
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{}: cutter radius compensation of a contour that G51 scales "
+                                  "unequally is not supported: scale both axes alike",
+                                  written(*entry.word)),
+                      entry.word->span);
+}
+
 } // namespace
 
 core::Result<void> set_cutter_radius(Execution& execution) {
@@ -118,7 +132,8 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     FEELER_TRY(const double diameter, diameter_of(execution, *entry));
     const bool left = entry->code->tenths / 10 == 41;
     modal.compensation = left ? Side::left : Side::right;
-    modal.compensation_radius = diameter / 2.0;
+    FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
+    modal.compensation_radius = diameter / 2.0 / stretch;
     return {};
 }
 

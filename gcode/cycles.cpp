@@ -1,8 +1,8 @@
+#include "gcode/cycles.h"
+
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "gcode/execution.h"
 
 namespace gcode {
 namespace {
@@ -11,29 +11,15 @@ using core::ErrorCode;
 
 constexpr size_t most_commands = 200000; // of one block
 
-/// A cycle with its levels along the drilling axis, program coordinates.
-struct Drilling {
-    Execution& execution;
-    CannedCycle cycle;
-    size_t first, second, normal;
-    double r, bottom;
-    std::optional<double> clear; // where it retracts to
-    double rate;
+bool taps(int code) { return code == tenths(74) || code == tenths(84); }
 
-    void traverse(std::optional<double> level) {
-        Position end = execution.modal().position;
-        end[normal] = level;
-        execution.traverse(end);
-    }
-    void feed(double level) {
-        Position end = execution.modal().position;
-        end[normal] = level;
-        execution.feed(end, rate);
-    }
-    void dwell() {
-        if (cycle.dwell) execution.emit(Dwell{*cycle.dwell});
-    }
-};
+/// How often Fanuc's scaling stretches the drilling axis; Q and what G73 and G83 draw back are not.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Scaling", invalid scaling.
+double stretch_along(const Execution& execution, size_t normal) {
+    const auto& scaling = execution.modal().transforms.scaling;
+    return scaling ? std::abs(scaling->factors[static_cast<int>(normal)]) : 1.0;
+}
 
 tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycle& cycle,
                                     char letter) {
@@ -41,6 +27,14 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
                       fmt::format("G{} needs {} word", cycle.code / 10,
                                   letter == 'R' ? "an R" : fmt::format("a {}", letter)),
                       moving_word(execution).span);
+}
+
+/// I, J or K of a cycle that shifts the tool; K may be how often the cycle is repeated.
+const Word* shift_word(const Execution& execution, int code, size_t axis) {
+    if (hole_pattern(execution)) return nullptr;
+    const bool shifts = code == tenths(76) || works_from_the_back(execution.dialect, code);
+    if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
+    return execution.statement.word("IJK"[axis]);
 }
 
 /// The modal cycle with the words of this block taken in.
@@ -51,8 +45,11 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
         cycle.bottom = length_of(execution, *word);
     if (const Word* word = statement.word('R')) cycle.r = length_of(execution, *word);
     if (const Word* word = statement.word('Q')) {
-        cycle.peck = length_of(execution, *word);
-        if (*cycle.peck <= 0.0)
+        const double depth = length_of(execution, *word);
+        cycle.peck = execution.dialect.peck_sign_is_ignored ? std::abs(depth) : depth;
+        if (taps(cycle.code) && depth == 0.0)
+            cycle.peck.reset();
+        else if (*cycle.peck <= 0.0)
             return core::fail(ErrorCode::invalid_value,
                               fmt::format("{}: a peck goes deeper than 0", written(*word)),
                               word->span);
@@ -66,6 +63,9 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
     if (!cycle.r) return missing(execution, cycle, 'R');
     const bool pecks = cycle.code == tenths(73) || cycle.code == tenths(83);
     if (pecks && !cycle.peck) return missing(execution, cycle, 'Q');
+    for (size_t i = 0; i < 3; ++i)
+        if (const Word* word = shift_word(execution, cycle.code, i))
+            cycle.shift[i] = length_of(execution, *word);
     if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
     return cycle;
 }
@@ -74,7 +74,23 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
 core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
                                 double bottom) {
     const core::SourceSpan where = moving_word(execution).span;
-    if (r < bottom)
+    const bool upwards = works_from_the_back(execution.dialect, cycle.code);
+    if (upwards && r > bottom)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{} works upwards from R to {}, and R is at {:.4f} mm, above "
+                        "{:.4f} mm",
+                        cycle.code / 10, axis_letters[axes_of(execution.modal().plane).normal], r,
+                        bottom),
+            where);
+    if (upwards && execution.modal().retract == RetractMode::r_level)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{} comes out at the initial level: G99 would leave the tool "
+                        "below the work; write G98",
+                        cycle.code / 10),
+            where);
+    if (!upwards && r < bottom)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
                                       "{:.4f} mm",
@@ -91,6 +107,15 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
             fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
             where);
     return {};
+}
+
+/// A tap that is driven with the spindle needs no spindle that turns already.
+core::Result<double> cycle_rate(const Execution& execution, const CannedCycle& cycle) {
+    const ModalState& modal = execution.modal();
+    const bool with_spindle =
+        modal.feed_mode == FeedMode::per_turn && modal.feed && modal.speed > 0;
+    if (taps(cycle.code) && with_spindle && *modal.feed > 0.0) return *modal.feed * modal.speed;
+    return feed_rate(execution, std::nullopt);
 }
 
 core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
@@ -110,14 +135,16 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     std::optional<double> clear = cycle.initial_level;
     const bool too_low = execution.dialect.cycle_stays_above_r && clear && *clear < r;
     if (modal.retract == RetractMode::r_level || too_low) clear = r;
-    FEELER_TRY(const double rate, feed_rate(execution, std::nullopt));
+    FEELER_TRY(const double rate, cycle_rate(execution, cycle));
     return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
 }
 
 /// G83: out of the hole after each peck; G73: only a little back.
 void peck(Drilling& hole, bool out_of_the_hole) {
-    const double back = hole.execution.dialect.peck_clearance;
-    for (double depth = hole.r - *hole.cycle.peck; depth > hole.bottom; depth -= *hole.cycle.peck) {
+    const double stretch = stretch_along(hole.execution, hole.normal);
+    const double back = hole.execution.dialect.peck_clearance / stretch;
+    const double step = *hole.cycle.peck / stretch;
+    for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
         hole.feed(depth);
         const bool too_low = hole.clear && *hole.clear < hole.r;
         if (out_of_the_hole) hole.traverse(too_low ? hole.r : hole.clear);
@@ -133,6 +160,18 @@ void bore_with_stop(Drilling& hole) {
     hole.execution.emit(Spindle{core::SpindleDirection::stopped, 0.0});
     hole.traverse(hole.clear);
     hole.execution.emit(Spindle{modal.spindle, modal.speed});
+}
+
+/// G85 and G89 come out as they went in; on some controls up to R only.
+void feed_out(Drilling& hole) {
+    if (hole.execution.dialect.boring_feeds_to_r) {
+        hole.feed(hole.r);
+        if (hole.clear != hole.r) hole.traverse(hole.clear);
+    } else if (hole.clear) {
+        hole.feed(*hole.clear);
+    } else {
+        hole.traverse(hole.clear);
+    }
 }
 
 void drill(Drilling& hole) {
@@ -152,13 +191,20 @@ void drill(Drilling& hole) {
     case tenths(89):
         hole.feed(hole.bottom);
         if (hole.cycle.code == tenths(89)) hole.dwell();
-        if (hole.clear)
-            hole.feed(*hole.clear);
-        else
-            hole.traverse(hole.clear);
+        feed_out(hole);
         return;
     case tenths(86):
         bore_with_stop(hole);
+        return;
+    case tenths(74):
+    case tenths(84):
+        tap(hole);
+        return;
+    case tenths(76):
+    case tenths(77):
+    case tenths(87):
+    case tenths(88):
+        bore(hole);
         return;
     default: // G81
         hole.feed(hole.bottom);
@@ -168,6 +214,7 @@ void drill(Drilling& hole) {
 }
 
 core::Result<int> repeats_of(const Execution& execution) {
+    if (hole_pattern(execution)) return 1;
     const Word* word = execution.statement.word('L');
     if (!word && execution.dialect.repeats_with_k) word = execution.statement.word('K');
     if (!word) return 1;
@@ -184,7 +231,8 @@ void approach(Drilling& hole, const Position& target) {
     over[hole.second] = target[hole.second];
     if (climbs && hole.clear) over[hole.normal] = hole.clear;
     execution.traverse(over);
-    if (over[hole.normal] != hole.r) hole.traverse(hole.r);
+    const bool upwards = works_from_the_back(execution.dialect, hole.cycle.code);
+    if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
 }
 
 /// The same step again, for the holes of L under G91.
@@ -217,6 +265,15 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     // hole is made at the level the axis has.
     const bool is_low = modal.position[normal] && *modal.position[normal] < hole.r;
     if (is_low && execution.dialect.cycle_stays_above_r) hole.traverse(hole.r);
+    if (const CodeWord* pattern = hole_pattern(execution)) {
+        FEELER_TRY(const std::vector<Position> holes,
+                   holes_of_pattern(execution, *pattern, target));
+        for (const Position& place : holes) {
+            approach(hole, place);
+            drill(hole);
+        }
+        return {};
+    }
     const Position step = modal.distance == DistanceMode::incremental
                               ? step_between(modal.position, target)
                               : zero_position;

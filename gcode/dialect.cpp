@@ -46,12 +46,17 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .lone_h_is_length_offset = false,
                               .p_names_more_places = false,
                               .local_offset_is_axis_offset = true,
-                              .p0_is_active_offset = true,
                               .offset_writes_follow_g91 = false,
                               .work_offsets_turn = true,
                               .feed_before_units = true,
                               .g98_cycle_starts_high = true,
                               .cycle_stays_above_r = true,
+                              .has_extended_offsets = false,
+                              .diameters_in_tool_entries = false,
+                              .g87_is_back_boring = false,
+                              .boring_feeds_to_r = false,
+                              .peck_sign_is_ignored = false,
+                              .scale_without_point_is_thousandths = false,
                               .repeats_with_k = false,
                               .tape_mark_ends_program = true,
                               .repeated_codes_are_errors = true,
@@ -92,12 +97,17 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .lone_h_is_length_offset = true,
                            .p_names_more_places = true,
                            .local_offset_is_axis_offset = false,
-                           .p0_is_active_offset = false,
                            .offset_writes_follow_g91 = true,
                            .work_offsets_turn = false,
                            .feed_before_units = false,
                            .g98_cycle_starts_high = false,
                            .cycle_stays_above_r = false,
+                           .has_extended_offsets = true,
+                           .diameters_in_tool_entries = false,
+                           .g87_is_back_boring = true,
+                           .boring_feeds_to_r = true,
+                           .peck_sign_is_ignored = true,
+                           .scale_without_point_is_thousandths = true,
                            .repeats_with_k = true,
                            .tape_mark_ends_program = false,
                            .repeated_codes_are_errors = false,
@@ -126,6 +136,9 @@ constexpr Dialect haas = [] {
     entry.name = "haas";
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
+    entry.diameters_in_tool_entries = true;
+    entry.g87_is_back_boring = false;
+    entry.scale_without_point_is_thousandths = false;
     entry.repeats_with_k = false;
     return entry;
 }();

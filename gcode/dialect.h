@@ -45,15 +45,20 @@ struct Dialect {
     bool lone_h_is_length_offset;             // H without G43, while a length offset is on
     bool p_names_more_places;                 // G54 P1, G30 P3
     bool local_offset_is_axis_offset;         // G52 and G92 write the same place
-    bool p0_is_active_offset;                 // G10 L2 P0; else the external offset
     bool offset_writes_follow_g91;            // G10 L2 under G91 adds
     bool work_offsets_turn;                   // G10 L2 R
     bool feed_before_units;                   // F is read in the units of the blocks before
     bool g98_cycle_starts_high;     // under G98 the way to the hole climbs to the initial level
     bool cycle_stays_above_r;       // from below R a cycle first climbs to R, and G98 ends there
-    bool repeats_with_k;            // K repeats a canned cycle, as L does
-    bool tape_mark_ends_program;    // a second % is as good as M2
-    bool repeated_codes_are_errors; // the same G code twice in a block
+    bool has_extended_offsets;      // G54.1 P1; G10 L20 P1 writes it
+    bool diameters_in_tool_entries; // G10 L12 R is a diameter, else a radius
+    bool g87_is_back_boring;        // else boring with a retract by hand
+    bool boring_feeds_to_r;         // G85 and G89 climb beyond R in a rapid
+    bool peck_sign_is_ignored;      // Q-2 pecks as Q2
+    bool scale_without_point_is_thousandths; // G51 P2000 doubles
+    bool repeats_with_k;                     // K repeats a canned cycle, as L does
+    bool tape_mark_ends_program;             // a second % is as good as M2
+    bool repeated_codes_are_errors;          // the same G code twice in a block
 
     // the language around the words
     ExpressionSyntax expressions;

@@ -87,6 +87,7 @@ core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44
 core::Result<void> select_offset(Execution& execution);         // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution);     // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
+core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
 core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
 core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60 M99
@@ -95,6 +96,9 @@ core::Result<void> write_offset(Execution& execution);               // G10
 core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
 core::Result<void> name_tool(Execution& execution);                  // M61
 core::Result<void> go_home(Execution& execution);                    // G28 G30
+core::Result<void> check_home(Execution& execution);                 // G27
+core::Result<void> return_from_home(Execution& execution);           // G29
+core::Result<void> skip_move(Execution& execution);                  // G31
 core::Result<void> store_home(Execution& execution);                 // G28.1 G30.1
 core::Result<void> set_local_offset(Execution& execution);           // G52
 core::Result<void> set_axis_offset(Execution& execution);            // G92 to G92.3
@@ -102,5 +106,14 @@ core::Result<void> move_along_arc(Execution& execution);             // G2 G3
 core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
 core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
 core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
+
+/// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
+/// work offset; L3, L50, L52: warned of and passed over.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Entering compensation values from a program", and
+///         B-63944EN, 7.2.2.
+core::Result<void> write_fanuc_entry(Execution& execution, int kind);
+core::Result<void> write_external_offset(Execution& execution);
+void pass_over_data(Execution& execution, const Word& kind);
 
 } // namespace gcode

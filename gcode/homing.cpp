@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
@@ -32,15 +34,76 @@ core::Result<void> go_home(Execution& execution) {
         FEELER_TRY(const Position between, target_of(execution));
         execution.traverse(between);
     }
+    modal.way_home = machine_from_program(modal.offsets, modal.position);
+    const Position home = home_of(execution, entry);
+    Position machine = machine_from_program(modal.offsets, modal.position);
+    std::array<bool, axis_count> moves{};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        moves[axis] = all || execution.statement.word(axis_letters[axis]);
+        if (moves[axis]) machine[axis] = home[axis];
+    }
+    // In a turned frame a motion along one axis of the machine changes all three coordinates.
+    const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
     // What a tool is offset by along rotary axes does not shift where these go.
     Offsets offsets = modal.offsets;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (is_rotary(axis)) offsets.tool[axis] = 0.0;
-    const Position home = program_from_machine(offsets, home_of(execution, entry));
+    const Position place = program_from_machine(offsets, machine);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (all || execution.statement.word(axis_letters[axis])) end[axis] = home[axis];
+        if (moves[axis] || (turned && axis < 3)) end[axis] = place[axis];
     execution.traverse(end);
+    return {};
+}
+
+core::Result<void> check_home(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    const ModalState& modal = execution.modal();
+    FEELER_TRY(const Position end, target_of(execution));
+    execution.traverse(end);
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        const std::optional<double>& home = modal.home[axis];
+        if (!word || !home || !machine[axis] || std::abs(*machine[axis] - *home) < 0.002) continue;
+        execution.warn(
+            word->span,
+            fmt::format("{}: this is not the reference point: the machine is at {}{:.3f} "
+                        "and the point at {:.3f}, so the control stops here",
+                        written(*entry.word), axis_letters[axis], *machine[axis], *home));
+    }
+    return {};
+}
+
+core::Result<void> return_from_home(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    ModalState& modal = execution.modal();
+    execution.result.is_cycle = true;
+    if (!modal.way_home)
+        return core::fail(core::ErrorCode::missing_value,
+                          "G29 goes back by the place that G28 passed, and no G28 came before it",
+                          entry.word->span);
+    const Position between = program_from_machine(modal.offsets, *modal.way_home);
+    Position over = modal.position;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (execution.statement.word(axis_letters[axis])) over[axis] = between[axis];
+    execution.traverse(over);
+    // Under G91 the words count from the place between.
+    FEELER_TRY(const Position end, target_of(execution));
+    execution.traverse(end);
+    return {};
+}
+
+core::Result<void> skip_move(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(const double rate,
+               feed_rate(execution, way_between(execution.modal().position, end)));
+    execution.warn(entry.word->span,
+                   fmt::format("{}: where it is stopped is not known here; it is taken to its end",
+                               written(*entry.word)));
+    execution.modal().position = end;
+    execution.emit(StraightProbe{end, rate, true, false});
     return {};
 }
 

@@ -40,6 +40,7 @@ constexpr Step steps[] = {
     set_path_mode,
     set_distance_mode,
     set_retract_mode,
+    set_frame,
     act,
     move,
     stop,

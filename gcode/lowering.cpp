@@ -109,6 +109,7 @@ struct Visitor {
             if (axis >= 3 && there[axis] != lowering.machine[axis] && !lowering.other_axis)
                 lowering.other_axis = axis;
         }
+        lowering.moved_tilted |= lowering.offsets.frame.tilts_tool;
         motion.to = linear_axes(there);
         motion.feed = feed;
         lowering.machine = there;

@@ -14,6 +14,7 @@ struct Lowering {
     Position machine;                   // gauge line
     double spindle_speed = 0.0;         // rev/min
     std::optional<size_t> other_axis{}; // the first axis beyond X, Y and Z that was moved
+    bool moved_tilted = false;          // moved while the tool is meant to leave the direction of Z
 
     /// What a command does to the machine, in machine coordinates; empty for modes and messages.
     ///

@@ -7,6 +7,7 @@
 #include "core/base/ids.h"
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
+#include "gcode/program_transforms.h"
 
 namespace gcode {
 
@@ -90,6 +91,8 @@ struct ModalState {
     std::optional<core::OffsetNumber> length_number;
     double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
     Offsets offsets;
+    std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
+    ProgramTransforms transforms;     // `offsets.frame` is made of them
 
     bool operator==(const ModalState&) const = default;
 };

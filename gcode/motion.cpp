@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -20,6 +21,16 @@ bool is_straight(std::optional<MotionCode> motion) {
 }
 
 bool is_arc(std::optional<MotionCode> motion) { return motion == tenths(2) || motion == tenths(3); }
+
+/// Whether the words of the plane are a radius and an angle (G16).
+bool moves_by_radius_and_angle(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (!modal.transforms.polar || execution.statement.taker_of_axis_words()) return false;
+    const PlaneAxes axes = axes_of(modal.plane);
+    return !in_machine_coordinates(execution)
+           && (execution.statement.word(axis_letters[axes.first])
+               || execution.statement.word(axis_letters[axes.second]));
+}
 
 core::Result<void> move_straight(Execution& execution, bool rapid) {
     FEELER_TRY(const Position end, target_of(execution));
@@ -97,6 +108,15 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     if (modal.cycle || !is_straight(modal.motion))
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
     return move_straight(execution, modal.motion == tenths(0));
+}
+
+core::Result<void> move_as_modes_say(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.cycle) return run_canned_cycle(execution);
+    if (!modal.motion) return refuse_without_mode(execution);
+    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
+    if (is_arc(modal.motion)) return move_along_arc(execution);
+    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace
@@ -187,15 +207,20 @@ core::Result<Position> target_of(const Execution& execution) {
     if (execution.statement.polar_radius || execution.statement.polar_angle)
         if (auto placed = place_polar(execution, target); !placed)
             return tl::unexpected(std::move(placed).error());
+    const bool polar = moves_by_radius_and_angle(execution);
+    if (polar) place_by_radius_and_angle(execution, target);
+    const PlaneAxes plane = axes_of(modal.plane);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
-        if (!word) continue;
+        if (!word || (polar && (axis == plane.first || axis == plane.second))) continue;
         const double value = axis_value(execution, axis, *word);
         if (modal.distance == DistanceMode::absolute)
             target[axis] = value;
         else if (target[axis])
             *target[axis] += value;
     }
+    if (const auto axis = axis_left_out_of_rotation(execution))
+        target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;
 }
 
@@ -238,13 +263,12 @@ core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
     if (!has_motion_words(execution) && !cycle_words) return {};
-    const ModalState& modal = execution.modal();
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
-    if (modal.cycle) return run_canned_cycle(execution);
-    if (!modal.motion) return refuse_without_mode(execution);
-    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    if (is_arc(modal.motion)) return move_along_arc(execution);
-    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
+    if (auto taken = take_polar_words(execution); !taken) return taken;
+    warn_of_axis_left_out(execution);
+    if (auto moved = move_as_modes_say(execution); !moved) return moved;
+    forget_place_before_rotation(execution);
+    return {};
 }
 
 } // namespace gcode

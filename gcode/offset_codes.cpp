@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
@@ -14,22 +16,27 @@ core::Result<size_t> work_offset_index(const Execution& execution, const CodeWor
         return core::fail(ErrorCode::missing_value,
                           "G10 does not say which work offset: it needs a P word",
                           entry.word->span);
-    FEELER_TRY(const int number, whole_number(*word, 0, plain_offset_count));
-    if (number > 0) return static_cast<size_t>(number - 1);
-    if (!execution.dialect.p0_is_active_offset)
-        return core::fail(ErrorCode::unsupported,
-                          "P0: the external work offset is not supported yet", word->span);
-    return execution.modal().offsets.active;
+    const bool extended = execution.dialect.has_extended_offsets;
+    if (extended && execution.statement.word('L')->value == 20.0) {
+        FEELER_TRY(const int number, whole_number(*word, 1, extended_offset_count));
+        return plain_offset_count + static_cast<size_t>(number - 1);
+    }
+    FEELER_TRY(const int number, whole_number(*word, 0, extended ? 6 : plain_offset_count));
+    return number > 0 ? static_cast<size_t>(number - 1) : execution.modal().offsets.active;
 }
 
-/// G10 L2: the origin itself, and how far it is turned. Under G91 some controls add to it.
-void write_origin(const Execution& execution, WorkOffset& offset) {
+/// The origin or shift as the words of G10 L2 leave it. Under G91 some controls add to it.
+void write_values(const Execution& execution, AxisValues& values) {
     const bool adds = execution.dialect.offset_writes_follow_g91
                       && execution.modal().distance == DistanceMode::incremental;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (const Word* word = execution.statement.word(axis_letters[axis]))
-            offset.origin[axis] =
-                (adds ? offset.origin[axis] : 0.0) + axis_value(execution, axis, *word);
+            values[axis] = (adds ? values[axis] : 0.0) + axis_value(execution, axis, *word);
+}
+
+/// G10 L2: the origin itself, and how far it is turned.
+void write_origin(const Execution& execution, WorkOffset& offset) {
+    write_values(execution, offset.origin);
     if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
 }
 
@@ -76,6 +83,51 @@ WorkOffset in_effect(const Tables& tables, size_t index) {
     return offset;
 }
 
+/// The work offset a code selects: G54 to G59.3; G54.1 P, G54 P, Haas's G154 P and G110 to G129.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, 7.2.6 "Adding workpiece coordinate systems"; Haas
+///         mill operator's manual 96-8000, G110 to G129 and G154.
+core::Result<size_t> selected_offset(const Execution& execution, const CodeWord& entry) {
+    const int code = entry.code->tenths;
+    const Word* word = execution.statement.word('P');
+    if (code >= tenths(110) && code <= tenths(129))
+        return plain_offset_count + static_cast<size_t>(code / 10 - 110);
+    const bool is_numbered = code == tenths(54, 1) || code == tenths(154);
+    if (is_numbered && !word)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} does not say which work offset: it needs a P word",
+                                      written(*entry.word)),
+                          entry.word->span);
+    const auto wants_p = [](const CodeWord& other) { return other.code->uses('P'); };
+    const std::span<const CodeWord> codes = execution.statement.codes();
+    const bool is_free = std::none_of(codes.begin(), codes.end(), wants_p);
+    const bool is_g54_p =
+        execution.dialect.has_extended_offsets && code == tenths(54) && word && is_free;
+    if (is_numbered || is_g54_p) {
+        const int most = code == tenths(154) ? 99 : static_cast<int>(extended_offset_count);
+        FEELER_TRY(const int number, whole_number(*word, 1, most));
+        return plain_offset_count + static_cast<size_t>(number - 1);
+    }
+    return static_cast<size_t>(code <= tenths(59) ? (code - tenths(54)) / 10
+                                                  : 5 + code - tenths(59));
+}
+
+core::Result<void> write_work_offset(Execution& execution, const CodeWord& entry,
+                                     const Word& kind) {
+    const Word* number = execution.statement.word('P');
+    const bool extended = execution.dialect.has_extended_offsets;
+    if (extended && kind.value == 2.0 && number && number->value == 0.0)
+        return write_external_offset(execution);
+    FEELER_TRY(const size_t index, work_offset_index(execution, entry));
+    WorkOffset offset = work_offset(*execution.state.tables, index);
+    if (kind.value == 2.0 || extended)
+        write_origin(execution, offset);
+    else if (auto done = write_origin_here(execution, offset); !done)
+        return done;
+    writable_work_offset(execution.state.tables.write(), index) = offset;
+    return {};
+}
+
 void use(Execution& execution, const Offsets& offsets) {
     change_offsets(execution, offsets);
     execution.emit(SetOffset{offsets});
@@ -111,9 +163,7 @@ core::Result<void> select_offset(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
     if (!entry) return {};
     Offsets offsets = execution.modal().offsets;
-    const int code = entry->code->tenths;
-    offsets.active =
-        static_cast<size_t>(code <= tenths(59) ? (code - tenths(54)) / 10 : 5 + code - tenths(59));
+    FEELER_TRY(offsets.active, selected_offset(execution, *entry));
     offsets.work = in_effect(*execution.state.tables, offsets.active);
     use(execution, offsets);
     return {};
@@ -130,20 +180,26 @@ core::Result<void> write_offset(Execution& execution) {
     const bool is_tool = kind->value == 1.0 || kind->value == 10.0 || kind->value == 11.0;
     if (is_tool && execution.dialect.tool_entries_by_axes)
         return write_tool_entry(execution, static_cast<int>(kind->value));
+    if (execution.dialect.has_extended_offsets) {
+        if (kind->value >= 10.0 && kind->value <= 13.0) {
+            FEELER_TRY(const int table, whole_number(*kind));
+            return write_fanuc_entry(execution, table);
+        }
+        if (kind->value == 3.0 || kind->value == 50.0 || kind->value == 52.0) {
+            pass_over_data(execution, *kind);
+            return {};
+        }
+    }
     if (kind->value != 2.0 && kind->value != 20.0)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: only G10 L2 and L20 are supported yet", written(*kind)),
+                          fmt::format("{}: this kind of G10 is not supported yet; L2 and L20 write "
+                                      "work offsets",
+                                      written(*kind)),
                           kind->span);
-    FEELER_TRY(const size_t index, work_offset_index(execution, entry));
     if (auto checked = check_turn(execution); !checked) return checked;
-    WorkOffset offset = work_offset(*execution.state.tables, index);
-    if (kind->value == 2.0)
-        write_origin(execution, offset);
-    else if (auto done = write_origin_here(execution, offset); !done)
-        return done;
-    writable_work_offset(execution.state.tables.write(), index) = offset;
+    if (auto done = write_work_offset(execution, entry, *kind); !done) return done;
     Offsets offsets = execution.modal().offsets;
-    if (index == offsets.active) offsets.work = in_effect(*execution.state.tables, index);
+    offsets.work = in_effect(*execution.state.tables, offsets.active);
     use(execution, offsets);
     return {};
 }
@@ -168,6 +224,11 @@ core::Result<void> set_local_offset(Execution& execution) {
 core::Result<void> set_axis_offset(Execution& execution) {
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
+    if (offsets.has_frame)
+        return core::fail(ErrorCode::invalid_value,
+                          "G92 cannot be used in coordinates that are scaled, reflected or turned: "
+                          "cancel that first with G50, G50.1 or G69",
+                          execution.statement.of(ModalGroup::action)->word->span);
     switch (execution.statement.of(ModalGroup::action)->code->tenths) {
     case tenths(92, 1):
         offsets.axis = modal.suspended_axis = zero_position;

@@ -24,6 +24,7 @@ struct WorkOffset {
 struct ProgramFrame {
     core::Mat3 linear = core::Mat3(1.0);
     core::Vec3 shift = core::Vec3(0.0);
+    bool tilts_tool = false; // the tool is meant to leave the direction of Z
 
     bool operator==(const ProgramFrame&) const = default;
 };

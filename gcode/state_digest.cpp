@@ -33,6 +33,41 @@ void add(Digest& digest, const Offsets& offsets) {
         for (int column = 0; column < 3; ++column) digest.add(offsets.frame.linear[column][row]);
         digest.add(offsets.frame.shift[row]);
     }
+    digest.add(uint64_t{offsets.frame.tilts_tool});
+}
+
+void add(Digest& digest, const core::Vec3& vector) {
+    for (int axis = 0; axis < 3; ++axis) digest.add(vector[axis]);
+}
+
+void add(Digest& digest, const ProgramTransforms& transforms) {
+    digest.add(uint64_t{transforms.scaling.has_value()});
+    if (transforms.scaling) {
+        add(digest, transforms.scaling->factors);
+        add(digest, transforms.scaling->centre);
+    }
+    for (const bool axis : transforms.mirror.axes) digest.add(uint64_t{axis});
+    add(digest, transforms.mirror.place);
+    digest.add(uint64_t{transforms.rotation.has_value()});
+    if (const auto& rotation = transforms.rotation) {
+        digest.add(number_of(2 * rotation->normal + int(rotation->is_reversed)));
+        add(digest, rotation->centre);
+        digest.add(rotation->degrees);
+    }
+    digest.add(uint64_t{transforms.tilt.has_value()});
+    if (const auto& tilt = transforms.tilt) {
+        for (int column = 0; column < 3; ++column) add(digest, tilt->axes[column]);
+        add(digest, tilt->origin);
+    }
+    digest.add(uint64_t{transforms.follows_vectors});
+    digest.add(uint64_t{transforms.polar.has_value()});
+    if (const auto& polar = transforms.polar) {
+        add_all(digest, polar->origin);
+        digest.add(polar->radius);
+        digest.add(polar->angle_deg);
+    }
+    digest.add(uint64_t{transforms.before_rotation.has_value()});
+    if (transforms.before_rotation) add_all(digest, *transforms.before_rotation);
 }
 
 void add(Digest& digest, const CannedCycle& cycle) {
@@ -71,6 +106,9 @@ void add(Digest& digest, const ModalState& modal) {
     add_id(digest, modal.tool);
     add_id(digest, modal.length_number);
     add(digest, modal.offsets);
+    add(digest, modal.transforms);
+    digest.add(uint64_t{modal.way_home.has_value()});
+    if (modal.way_home) add_all(digest, *modal.way_home);
 }
 
 void add(Digest& digest, const Place& place) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -102,6 +103,28 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
     return {};
 }
 
+/// G43.4 and G43.5: the length is as under G43; what rotary axes do to the way of the tool is left
+/// to those who know the machine.
+core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
+    use_transforms(execution, transforms);
+    execution.warn(entry.word->span,
+                   fmt::format("{}: taken as G43; rotary axes are followed in the program's "
+                               "coordinates, not in those of the machine",
+                               written(*entry.word)),
+                   Severity::note);
+    return use_table_length(execution, *entry.word, +1.0);
+}
+
+/// Once a plain length offset or none is on, motions do not say where the tool points to.
+void leave_vectors(Execution& execution) {
+    if (!execution.modal().transforms.follows_vectors) return;
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = false;
+    use_transforms(execution, transforms);
+}
+
 } // namespace
 
 bool changes_length_alone(const Execution& execution) {
@@ -148,6 +171,7 @@ core::Result<void> set_tool_length(Execution& execution) {
     if (!entry && changes_length_alone(execution))
         return use_table_length(execution, *execution.statement.word('H'), modal.length_sign);
     if (!entry) return {};
+    leave_vectors(execution);
     switch (entry->code->tenths) {
     case tenths(43):
         return use_table_length(execution, *entry->word, +1.0);
@@ -155,6 +179,9 @@ core::Result<void> set_tool_length(Execution& execution) {
         return use_table_length(execution, *entry->word, -1.0);
     case tenths(43, 2):
         return add_table_offset(execution, *entry->word);
+    case tenths(43, 4):
+    case tenths(43, 5):
+        return use_tool_centre_control(execution, *entry);
     case tenths(43, 1):
         modal.length_sign = 0.0;
         return use_given_offset(execution);

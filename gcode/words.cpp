@@ -28,8 +28,8 @@ bool names_second_home(const Execution& execution) {
            && place && place->value == 2.0;
 }
 
-/// A P that makes G54 another offset, or G30 another place.
-core::Result<void> refuse_more_places(const Execution& execution) {
+/// A P that makes G30 a place that nobody told.
+core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* place = statement.word('P');
     if (!place || !execution.dialect.p_names_more_places) return {};
@@ -40,22 +40,21 @@ core::Result<void> refuse_more_places(const Execution& execution) {
                                       "another one with G53",
                                       written(*place)),
                           place->span);
-    const CodeWord* offset = statement.of(ModalGroup::work_offset);
-    const auto uses = [](const CodeWord& entry) { return entry.code->uses('P'); };
-    if (offset && offset->code->tenths == tenths(54)
-        && std::none_of(statement.codes().begin(), statement.codes().end(), uses))
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: G54 with P is an extended work offset, these are not "
-                                      "supported yet: use G54 to G59",
-                                      written(*place)),
-                          place->span);
     return {};
+}
+
+/// G54 P3, which is G54.1 P3. A P that another code of the block wants is that one's.
+bool names_extended_offset(const Execution& execution) {
+    const CodeWord* offset = execution.statement.of(ModalGroup::work_offset);
+    return execution.dialect.has_extended_offsets && offset && offset->code->tenths == tenths(54);
 }
 
 bool is_used(const Execution& execution, char letter) {
     const Statement& statement = execution.statement;
     if (!statement.unknown_m_codes.empty()) return true;
     if (letter == 'H' && changes_length_alone(execution)) return true;
+    if (letter == 'P' && names_extended_offset(execution)) return true;
+    if (execution.modal().transforms.follows_vectors && letter >= 'I' && letter <= 'K') return true;
     if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
     if (std::any_of(statement.codes().begin(), statement.codes().end(), uses)) return true;
@@ -83,7 +82,7 @@ double length_of(const Execution& execution, const Word& word) {
 }
 
 core::Result<void> check_words(Execution& execution) {
-    if (auto checked = refuse_more_places(execution); !checked) return checked;
+    if (auto checked = refuse_unknown_home(execution); !checked) return checked;
     for (const Word* word : execution.statement.unknown_m_codes)
         execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
                                                "builder; it is passed over",

@@ -108,6 +108,12 @@ struct Runner {
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
+        if (lowering.moved_tilted)
+            return core::Error{core::ErrorCode::unsupported,
+                               {.line = block.line, .column = 1},
+                               "this block moves in a tilted plane or with a tool that is turned "
+                               "(G68.2, G43.5), and machines that tilt are not checked yet",
+                               std::string(block.file)};
         if (!lowering.other_axis) return std::nullopt;
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},

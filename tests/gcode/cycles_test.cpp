@@ -93,7 +93,7 @@ TEST(Cycle, G73BreaksChipsInTheHole) {
 
 TEST(Cycle, G85AndG89FeedOut) {
     EXPECT_EQ(levels("G99 G85 X1 Z-2 R3 F100"), " r200 r30 f-20 f30");
-    EXPECT_EQ(levels("G98 G89 X1 Z-2 R3 P1. F100"), " r200 r30 f-20 d f200");
+    EXPECT_EQ(levels("G98 G89 X1 Z-2 R3 P1. F100"), " r200 r30 f-20 d f30 r200");
 }
 
 TEST(Cycle, G86StopsTheSpindleOnItsWayOut) {

@@ -58,15 +58,16 @@ TEST(Offsets, G10WritesThem) {
     EXPECT_EQ(in_shop("G10 L2 P2 X5 Y6\nG55"), "set_offset offset=G54 x=-350 y=-200 z=-420\n"
                                                "set_offset offset=G55 x=5 y=6 z=-400\n");
     // At machine zero, so that X reads 10 there.
-    EXPECT_EQ(in_shop("G10 L20 P1 X10\nG0 X0"), "set_offset offset=G54 x=-10 y=-200 z=-420\n"
-                                                "straight_traverse x=0 y=200 z=420\n");
+    EXPECT_EQ(in_shop("G21 G10 L20 P1 X10\nG0 X0", DialectId::linuxcnc),
+              "set_offset offset=G54 x=-10 y=-200 z=-420\n"
+              "straight_traverse x=0 y=200 z=420\n");
     EXPECT_EQ(in_shop("G91 G10 L2 P1 X5"), "set_offset offset=G54 x=-345 y=-200 z=-420\n");
     EXPECT_EQ(in_shop("G21 G91 G10 L2 P0 X5", DialectId::linuxcnc),
               "set_offset offset=G54 x=5 y=-200 z=-420\n");
     EXPECT_EQ(error_of("G10 P1 X1"), "1:1: G10 does not say what to write: it needs L2 or L20");
     EXPECT_EQ(error_of("G10 L2 X1"), "1:1: G10 does not say which work offset: it needs a P word");
     EXPECT_THAT(error_of("G10 L2 P10 X1"), HasSubstr("1:8: P10"));
-    EXPECT_THAT(error_of("G10 L11 P1 R5"), HasSubstr("1:5: L11"));
+    EXPECT_THAT(error_of("G10 L12 P1 R5", DialectId::linuxcnc), HasSubstr("1:5: L12"));
     EXPECT_THAT(error_of("G10 L2 P1 R5"), HasSubstr("1:11: R5"));
 }
 
@@ -103,10 +104,9 @@ TEST(Offsets, G52IsItsOwnInFanucAndG92InLinuxcnc) {
                                                 "set_offset offset=G54 x=0 y=0 z=0\n");
 }
 
-TEST(Offsets, ThePThatMakesG54AnotherOffsetIsRefused) {
+TEST(Offsets, APMakesG54AnotherOffset) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
-        EXPECT_THAT(error_of("G0 X1\nG54 P1", dialect),
-                    HasSubstr("2:5: P1: G54 with P is an extended work offset"));
+        EXPECT_EQ(trace("G54 P1", dialect), "set_offset offset=P1 x=0 y=0 z=0\n");
         EXPECT_EQ(error_of("G54 G4 P500", dialect), "");
     }
 }

@@ -1,0 +1,84 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gcode/lowering.h"
+#include "tests/gcode/programs.h"
+
+namespace gcode {
+namespace {
+
+using testing::HasSubstr;
+
+struct Lowered {
+    Position machine;
+    bool moved_tilted;
+};
+
+Lowered lowered(std::string_view text) {
+    const Environment environment = known_environment(DialectId::fanuc);
+    const Ran ran = run_text(text, environment);
+    EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");
+    Lowering lowering = initial_lowering(environment);
+    for (const BlockResult& block : ran.run.blocks) lower(block, lowering);
+    return {lowering.machine, lowering.moved_tilted};
+}
+
+void expect_machine_at(std::string_view text, double x, double y, double z, bool tilted) {
+    SCOPED_TRACE(text);
+    const Lowered found = lowered(text);
+    EXPECT_NEAR(*found.machine[0], x, 1e-9);
+    EXPECT_NEAR(*found.machine[1], y, 1e-9);
+    EXPECT_NEAR(*found.machine[2], z, 1e-9);
+    EXPECT_EQ(found.moved_tilted, tilted);
+}
+
+TEST(TiltedPlane, EulerAnglesTurnAboutZThenNewXThenNewZ) {
+    // Tilted by 90 degrees about X: the plane's Y is the work's Z, its Z is the work's -Y.
+    expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG0 X1 Y2 Z3", 11, 17, 32, true);
+    // Turned about Z first: the plane's X is the work's Y, its Z is the work's X.
+    expect_machine_at("G68.2 X0 Y0 Z0 I90 J90 K0\nG0 X1 Y2 Z3", 3, 1, 2, true);
+    // Then about its own Z: its X is the work's Z, its Y is the work's -Y.
+    expect_machine_at("G68.2 X0 Y0 Z0 I90 J90 K90\nG0 X1 Y2 Z3", 3, -2, 1, true);
+}
+
+TEST(TiltedPlane, RollPitchYawTurnAboutTheWorkAxesInTheirOrder) {
+    // X first: (1, 2, 3) to (1, -3, 2), then about Z: (3, 1, 2).
+    expect_machine_at("G68.2 P1 Q123 X0 Y0 Z0 I90 J0 K90\nG0 X1 Y2 Z3", 3, 1, 2, true);
+    // Z first: (1, 2, 3) to (-2, 1, 3), then about X: (-2, -3, 1).
+    expect_machine_at("G68.2 P1 Q321 X0 Y0 Z0 I90 J0 K90\nG0 X1 Y2 Z3", -2, -3, 1, true);
+    EXPECT_THAT(error_of("G68.2 P1 Q122 I1"), HasSubstr("each once"));
+}
+
+TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
+    expect_machine_at("G68.2 X10 Y20 Z30 I0 J0 K0\nG53.1\nG0 X1 Y2 Z3", 11, 22, 33, false);
+    expect_machine_at("G68.2 X0 Y0 Z0 I90 J0 K0\nG0 X1 Y2 Z3", -2, 1, 3, false);
+}
+
+TEST(TiltedPlane, IsLeftWithG69) {
+    expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG69\nG0 X1 Y2 Z3", 1, 2, 3, false);
+    EXPECT_THAT(error_of("G53.1"), HasSubstr("write G68.2 before it"));
+    EXPECT_THAT(error_of("G68.2 P2 Q0 X0 Y0 Z0"), HasSubstr("give Euler angles"));
+}
+
+TEST(ToolCentre, G434IsG43WithANote) {
+    EXPECT_EQ(trace("G43.4 H3"), trace("G43 H3"));
+    EXPECT_THAT(warnings_of("G43.4 H3"), HasSubstr("taken as G43"));
+}
+
+TEST(ToolCentre, G435PointsTheToolByVectorsUntilAnotherLengthCode) {
+    EXPECT_TRUE(lowered("G43.5 H3\nG1 X1 I0 J0.6 K0.8 F9").moved_tilted);
+    EXPECT_FALSE(lowered("G43.5 H3\nG49\nG1 X1 F9").moved_tilted);
+    EXPECT_THAT(warnings_of("G21 G43.5 H3\nG1 X1 I0 J0.6 K0.8 F9"), Not(HasSubstr("nothing in")));
+}
+
+TEST(LookAhead, ItsCodesChangeNoMotion) {
+    EXPECT_EQ(trace("G5.1 Q1\nG1 X1 F9\nG5.1 Q0"), "straight_feed x=1 y=0 z=0 feed=9\n");
+    EXPECT_EQ(trace("G05 P10000\nG08 P1\nG1 X1 F9\nG08 P0\nG05 P0"),
+              "straight_feed x=1 y=0 z=0 feed=9\n");
+    for (const std::string_view text : {"G61", "G61.1", "G62", "G63", "G64", "G9 G1 X1 F1"})
+        EXPECT_EQ(error_of(text), "") << text;
+    EXPECT_EQ(error_of("G187 P1 E0.01\nG61", DialectId::haas), "");
+}
+
+} // namespace
+} // namespace gcode
