@@ -26,9 +26,6 @@ constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_lathe = "turning is not supported yet";
 constexpr std::string_view no_rotation =
     "rotated, scaled and polar coordinates are not supported yet";
-constexpr std::string_view no_macro = "macro calls are not supported yet";
-constexpr std::string_view no_subprogram =
-    "subprograms are not supported yet: write their blocks where they are called";
 constexpr std::string_view no_jump =
     "jumps are not supported yet: write the blocks in the order they are run";
 constexpr std::string_view no_saved_modes =
@@ -113,8 +110,9 @@ constexpr Code codes[] = {
     {'G', tenths(61), path_control, "", every, {}},
     {'G', tenths(61, 1), path_control, "", linuxcnc, {}},
     {'G', tenths(64), path_control, "PQ", mills, {}},
-    {'G', tenths(65), macro, "", fanuc, no_macro},
-    {'G', tenths(66), macro, "", fanuc, no_macro},
+    {'G', tenths(65), macro, "", fanuc, {}},
+    {'G', tenths(66), macro, "", fanuc, {}},
+    {'G', tenths(66, 1), macro, "", fanuc, {}},
     {'G', tenths(67), macro, "", fanuc, {}},
     {'G', tenths(68), rotation, "XYZR", fanuc, no_rotation},
     {'G', tenths(68, 2), rotation, "XYZIJK", fanuc, no_five_axes},
@@ -172,11 +170,11 @@ constexpr Code codes[] = {
     {'M', tenths(71), other, "", linuxcnc, no_saved_modes},
     {'M', tenths(72), other, "", linuxcnc, no_saved_modes},
     {'M', tenths(73), other, "", linuxcnc, no_saved_modes},
-    {'M', tenths(96), subprogram, "PQ", haas, no_jump},
-    {'M', tenths(97), subprogram, "PL", haas, no_subprogram},
-    {'M', tenths(98), subprogram, "PLQ", mills, no_subprogram},
+    {'M', tenths(96), subprogram, "PQ", haas, {}},
+    {'M', tenths(97), subprogram, "PL", haas, {}},
+    {'M', tenths(98), subprogram, "PLQ", mills, {}},
     {'M', tenths(99), subprogram, "P", mills, {}},
-    {'M', tenths(198), subprogram, "PLQ", fanuc, no_subprogram},
+    {'M', tenths(198), subprogram, "PLQ", fanuc, {}},
 };
 
 constexpr bool before(const Code& a, const Code& b) {

@@ -22,6 +22,9 @@ struct ArcTolerance {
     double warned_mm; // beyond the above but not beyond this: a warning; 0 refuses
 };
 
+/// Whose numbers the parameters have in which a control shows its state.
+enum class SystemParameters : uint8_t { rs274, fanuc, haas };
+
 /// How the controls of one kind differ. Everything the interpreter asks about a dialect is here.
 struct Dialect {
     DialectId id;
@@ -62,7 +65,12 @@ struct Dialect {
     bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
     bool brackets_optional_in_assignments; // #1=#2+1
     bool unset_is_vacant;                  // an unset parameter is nothing, else 0
-    int local_count;                       // #1 to this are of each level of calls
+    bool repeats_in_program_number;        // M98 P31000 calls O1000 three times
+    bool calls_stand_alone;                // M98 and M99 have no other words beside them
+    bool decimal_points_matter;            // X5 may mean 5 of the smallest steps
+    SystemParameters system_parameters;
+    int first_alarm; // #3000=1 is the alarm after this
+    int local_count; // #1 to this are of each level of calls
     size_t deepest_calls;
 };
 

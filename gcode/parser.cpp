@@ -28,6 +28,13 @@ core::Error missing_number(const Lexer& lexer, size_t begin) {
             fmt::format("'{}' has no number behind it", lexer.line[begin])};
 }
 
+bool calls_macro(double code) { return code == 65.0 || code == 66.0 || code == 66.1; }
+
+bool has_g_word(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(),
+                       [](const Word& word) { return word.letter == 'G'; });
+}
+
 class LineParser {
 public:
     LineParser(std::string_view text, uint32_t line, const Dialect& dialect, Block& block)
@@ -58,6 +65,7 @@ private:
         if (c == '#') return assignment();
         if (c == ',' && dialect_.has_corner_words) return corner_word();
         if ((c == '@' || c == '^') && dialect_.has_polar_words) return word(c, c);
+        if (c == ':' && dialect_.has_fanuc_flow && block_.is_empty()) return word(c, 'O');
         if (is_letter(c)) return lettered(upper(c));
         return stray(c);
     }
@@ -139,7 +147,8 @@ private:
     core::Result<void> lettered(char letter) {
         FEELER_TRY(const bool flows, parse_flow(lexer_, dialect_, block_));
         if (flows) return {};
-        if (word_letters.find(letter) == std::string_view::npos)
+        const bool is_argument = letter == 'E' && dialect_.has_fanuc_flow && has_g_word(block_);
+        if (word_letters.find(letter) == std::string_view::npos && !is_argument)
             return core::fail(ErrorCode::syntax,
                               fmt::format("'{}' is not a word of this language; an exponent such "
                                           "as 1E3 is written out",
@@ -176,7 +185,8 @@ private:
         const bool repeatable = entry.letter == 'G' || entry.letter == 'M'
                                 || (is_offset && dialect_.offset_words_may_repeat);
         const auto same = [&](const Word& word) { return word.letter == entry.letter; };
-        if (!repeatable && std::any_of(block_.words.begin(), block_.words.end(), same))
+        const auto first = block_.words.begin() + static_cast<std::ptrdiff_t>(arguments_);
+        if (!repeatable && std::any_of(first, block_.words.end(), same))
             return core::fail(
                 ErrorCode::syntax,
                 fmt::format("'{}': a block takes one {} word, this is the second",
@@ -184,6 +194,8 @@ private:
                             entry.letter),
                 entry.span);
         block_.words.push_back(entry);
+        if (entry.letter == 'G' && dialect_.has_fanuc_flow && calls_macro(entry.value))
+            arguments_ = block_.words.size();
         return {};
     }
 
@@ -207,6 +219,7 @@ private:
     Lexer lexer_;
     const Dialect& dialect_;
     Block& block_;
+    size_t arguments_ = 0; // the first word that belongs to a macro call
 };
 
 } // namespace

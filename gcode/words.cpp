@@ -9,7 +9,7 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view letters_that_need_a_code = "DHIJKLPQR";
+constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 
 /// The code of the motion or cycle that a block without one goes on with.
@@ -54,7 +54,7 @@ core::Result<void> refuse_more_places(const Execution& execution) {
 
 bool is_used(const Execution& execution, char letter) {
     const Statement& statement = execution.statement;
-    if (!statement.unknown_m_codes.empty()) return true;
+    if (!statement.unknown_m_codes.empty()) return letter != 'E';
     if (letter == 'H' && changes_length_alone(execution)) return true;
     if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
@@ -66,6 +66,11 @@ bool is_used(const Execution& execution, char letter) {
 
 core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
+    if (word.letter == 'E')
+        return core::fail(ErrorCode::syntax,
+                          "'E' is not a word of this language; an exponent such as 1E3 is "
+                          "written out",
+                          word.span);
     const std::string message = fmt::format("{}: nothing in this block uses it", written(word));
     if (execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
@@ -93,7 +98,7 @@ core::Result<void> check_words(Execution& execution) {
 
 core::Result<void> note_assumed_units(Execution& execution) {
     if (execution.modal().unit_said || execution.state.said_unit
-        || execution.statement.of(ModalGroup::units))
+        || execution.statement.of(ModalGroup::units) || execution.statement.of(ModalGroup::macro))
         return {};
     for (const Word& word : execution.block.words) {
         if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;
