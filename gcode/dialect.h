@@ -58,6 +58,8 @@ struct Dialect {
     // the language around the words
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
+    bool tool_entries_by_axes;             // G10 L1, L10 and L11 take P and axis words
+    bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
     bool has_o_words;                      // o<name> sub, if, while ...
     bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
     bool has_corner_words;                 // ,R and ,C

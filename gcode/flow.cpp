@@ -219,6 +219,13 @@ core::Result<void> Flowing::jump() {
     }
     const auto line = line_of_block(step_.library, source_, std::stod(name_), line_);
     if (!line) return refuse(fmt::format("there is no block N{} to go to", name_));
+    const auto other = line_of_block(step_.library, source_, std::stod(name_), *line);
+    if (other && *other != *line)
+        step_.result.warnings.push_back(
+            {Severity::warning, step_.block.flow.span,
+             fmt::format("N{} stands in lines {} and {}: the control takes the first one behind "
+                         "the jump, else the first of the program",
+                         name_, std::min(*line, *other), std::max(*line, *other))});
     set_line(*line);
     return {};
 }

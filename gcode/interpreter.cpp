@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "gcode/alarms.h"
+#include "gcode/decimal_points.h"
 #include "gcode/execution.h"
+#include "gcode/fanuc_parameters.h"
 #include "gcode/flow.h"
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
@@ -19,18 +22,25 @@ using Step = core::Result<void> (*)(Execution&);
 constexpr Step steps[] = {
     check_words,
     note_assumed_units,
+    say_message,
     set_feed_mode,
     set_feed,
     set_speed,
+    set_spindle_mode,
     select_tool,
+    switch_machine,
     change_tool,
     turn_spindle,
+    save_or_restore_modes,
     set_coolant,
+    set_overrides,
     dwell,
     select_plane,
     set_units,
+    set_diameter_mode,
     set_tool_length,
     select_offset,
+    set_path_mode,
     set_distance_mode,
     set_retract_mode,
     act,
@@ -162,9 +172,9 @@ bool Interpreter::Scratch::begins_another_program(const InterpreterState& state)
     return numbered && dialect.has_fanuc_flow && (state.frames.size() > 1 || state.next_block > 0);
 }
 
-/// The words of the block before, which macros can ask for.
+/// The words of the block before, which macros can ask for, and the time it took.
 void Interpreter::Scratch::remember_words(InterpreterState& state) const {
-    if (dialect.system_parameters == SystemParameters::rs274) return;
+    advance_timers(state);
     for (const Word& word : block.words)
         if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
 }
@@ -246,6 +256,9 @@ core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
             undos.push_back({false, numbers[i], {}, old});
             if (auto set = parameters.set_numbered(numbers[i], values[i], entry.span); !set)
                 return set;
+            if (auto heard = heed_alarm(block, dialect, numbers[i], values[i], entry.span, result);
+                !heard)
+                return heard;
         }
     }
     (void)state;
@@ -281,9 +294,17 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         }
         if (auto done = work_out_words(parameters); !done) return done;
         if (auto done = assign(state, parameters); !done) return done;
+        if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
+        if (dialect.system_parameters != SystemParameters::rs274) note_clock(block, state, result);
         if (changes_level(block.flow.kind)) keep_calls(state, before);
         if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
             return run_flow({library, environment, dialect, block, state, result});
+    }
+    if (dialect.decimal_points_matter) {
+        if (environment.counts_smallest_steps)
+            count_smallest_steps(block, state.modal);
+        else
+            note_points(block, state, result);
     }
     if (auto looked_up =
             look_up(block, dialect, environment, statement, blocks_are_arguments(state));
@@ -314,7 +335,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                           {.line = block.line, .column = 1});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    remember_words(state);
+    if (dialect.system_parameters != SystemParameters::rs274) remember_words(state);
     if (auto watched = watch_for_endless_loop(state, place); !watched)
         return tl::unexpected(std::move(watched).error());
     return true;

@@ -75,10 +75,9 @@ struct ModalState {
     double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
     bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 
-    Position position;                               // tool tip, program coordinates
-    Position home, second_home;                      // G28, G30: machine coordinates
-    Position suspended_axis = zero_position;         // kept by G92.2 for G92.3
-    std::optional<double> polar_radius, polar_angle; // of the last @ and ^; mm and degrees
+    Position position;                       // tool tip, program coordinates
+    Position home, second_home;              // G28, G30: machine coordinates
+    Position suspended_axis = zero_position; // kept by G92.2 for G92.3
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
     double speed = 0.0;         // rev/min, or m/min under G96

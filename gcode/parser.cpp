@@ -7,13 +7,14 @@
 #include "gcode/expression_parser.h"
 #include "gcode/flow_parser.h"
 #include "gcode/lexer.h"
+#include "gcode/messages.h"
 
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view word_letters = "ABCDFGHIJKLMNOPQRSTUVWXYZ";
+constexpr std::string_view word_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
 /// Two or more letters in a row are a keyword of some control, which deserves a better message.
 core::Error missing_number(const Lexer& lexer, size_t begin) {
@@ -30,11 +31,6 @@ core::Error missing_number(const Lexer& lexer, size_t begin) {
 
 bool calls_macro(double code) { return code == 65.0 || code == 66.0 || code == 66.1; }
 
-bool has_g_word(const Block& block) {
-    return std::any_of(block.words.begin(), block.words.end(),
-                       [](const Word& word) { return word.letter == 'G'; });
-}
-
 class LineParser {
 public:
     LineParser(std::string_view text, uint32_t line, const Dialect& dialect, Block& block)
@@ -46,14 +42,31 @@ public:
             if (c == '\0') break;
             if (auto done = item(c); !done) return done;
         }
-        return {};
+        return check_flow();
     }
 
 private:
+    /// A jump or a loop shares its block with its number only; behind THEN something is done.
+    core::Result<void> check_flow() const {
+        const FlowKind kind = block_.flow.kind;
+        if (!dialect_.has_fanuc_flow || kind == FlowKind::none || kind == FlowKind::if_then)
+            return {};
+        const auto numbers = [](const Word& word) { return word.letter == 'N'; };
+        if (block_.assignments.empty()
+            && std::all_of(block_.words.begin(), block_.words.end(), numbers))
+            return {};
+        return core::fail(ErrorCode::syntax,
+                          "a jump or loop needs a block of its own: write the other words before "
+                          "or behind it",
+                          block_.flow.span);
+    }
+
     core::Result<void> item(char c) {
         if (c == '(') {
             FEELER_TRY(const Comment comment, lexer_.bracket_comment());
             block_.comments.push_back(comment);
+            block_.has_message =
+                dialect_.has_active_comments && active_comment(comment.text).has_value();
             return {};
         }
         if (c == ';') {
@@ -78,7 +91,7 @@ private:
             && lexer_.line[lexer_.at] <= '9')
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
-        const bool in_place = block_.is_empty() || (after_number && block_.assignments.empty());
+        const bool in_place = block_.words.empty() || (after_number && block_.assignments.empty());
         if (!in_place || block_.block_delete)
             return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
                               lexer_.span_from(begin));
@@ -88,7 +101,7 @@ private:
 
     /// What follows a tape mark on its line is the name some controls put there.
     core::Result<void> tape_mark() {
-        if (!block_.is_empty())
+        if (!block_.words.empty())
             return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
         block_.tape_mark = true;
@@ -145,10 +158,16 @@ private:
     }
 
     core::Result<void> lettered(char letter) {
+        const size_t begin = lexer_.at;
+        const bool has_flow = block_.flow.kind != FlowKind::none;
         FEELER_TRY(const bool flows, parse_flow(lexer_, dialect_, block_));
+        if (flows && has_flow)
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("'{}' needs a block of its own", lexer_.written_from(begin)),
+                lexer_.span_from(begin));
         if (flows) return {};
-        const bool is_argument = letter == 'E' && dialect_.has_fanuc_flow && has_g_word(block_);
-        if (word_letters.find(letter) == std::string_view::npos && !is_argument)
+        if (word_letters.find(letter) == std::string_view::npos)
             return core::fail(ErrorCode::syntax,
                               fmt::format("'{}' is not a word of this language; an exponent such "
                                           "as 1E3 is written out",
@@ -233,6 +252,7 @@ void Block::clear() {
     flow = Flow{.arguments = std::move(flow.arguments)};
     block_delete.reset();
     tape_mark = false;
+    has_message = false;
 }
 
 core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,

@@ -63,7 +63,7 @@ void add(Digest& digest, const ModalState& modal) {
     for (const Position* place :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *place);
-    for (const auto& value : {modal.feed, modal.polar_radius, modal.polar_angle}) digest.add(value);
+    digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
     add_id(digest, modal.selected_tool);

@@ -54,7 +54,7 @@ core::Result<void> refuse_more_places(const Execution& execution) {
 
 bool is_used(const Execution& execution, char letter) {
     const Statement& statement = execution.statement;
-    if (!statement.unknown_m_codes.empty()) return letter != 'E';
+    if (!statement.unknown_m_codes.empty()) return true;
     if (letter == 'H' && changes_length_alone(execution)) return true;
     if (letter == 'P' && names_second_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
@@ -66,13 +66,11 @@ bool is_used(const Execution& execution, char letter) {
 
 core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
-    if (word.letter == 'E')
-        return core::fail(ErrorCode::syntax,
-                          "'E' is not a word of this language; an exponent such as 1E3 is "
-                          "written out",
-                          word.span);
-    const std::string message = fmt::format("{}: nothing in this block uses it", written(word));
-    if (execution.dialect.unused_words_are_errors)
+    const bool exponent = word.letter == 'E'; // of a number, most likely
+    const std::string message =
+        fmt::format("{}: nothing in this block uses it{}", written(word),
+                    exponent ? "; an exponent such as 1E3 is written out" : "");
+    if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);
     return {};
