@@ -1,24 +1,9 @@
 #include <fmt/format.h>
 
 #include "gcode/cycles.h"
+#include "gcode/execution.h"
 
 namespace gcode {
-namespace {
-
-/// M99 ends the main program, unless its P sends it to another block.
-core::Result<void> return_from_main(Execution& execution) {
-    if (const Word* word = execution.statement.word('P'))
-        return core::fail(core::ErrorCode::unsupported,
-                          fmt::format("{}: M99 with P jumps, and jumps are not supported yet: end "
-                                      "the program with M30",
-                                      written(*word)),
-                          word->span);
-    execution.state.ending = Ending::main_return;
-    return {};
-}
-
-} // namespace
-
 core::Result<void> act(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     if (!entry) return {};
@@ -54,8 +39,6 @@ core::Result<void> act(Execution& execution) {
 }
 
 core::Result<void> stop(Execution& execution) {
-    if (execution.statement.of(ModalGroup::subprogram)) // M99
-        if (auto done = return_from_main(execution); !done) return done;
     const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
     if (!entry) return {};
     switch (entry->code->tenths) {

@@ -20,9 +20,6 @@ constexpr DialectSet every = mills | grbl;
 
 constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
-constexpr std::string_view no_macro = "macro calls are not supported yet";
-constexpr std::string_view no_subprogram =
-    "subprograms are not supported yet: write their blocks where they are called";
 constexpr std::string_view no_jump =
     "jumps are not supported yet: write the blocks in the order they are run";
 constexpr std::string_view no_other_change =
@@ -113,8 +110,9 @@ constexpr Code codes[] = {
     {'G', tenths(62), path_control, "", fanuc, {}},
     {'G', tenths(63), path_control, "", fanuc, {}},
     {'G', tenths(64), path_control, "PQ", mills, {}},
-    {'G', tenths(65), macro, "", fanuc, no_macro},
-    {'G', tenths(66), macro, "", fanuc, no_macro},
+    {'G', tenths(65), macro, "", fanuc, {}},
+    {'G', tenths(66), macro, "", fanuc, {}},
+    {'G', tenths(66, 1), macro, "", fanuc, {}},
     {'G', tenths(67), macro, "", fanuc, {}},
     {'G', tenths(68), rotation, "XYZRIJK", fanuc, {}},
     {'G', tenths(68, 2), rotation, "XYZIJKPQR", fanuc, {}},
@@ -217,11 +215,11 @@ constexpr Code codes[] = {
     {'M', tenths(71), other, "", linuxcnc, {}},
     {'M', tenths(72), other, "", linuxcnc, {}},
     {'M', tenths(73), other, "", linuxcnc, {}},
-    {'M', tenths(96), subprogram, "PQ", haas, no_jump},
-    {'M', tenths(97), subprogram, "PL", haas, no_subprogram},
-    {'M', tenths(98), subprogram, "PLQ", mills, no_subprogram},
+    {'M', tenths(96), subprogram, "PQ", haas, {}},
+    {'M', tenths(97), subprogram, "PL", haas, {}},
+    {'M', tenths(98), subprogram, "PLQ", mills, {}},
     {'M', tenths(99), subprogram, "P", mills, {}},
-    {'M', tenths(198), subprogram, "PLQ", fanuc, no_subprogram},
+    {'M', tenths(198), subprogram, "PLQ", fanuc, {}},
 };
 
 constexpr bool before(const Code& a, const Code& b) {

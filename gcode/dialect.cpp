@@ -73,9 +73,13 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .offset_words_may_repeat = false,
                               .brackets_optional_in_assignments = false,
                               .unset_is_vacant = false,
-                              .state_parameters = StateParameters::linuxcnc,
                               .feed_mode_clears_feed = true,
                               .bare_h0_is_tool = true,
+                              .repeats_in_program_number = false,
+                              .calls_stand_alone = true,
+                              .decimal_points_matter = false,
+                              .system_parameters = SystemParameters::rs274,
+                              .first_alarm = 0,
                               .local_count = 30,
                               .deepest_calls = 10};
 
@@ -124,9 +128,13 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .offset_words_may_repeat = true,
                            .brackets_optional_in_assignments = true,
                            .unset_is_vacant = true,
-                           .state_parameters = StateParameters::fanuc,
                            .feed_mode_clears_feed = false,
                            .bare_h0_is_tool = false,
+                           .repeats_in_program_number = true,
+                           .calls_stand_alone = false,
+                           .decimal_points_matter = true,
+                           .system_parameters = SystemParameters::fanuc,
+                           .first_alarm = 3000,
                            .local_count = 33,
                            .deepest_calls = 15};
 
@@ -140,6 +148,9 @@ constexpr Dialect haas = [] {
     entry.g87_is_back_boring = false;
     entry.scale_without_point_is_thousandths = false;
     entry.repeats_with_k = false;
+    entry.repeats_in_program_number = false;
+    entry.system_parameters = SystemParameters::haas;
+    entry.first_alarm = 1000;
     return entry;
 }();
 

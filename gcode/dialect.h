@@ -22,8 +22,8 @@ struct ArcTolerance {
     double warned_mm; // beyond the above but not beyond this: a warning; 0 refuses
 };
 
-/// Whose numbers and names show the control's state to expressions.
-enum class StateParameters : uint8_t { none, linuxcnc, fanuc };
+/// Whose numbers the parameters have in which a control shows its state.
+enum class SystemParameters : uint8_t { rs274, fanuc, haas };
 
 /// How the controls of one kind differ. Everything the interpreter asks about a dialect is here.
 struct Dialect {
@@ -74,10 +74,14 @@ struct Dialect {
     bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
     bool brackets_optional_in_assignments; // #1=#2+1
     bool unset_is_vacant;                  // an unset parameter is nothing, else 0
-    StateParameters state_parameters;
     bool feed_mode_clears_feed; // G94 and G95 leave no feed rate, the same mode again as well
     bool bare_h0_is_tool;       // G43 H0 means the tool in the spindle
-    int local_count;            // #1 to this are of each level of calls
+    bool repeats_in_program_number;        // M98 P31000 calls O1000 three times
+    bool calls_stand_alone;                // M98 and M99 have no other words beside them
+    bool decimal_points_matter;            // X5 may mean 5 of the smallest steps
+    SystemParameters system_parameters;
+    int first_alarm; // #3000=1 is the alarm after this
+    int local_count; // #1 to this are of each level of calls
     size_t deepest_calls;
 };
 

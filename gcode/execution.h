@@ -62,6 +62,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 
 /// Lets a change of offsets leave the machine where it is: program coordinates move instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
+void change_offsets(ModalState& modal, const Offsets& offsets);
 
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
@@ -90,7 +91,8 @@ core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
 core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
 core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
-core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60 M99
+core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
+core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
 
 core::Result<void> write_offset(Execution& execution);               // G10
 core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
@@ -106,6 +108,8 @@ core::Result<void> move_along_arc(Execution& execution);             // G2 G3
 core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
 core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
 core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
+core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
+core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
 
 /// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
 /// work offset; L3, L50, L52: warned of and passed over.

@@ -219,8 +219,15 @@ core::Result<void> Flowing::jump() {
         FEELER_TRY(const bool taken, holds(step_.block));
         if (!taken) return {};
     }
-    const auto line = line_of_block(step_.library, step_.state, std::stod(name_), line_);
+    const auto line = line_of_block(step_.library, source_, std::stod(name_), line_);
     if (!line) return refuse(fmt::format("there is no block N{} to go to", name_));
+    const auto other = line_of_block(step_.library, source_, std::stod(name_), *line);
+    if (other && *other != *line)
+        step_.result.warnings.push_back(
+            {Severity::warning, step_.block.flow.span,
+             fmt::format("N{} stands in lines {} and {}: the control takes the first one behind "
+                         "the jump, else the first of the program",
+                         name_, std::min(*line, *other), std::max(*line, *other))});
     set_line(*line);
     return {};
 }
@@ -284,10 +291,9 @@ core::Result<bool> condition_holds(const Block& block, const ProgramParameters& 
     return value.value_or(0.0) != 0.0;
 }
 
-std::optional<uint32_t> line_of_block(ProgramLibrary& library, const InterpreterState& state,
-                                      double number, uint32_t from) {
-    const FlowIndex& index = library.index(state.next.source);
-    // A program of a file with several ends where the next one begins.
+std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
+                                      uint32_t from) {
+    const FlowIndex& index = library.index(source);
     uint32_t begin = 1, end = UINT32_MAX;
     for (const FlowMark& mark : index.marks) {
         if (mark.kind != program_number) continue;
@@ -318,17 +324,26 @@ void leave(InterpreterState& state) {
     if (frame.rounds_left > 0) {
         --frame.rounds_left;
         frame.repeats.clear();
+        if (frame.again) frame.locals = *frame.again;
         state.next = frame.begin;
         return;
     }
+    leave_to(state, frame.called_from.line + 1);
+}
+
+void leave_to(InterpreterState& state, uint32_t line) {
+    Frame& frame = state.frames.back();
     if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
-    state.next = {frame.called_from.source, frame.called_from.line + 1};
+    // Fanuc B-64304, modal call: the local variables are not set anew for each call.
+    if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
+        state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
+    state.next = {frame.called_from.source, line};
     state.frames.pop_back();
 }
 
 core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
     constexpr uint64_t interval = 16; // jumps between two looks
-    const bool back = state.next.source == from.source && state.next.line <= from.line;
+    const bool back = state.next.source != from.source || state.next.line <= from.line;
     LoopWatch& watch = state.watch;
     if (!back || ++watch.jumps % interval != 0) return {};
     const uint64_t now = digest_of(state);

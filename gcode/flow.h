@@ -35,10 +35,14 @@ core::Result<void> enter(InterpreterState& state, const Environment& environment
 /// Leaves the level that runs for the line behind the call, or for another round of it.
 void leave(InterpreterState& state);
 
-/// The line of a block number in the program that runs: looked for behind a line, then from the
-/// program's beginning; empty when there is none.
-std::optional<uint32_t> line_of_block(ProgramLibrary& library, const InterpreterState& state,
-                                      double number, uint32_t from);
+/// Leaves the level that runs, whatever rounds were to come, for a line of the program that called.
+void leave_to(InterpreterState& state, uint32_t line);
+
+/// The line of a block number in a program: looked for behind a line, then from the program's
+/// beginning; empty when there is none. A program of a file with several ends where the next one
+/// begins.
+std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
+                                      uint32_t from);
 
 /// Looks whether a jump back from a place has led to a state the program was in before.
 ///

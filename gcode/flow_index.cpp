@@ -34,8 +34,10 @@ std::string label_of(double number) { return fmt::format("{:.12g}", number); }
 
 namespace {
 
+bool is_program_number(char c) { return upper(c) == 'O' || c == ':'; }
+
 bool may_begin_flow(char c) {
-    return std::string_view("OIWDEG").find(upper(c)) != std::string_view::npos && c != '\0';
+    return std::string_view("OIWDEG:").find(upper(c)) != std::string_view::npos && c != '\0';
 }
 
 } // namespace
@@ -101,10 +103,14 @@ FlowIndex index_of(const Program& program, const Dialect& dialect) {
         if (const auto block_number = take_number(lexer))
             index.numbers.push_back({*block_number, line});
         if (!may_begin_flow(lexer.peek())) continue;
-        if (upper(lexer.peek()) == 'O' && !dialect.has_o_words) {
+        if (is_program_number(lexer.peek()) && !dialect.has_o_words) {
             ++lexer.at;
-            if (const auto name = lexer.number())
-                index.marks.push_back({FlowKind::program_number, label_of(name->value), line});
+            if (const auto name = lexer.number()) {
+                // Loops and branches do not reach into the next program of the file.
+                scope = line;
+                index.marks.push_back(
+                    {FlowKind::program_number, label_of(name->value), line, scope});
+            }
             continue;
         }
         if (!parse_line(program.line(number), line, dialect, block)) continue;

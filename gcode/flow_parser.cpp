@@ -153,8 +153,10 @@ private:
     core::Result<bool> fanuc_if() {
         if (auto done = condition(); !done) return tl::unexpected(std::move(done).error());
         if (lexer_.accept_word("GOTO")) return go_to(FlowKind::if_go_to);
-        if (lexer_.accept_word("THEN")) return finish(FlowKind::if_then);
-        return refuse("behind the condition of IF belongs GOTO or THEN");
+        if (!lexer_.accept_word("THEN"))
+            return refuse("behind the condition of IF belongs GOTO or THEN");
+        if (lexer_.accept_word("GOTO")) return go_to(FlowKind::if_go_to);
+        return finish(FlowKind::if_then);
     }
 
     core::Result<bool> fanuc_while() {
@@ -165,8 +167,8 @@ private:
 
     core::Result<bool> loop_number(FlowKind kind) {
         FEELER_TRY(const Number number, lexer_.number());
-        if (number.value < 1.0 || number.value > 99.0 || number.value != std::floor(number.value))
-            return refuse("DO and END take a whole number, usually 1 to 3");
+        if (number.value < 1.0 || number.value > 3.0 || number.value != std::floor(number.value))
+            return refuse("DO and END take 1, 2 or 3, the control gives an alarm here");
         set_label(label_of(number.value));
         return finish(kind);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "gcode/modal_state.h"
@@ -18,10 +19,13 @@ struct Place {
     auto operator<=>(const Place&) const = default;
 };
 
-/// The letters of a macro call that is repeated after every motion (G66).
+/// A macro call that is made again after every motion (G66) or for every block (G66.1).
 struct ModalMacro {
     std::string name;
-    LocalParameters arguments{};
+    Place begin;                 // its first line
+    LocalParameters arguments{}; // as the last call left them
+    int64_t rounds = 1;
+    bool each_block = false; // G66.1: every block is its arguments
 
     bool operator==(const ModalMacro&) const = default;
 };
@@ -36,9 +40,10 @@ struct Frame {
     NamedValues named{};
     std::map<uint32_t, int64_t> repeats{};     // line of `repeat`: rounds still to go
     int64_t rounds_left = 0;                   // of M98 L
+    std::optional<LocalParameters> again{};    // the locals that another round begins with
     Shared<std::optional<ModalState>> saved{}; // M70, M73
     bool restores = false;                     // M73: at the return
-    bool is_modal_macro = false;               // called by G66
+    size_t modal_macro = 0;                    // which one of G66 called it, from 1; 0 for none
 
     bool operator==(const Frame&) const = default;
 };

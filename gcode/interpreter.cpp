@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "gcode/alarms.h"
+#include "gcode/decimal_points.h"
 #include "gcode/execution.h"
+#include "gcode/fanuc_parameters.h"
 #include "gcode/flow.h"
+#include "gcode/macro_calls.h"
 #include "gcode/parser.h"
 #include "gcode/program_parameters.h"
 
@@ -44,6 +48,7 @@ constexpr Step steps[] = {
     act,
     move,
     stop,
+    call,
 };
 
 /// What a block may change, kept until it has succeeded.
@@ -53,8 +58,20 @@ struct Before {
     uint32_t next_block;
     bool tape_open, said_unit, said_home;
     Ending ending;
+    bool said_time;
+    DecimalPoints points;
     Shared<Tables> tables;
+    // Only of blocks that call or return.
+    bool has_calls = false;
+    std::vector<Frame> frames;
+    std::vector<ModalMacro> modal_macros;
 };
+
+void keep_calls(const InterpreterState& state, Before& before) {
+    before.has_calls = true;
+    before.frames = state.frames;
+    before.modal_macros = state.modal_macros;
+}
 
 void keep(const InterpreterState& state, Before& before) {
     before.modal = state.modal;
@@ -64,7 +81,10 @@ void keep(const InterpreterState& state, Before& before) {
     before.said_unit = state.said_unit;
     before.said_home = state.said_home;
     before.ending = state.ending;
+    before.said_time = state.said_time;
+    before.points = state.points;
     before.tables = state.tables;
+    before.has_calls = false;
 }
 
 void restore(InterpreterState& state, const Before& before) {
@@ -75,7 +95,14 @@ void restore(InterpreterState& state, const Before& before) {
     state.said_unit = before.said_unit;
     state.said_home = before.said_home;
     state.ending = before.ending;
+    state.said_time = before.said_time;
+    state.points = before.points;
     state.tables = before.tables;
+}
+
+/// Whether a flow statement goes to another level of calls.
+bool changes_level(FlowKind kind) {
+    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub;
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -107,6 +134,8 @@ struct Interpreter::Scratch {
 
     core::Result<bool> read_line(InterpreterState& state);
     core::Result<bool> end_of_text(InterpreterState& state);
+    bool begins_another_program(const InterpreterState& state) const;
+    void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
     core::Result<void> work_out_words(const ProgramParameters& parameters);
     core::Result<void> assign(InterpreterState& state, ProgramParameters& parameters);
@@ -125,19 +154,42 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
+        const bool inside = state.frames.size() > 1;
+        if (block.tape_mark && inside && !dialect.has_o_words) return false;
         if (block.tape_mark && state.next.source == 0
             && (state.tape_open || state.next_block > 0)) {
             state.ending = Ending::tape_mark;
             return false;
         }
+        if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
         if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
         return true;
     }
 }
 
-/// What the end of a text means: the end of the run, or, on some controls, of a subprogram's file.
+/// Where O numbers are programs of their own, one ends where the next one begins.
+bool Interpreter::Scratch::begins_another_program(const InterpreterState& state) const {
+    const bool numbered = !block.words.empty() && block.words.front().letter == 'O';
+    return numbered && dialect.has_fanuc_flow && (state.frames.size() > 1 || state.next_block > 0);
+}
+
+/// The words of the block before, which macros can ask for, and the time it took.
+void Interpreter::Scratch::remember_words(InterpreterState& state) const {
+    advance_timers(state);
+    for (const Word& word : block.words)
+        if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
+}
+
+/// What the end of a text means: the end of the run, unless a subprogram should have gone back.
 core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
+    if (state.ending == Ending::running && state.frames.size() > 1)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("the subprogram {} ends here without {}: the control stops "
+                                      "with an alarm",
+                                      state.frames.back().name,
+                                      dialect.has_o_words ? "endsub or M99" : "M99"),
+                          {.line = state.next.line - 1});
     if (state.ending == Ending::running) state.ending = Ending::text_end;
     return false;
 }
@@ -206,6 +258,9 @@ core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
             undos.push_back({false, numbers[i], {}, old});
             if (auto set = parameters.set_numbered(numbers[i], values[i], entry.span); !set)
                 return set;
+            if (auto heard = heed_alarm(block, dialect, numbers[i], values[i], entry.span, result);
+                !heard)
+                return heard;
         }
     }
     (void)state;
@@ -214,6 +269,10 @@ core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
 
 /// Gives the parameters of a block that failed their old values.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
+    if (before.has_calls) {
+        state.frames = before.frames;
+        state.modal_macros = before.modal_macros;
+    }
     ProgramParameters parameters(state, environment);
     for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
         if (undo->is_named)
@@ -237,11 +296,25 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         }
         if (auto done = work_out_words(parameters); !done) return done;
         if (auto done = assign(state, parameters); !done) return done;
+        if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
+        if (dialect.system_parameters != SystemParameters::rs274) note_clock(block, state, result);
+        if (changes_level(block.flow.kind)) keep_calls(state, before);
         if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
             return run_flow({library, environment, dialect, block, state, result});
     }
-    if (auto looked_up = look_up(block, dialect, environment, statement); !looked_up)
+    if (dialect.decimal_points_matter) {
+        if (environment.counts_smallest_steps)
+            count_smallest_steps(block, state.modal);
+        else
+            note_points(block, state, result);
+    }
+    if (auto looked_up =
+            look_up(block, dialect, environment, statement, blocks_are_arguments(state));
+        !looked_up)
         return looked_up;
+    if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
+        || !state.modal_macros.empty())
+        keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
     for (const Step step : steps)
         if (auto done = step(execution); !done) return done;
@@ -264,6 +337,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                           {.line = block.line, .column = 1});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
+    if (dialect.system_parameters != SystemParameters::rs274) remember_words(state);
     if (auto watched = watch_for_endless_loop(state, place); !watched)
         return tl::unexpected(std::move(watched).error());
     return true;

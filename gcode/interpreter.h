@@ -34,6 +34,13 @@ struct LoopWatch {
     bool operator==(const LoopWatch&) const { return true; }
 };
 
+/// Whether a program writes lengths with a decimal point, without one, or now so and now so.
+struct DecimalPoints {
+    bool present = false, missing = false, said = false;
+
+    bool operator==(const DecimalPoints&) const = default;
+};
+
 /// Everything between two blocks. A plain value: copy it to go back in time; copies share what is
 /// large until one of them changes it.
 struct InterpreterState {
@@ -43,9 +50,12 @@ struct InterpreterState {
     bool tape_open = false; // a % was seen
     bool said_unit = false; // the note that units were assumed
     bool said_home = false; // the warning that home was assumed
+    bool said_time = false; // the warning that the time is not known
+    DecimalPoints points;
     Ending ending = Ending::running;
     std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
-    std::optional<ModalMacro> modal_macro;             // G66
+    std::vector<ModalMacro> modal_macros;              // G66, the one that was said last behind
+    LocalParameters said{}; // Fanuc: the words that were said last, by the numbers of arguments
     Shared<Parameters> parameters;
     Shared<Tables> tables;
     Contour contour; // blocks on their way through cutter radius compensation

@@ -136,7 +136,10 @@ void use(Execution& execution, const Offsets& offsets) {
 } // namespace
 
 void change_offsets(Execution& execution, const Offsets& offsets) {
-    ModalState& modal = execution.modal();
+    change_offsets(execution.modal(), offsets);
+}
+
+void change_offsets(ModalState& modal, const Offsets& offsets) {
     const auto turns = [](const Offsets& some) {
         return some.has_frame || some.work.rotation_deg != 0.0;
     };

@@ -29,6 +29,8 @@ core::Error missing_number(const Lexer& lexer, size_t begin) {
             fmt::format("'{}' has no number behind it", lexer.line[begin])};
 }
 
+bool calls_macro(double code) { return code == 65.0 || code == 66.0 || code == 66.1; }
+
 class LineParser {
 public:
     LineParser(std::string_view text, uint32_t line, const Dialect& dialect, Block& block)
@@ -40,10 +42,25 @@ public:
             if (c == '\0') break;
             if (auto done = item(c); !done) return done;
         }
-        return {};
+        return check_flow();
     }
 
 private:
+    /// A jump or a loop shares its block with its number only; behind THEN something is done.
+    core::Result<void> check_flow() const {
+        const FlowKind kind = block_.flow.kind;
+        if (!dialect_.has_fanuc_flow || kind == FlowKind::none || kind == FlowKind::if_then)
+            return {};
+        const auto numbers = [](const Word& word) { return word.letter == 'N'; };
+        if (block_.assignments.empty()
+            && std::all_of(block_.words.begin(), block_.words.end(), numbers))
+            return {};
+        return core::fail(ErrorCode::syntax,
+                          "a jump or loop needs a block of its own: write the other words before "
+                          "or behind it",
+                          block_.flow.span);
+    }
+
     core::Result<void> item(char c) {
         if (c == '(') {
             FEELER_TRY(const Comment comment, lexer_.bracket_comment());
@@ -61,6 +78,7 @@ private:
         if (c == '#') return assignment();
         if (c == ',' && dialect_.has_corner_words) return corner_word();
         if ((c == '@' || c == '^') && dialect_.has_polar_words) return word(c, c);
+        if (c == ':' && dialect_.has_fanuc_flow && block_.is_empty()) return word(c, 'O');
         if (is_letter(c)) return lettered(upper(c));
         return stray(c);
     }
@@ -140,7 +158,14 @@ private:
     }
 
     core::Result<void> lettered(char letter) {
+        const size_t begin = lexer_.at;
+        const bool has_flow = block_.flow.kind != FlowKind::none;
         FEELER_TRY(const bool flows, parse_flow(lexer_, dialect_, block_));
+        if (flows && has_flow)
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("'{}' needs a block of its own", lexer_.written_from(begin)),
+                lexer_.span_from(begin));
         if (flows) return {};
         if (word_letters.find(letter) == std::string_view::npos)
             return core::fail(ErrorCode::syntax,
@@ -179,7 +204,8 @@ private:
         const bool repeatable = entry.letter == 'G' || entry.letter == 'M'
                                 || (is_offset && dialect_.offset_words_may_repeat);
         const auto same = [&](const Word& word) { return word.letter == entry.letter; };
-        if (!repeatable && std::any_of(block_.words.begin(), block_.words.end(), same))
+        const auto first = block_.words.begin() + static_cast<std::ptrdiff_t>(arguments_);
+        if (!repeatable && std::any_of(first, block_.words.end(), same))
             return core::fail(
                 ErrorCode::syntax,
                 fmt::format("'{}': a block takes one {} word, this is the second",
@@ -187,6 +213,8 @@ private:
                             entry.letter),
                 entry.span);
         block_.words.push_back(entry);
+        if (entry.letter == 'G' && dialect_.has_fanuc_flow && calls_macro(entry.value))
+            arguments_ = block_.words.size();
         return {};
     }
 
@@ -210,6 +238,7 @@ private:
     Lexer lexer_;
     const Dialect& dialect_;
     Block& block_;
+    size_t arguments_ = 0; // the first word that belongs to a macro call
 };
 
 } // namespace

@@ -24,6 +24,7 @@ public:
 
     const Program& program(uint32_t source) const { return *sources_[source].program; }
     const Dialect& dialect() const { return *dialect_; }
+    const std::vector<std::string>& search_path() const { return search_path_; }
 
     /// The labels and flow statements of a program.
     ///

@@ -130,8 +130,10 @@ void add(Digest& digest, const Frame& frame) {
         digest.add(number_of(left));
     }
     digest.add(number_of(frame.rounds_left));
-    digest.add(number_of(int(frame.shares_locals) + 2 * int(frame.restores)
-                         + 4 * int(frame.is_modal_macro)));
+    digest.add(
+        number_of(int(frame.shares_locals) + 2 * int(frame.restores) + 4 * int(frame.modal_macro)));
+    digest.add(uint64_t{frame.again.has_value()});
+    if (frame.again) add_all(digest, *frame.again);
     digest.add(uint64_t{frame.saved->has_value()});
     if (*frame.saved) add(digest, **frame.saved);
 }
@@ -158,18 +160,21 @@ uint64_t digest_of(const InterpreterState& state) {
     add(digest, state.modal);
     add(digest, state.next);
     digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
-                         + 8 * int(state.ending)));
+                         + 8 * int(state.ending) + 64 * int(state.said_time)
+                         + 128 * int(state.points.present) + 256 * int(state.points.missing)
+                         + 512 * int(state.points.said)));
     for (const Frame& frame : state.frames) add(digest, frame);
-    digest.add(uint64_t{state.modal_macro.has_value()});
-    if (state.modal_macro) {
-        digest.add(state.modal_macro->name);
-        add_all(digest, state.modal_macro->arguments);
+    for (const ModalMacro& macro : state.modal_macros) {
+        digest.add(macro.name);
+        add_all(digest, macro.arguments);
+        digest.add(number_of(2 * macro.rounds + int(macro.each_block)));
     }
     digest.add(uint64_t{state.contour.path.has_value()});
     if (state.contour.path) {
         digest.add(state.contour.path->tool.u);
         digest.add(state.contour.path->tool.v);
     }
+    add_all(digest, state.said);
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
     return digest.value();

@@ -85,6 +85,12 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
     return {};
 }
 
+/// Whether all words that follow are arguments: behind G65, G66 and G66.1.
+bool calls_macro(const Statement& statement) {
+    const CodeWord* macro = statement.of(ModalGroup::macro);
+    return macro && macro->code->tenths != tenths(67);
+}
+
 } // namespace
 
 const CodeWord* Statement::find(ModalGroup group) const {
@@ -105,14 +111,20 @@ const CodeWord* Statement::taker_of_axis_words() const {
 }
 
 core::Result<void> look_up(const Block& block, const Dialect& dialect,
-                           const Environment& environment, Statement& statement) {
+                           const Environment& environment, Statement& statement,
+                           bool words_are_arguments) {
     statement.words.fill(nullptr);
     statement.polar_radius = statement.polar_angle = nullptr;
     statement.code_count = 0;
     statement.groups = 0;
     statement.unknown_m_codes.clear();
+    statement.arguments.clear();
     for (const Word& word : block.words) {
-        if (word.letter == 'G' || word.letter == 'M') {
+        const bool is_argument =
+            calls_macro(statement) || (words_are_arguments && word.letter != 'G');
+        if (is_argument) {
+            statement.arguments.push_back(&word);
+        } else if (word.letter == 'G' || word.letter == 'M') {
             if (auto added = add_code(statement, word, dialect, environment); !added) return added;
         } else if (word.letter == '@') {
             statement.polar_radius = &word;

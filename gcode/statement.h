@@ -28,6 +28,7 @@ struct Statement {
     size_t code_count = 0;
     uint32_t groups = 0;                        // a bit for each modal group that is there
     std::vector<const Word*> unknown_m_codes{}; // a machine builder's
+    std::vector<const Word*> arguments{};       // of a macro call: what stands behind G65 or G66
 
     std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
     const Word* word(char letter) const { return words[static_cast<size_t>(letter - 'A')]; }
@@ -49,14 +50,15 @@ private:
     const CodeWord* find(ModalGroup group) const;
 };
 
-/// Looks up what a block's words mean in a dialect.
+/// Looks up what a block's words mean in a dialect. Under G66.1 all but the G codes are arguments.
 ///
 /// Effect: `statement` is overwritten.
 /// Errors: unsupported for a G code the dialect or this version does not have, and for an M code
 ///         that moves the machine, changes its state or jumps; syntax for two codes of one modal
 ///         group.
 core::Result<void> look_up(const Block& block, const Dialect& dialect,
-                           const Environment& environment, Statement& statement);
+                           const Environment& environment, Statement& statement,
+                           bool words_are_arguments = false);
 
 /// The word as a person would write it, such as X10.5.
 std::string written(const Word& word);

@@ -1,27 +1,33 @@
+#include "gcode/fanuc_parameters.h"
 #include "gcode/linuxcnc_parameters.h"
 #include "gcode/program_parameters.h"
 
 namespace gcode {
+namespace {
+
+bool is_fanuc(const Environment& environment) {
+    return dialect(environment.dialect).system_parameters != SystemParameters::rs274;
+}
+
+} // namespace
 
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       int number) {
-    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
-        return linuxcnc_parameter(state, environment, number);
-    return std::nullopt;
+    if (is_fanuc(environment)) return fanuc_parameter(state, environment, number);
+    return linuxcnc_parameter(state, environment, number);
 }
 
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       std::string_view name) {
-    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
-        return linuxcnc_parameter(state, name);
-    return std::nullopt;
+    if (is_fanuc(environment)) return std::nullopt;
+    return linuxcnc_parameter(state, name);
 }
 
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
                                         int number, Value value, core::SourceSpan where) {
-    if (dialect(environment.dialect).state_parameters == StateParameters::linuxcnc)
-        return set_linuxcnc_parameter(state, environment, number, value, where);
-    return false;
+    if (is_fanuc(environment))
+        return set_fanuc_parameter(state, environment, number, value, where);
+    return set_linuxcnc_parameter(state, environment, number, value, where);
 }
 
 } // namespace gcode

@@ -95,7 +95,7 @@ core::Result<void> check_words(Execution& execution) {
 
 core::Result<void> note_assumed_units(Execution& execution) {
     if (execution.modal().unit_said || execution.state.said_unit
-        || execution.statement.of(ModalGroup::units))
+        || execution.statement.of(ModalGroup::units) || execution.statement.of(ModalGroup::macro))
         return {};
     for (const Word& word : execution.block.words) {
         if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;

@@ -87,7 +87,7 @@ TEST(Arc, RefusesRadiiThatDifferAndNamesBoth) {
 }
 
 TEST(Arc, WarnsOfSmallDifferencesWhereTheControlHasAParameter) {
-    EXPECT_EQ(warnings_of("G21 G2 X10.004 I5 F100\nM30"), "");
+    EXPECT_EQ(warnings_of("G21 G2 X10.004 I5. F100\nM30"), "");
     EXPECT_THAT(warnings_of("G21 G2 X10.04 I5 F100\nM30"), HasSubstr("the arc's radius is 5.0000"));
     EXPECT_THAT(error_of("G21 G2 X10.052 I5 F100"), HasSubstr("5.0520 mm at its end"));
 }

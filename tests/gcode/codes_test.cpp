@@ -63,7 +63,7 @@ TEST(Codes, AnMCodeThatJumpsOrCallsIsRefusedInEveryDialect) {
     EXPECT_THAT(error_of("G0 X1 M97 P5", DialectId::fanuc),
                 HasSubstr("1:7: M97: other controls jump or call with it, the dialect fanuc has "
                           "no such code; take it out or name the program's dialect"));
-    EXPECT_THAT(error_of("M198 P5"), HasSubstr("1:1: M198: subprograms are not supported yet"));
+    EXPECT_THAT(error_of("M198 P5"), HasSubstr("1:6: P5: there is no program O5"));
     EXPECT_THAT(error_of("M99", DialectId::grbl), HasSubstr("1:1: M99: other controls jump"));
 }
 
@@ -91,8 +91,9 @@ TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
 }
 
 TEST(Codes, RefusedOnesSayWhy) {
-    for (const std::string_view text : {"M98 P100", "G65 P9000"})
-        EXPECT_THAT(error_of(text), HasSubstr("not supported yet")) << text;
+    for (const std::string_view text : {"G5.2 X1 Y1 P1 L3", "G74 Z-1 R1 F1"})
+        EXPECT_THAT(error_of(text, DialectId::linuxcnc), HasSubstr("not supported yet")) << text;
+    EXPECT_THAT(error_of("M46 P1 Q2", DialectId::haas), HasSubstr("not supported yet"));
 }
 
 TEST(Codes, CancellationsAreAccepted) {

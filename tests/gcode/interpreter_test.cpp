@@ -135,12 +135,6 @@ TEST(Interpreter, WarnsOfAnEndWithoutM2) {
     EXPECT_FALSE(run_text("G0 X1\nM30").run.ending);
 }
 
-TEST(Interpreter, RefusesAnM99ThatJumps) {
-    EXPECT_EQ(error_of("G0 X1\nM99 P100\nG0 X2\nN100 G0 Z-20"),
-              "2:5: P100: M99 with P jumps, and jumps are not supported yet: end the program with "
-              "M30");
-}
-
 TEST(Interpreter, EndsAtM99InAMainProgram) {
     const Ran ran = run_text("G0 X1\nM99\nG0 X2\n");
     EXPECT_EQ(ran.run.blocks.size(), 2u);
