@@ -15,6 +15,7 @@ constexpr DialectSet linuxcnc = bit(DialectId::linuxcnc);
 constexpr DialectSet fanuc = bit(DialectId::fanuc) | bit(DialectId::haas);
 constexpr DialectSet haas = bit(DialectId::haas);
 constexpr DialectSet grbl = bit(DialectId::grbl);
+constexpr DialectSet klartext = bit(DialectId::heidenhain);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
@@ -43,6 +44,12 @@ constexpr std::string_view no_five_axes = "motion of rotary axes is not supporte
 constexpr std::string_view no_surface_speed = "constant surface speed is not supported yet";
 constexpr std::string_view no_more_offsets = "extended work offsets are not supported yet";
 
+constexpr std::string_view no_machine_point =
+    "the machine builder's own datum is not known here: use M91";
+constexpr std::string_view no_turn_feed = "feeds per turn are not supported yet: write F in mm/min";
+constexpr std::string_view no_retreat =
+    "a retreat along the tool axis is not supported yet: write it as L with M91";
+
 // Sorted by letter and number. The groups are those of NISTIR 6556, table 4, where it has them.
 constexpr Code codes[] = {
     {'G', tenths(0), motion, "XYZ", every, {}},
@@ -63,14 +70,14 @@ constexpr Code codes[] = {
     {'G', tenths(13), action, "IJKQDLZ", haas, no_cycle},
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, no_rotation},
-    {'G', tenths(17), ModalGroup::plane, "", every, {}},
+    {'G', tenths(17), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(17, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
-    {'G', tenths(18), ModalGroup::plane, "", every, {}},
+    {'G', tenths(18), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(18, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
-    {'G', tenths(19), ModalGroup::plane, "", every, {}},
+    {'G', tenths(19), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(19, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
-    {'G', tenths(20), units, "", every, {}},
-    {'G', tenths(21), units, "", every, {}},
+    {'G', tenths(20), units, "", every | klartext, {}},
+    {'G', tenths(21), units, "", every | klartext, {}},
     {'G', tenths(28), action, "XYZ", every, {}},
     {'G', tenths(28, 1), action, "", linuxcnc | grbl, {}},
     {'G', tenths(30), action, "XYZ", every, {}},
@@ -99,7 +106,7 @@ constexpr Code codes[] = {
     {'G', tenths(51), scaling, "XYZPIJK", fanuc, no_rotation},
     {'G', tenths(51, 1), mirror, "XYZ", fanuc, no_rotation},
     {'G', tenths(52), action, "XYZ", mills, {}},
-    {'G', tenths(53), action, "XYZ", every, {}},
+    {'G', tenths(53), action, "XYZ", every | klartext, {}},
     {'G', tenths(54), work_offset, "", every, {}},
     {'G', tenths(54, 1), work_offset, "P", fanuc, no_more_offsets},
     {'G', tenths(55), work_offset, "", every, {}},
@@ -149,19 +156,19 @@ constexpr Code codes[] = {
     {'G', tenths(99), retract, "", mills, {}},
     {'G', tenths(103), other, "P", haas, {}},
     {'G', tenths(187), other, "PE", haas, {}},
-    {'M', tenths(0), stopping, "", every, {}},
-    {'M', tenths(1), stopping, "", every, {}},
-    {'M', tenths(2), stopping, "", every, {}},
-    {'M', tenths(3), spindle, "", every, {}},
-    {'M', tenths(4), spindle, "", every, {}},
-    {'M', tenths(5), spindle, "", every, {}},
-    {'M', tenths(6), tool_change, "", every, {}},
-    {'M', tenths(7), coolant, "", every, {}},
-    {'M', tenths(8), coolant, "", every, {}},
-    {'M', tenths(9), coolant, "", every, {}},
+    {'M', tenths(0), stopping, "", every | klartext, {}},
+    {'M', tenths(1), stopping, "", every | klartext, {}},
+    {'M', tenths(2), stopping, "", every | klartext, {}},
+    {'M', tenths(3), spindle, "", every | klartext, {}},
+    {'M', tenths(4), spindle, "", every | klartext, {}},
+    {'M', tenths(5), spindle, "", every | klartext, {}},
+    {'M', tenths(6), tool_change, "", every | klartext, {}},
+    {'M', tenths(7), coolant, "", every | klartext, {}},
+    {'M', tenths(8), coolant, "", every | klartext, {}},
+    {'M', tenths(9), coolant, "", every | klartext, {}},
     {'M', tenths(16), tool_change, "", haas, no_other_change},
     {'M', tenths(19), spindle, "RQPD", mills, {}},
-    {'M', tenths(30), stopping, "", every, {}},
+    {'M', tenths(30), stopping, "", every | klartext, {}},
     {'M', tenths(46), other, "PQ", haas, no_jump},
     {'M', tenths(48), overrides, "", mills, {}},
     {'M', tenths(49), overrides, "", mills, {}},
@@ -172,10 +179,47 @@ constexpr Code codes[] = {
     {'M', tenths(71), other, "", linuxcnc, no_saved_modes},
     {'M', tenths(72), other, "", linuxcnc, no_saved_modes},
     {'M', tenths(73), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(90), other, "", klartext, {}},
+    {'M', tenths(92), other, "", klartext, no_machine_point},
+    {'M', tenths(94), other, "", klartext, {}},
     {'M', tenths(96), subprogram, "PQ", haas, no_jump},
     {'M', tenths(97), subprogram, "PL", haas, no_subprogram},
     {'M', tenths(98), subprogram, "PLQ", mills, no_subprogram},
     {'M', tenths(99), subprogram, "P", mills, {}},
+    {'M', tenths(101), other, "", klartext, {}},
+    {'M', tenths(102), other, "", klartext, {}},
+    {'M', tenths(103), other, "", klartext, {}},
+    {'M', tenths(107), other, "", klartext, {}},
+    {'M', tenths(108), other, "", klartext, {}},
+    {'M', tenths(109), other, "", klartext, {}},
+    {'M', tenths(110), other, "", klartext, {}},
+    {'M', tenths(111), other, "", klartext, {}},
+    {'M', tenths(112), other, "", klartext, {}},
+    {'M', tenths(113), other, "", klartext, {}},
+    {'M', tenths(114), other, "", klartext, no_five_axes},
+    {'M', tenths(115), other, "", klartext, no_five_axes},
+    {'M', tenths(116), other, "", klartext, {}},
+    {'M', tenths(117), other, "", klartext, {}},
+    {'M', tenths(118), other, "", klartext, {}},
+    {'M', tenths(120), other, "", klartext, {}},
+    {'M', tenths(124), other, "", klartext, {}},
+    {'M', tenths(126), other, "", klartext, {}},
+    {'M', tenths(127), other, "", klartext, {}},
+    {'M', tenths(128), other, "", klartext, {}},
+    {'M', tenths(129), other, "", klartext, {}},
+    {'M', tenths(130), other, "", klartext, no_five_axes},
+    {'M', tenths(134), other, "", klartext, {}},
+    {'M', tenths(135), other, "", klartext, {}},
+    {'M', tenths(136), other, "", klartext, no_turn_feed},
+    {'M', tenths(137), other, "", klartext, {}},
+    {'M', tenths(138), other, "", klartext, {}},
+    {'M', tenths(140), other, "", klartext, no_retreat},
+    {'M', tenths(141), other, "", klartext, {}},
+    {'M', tenths(143), other, "", klartext, {}},
+    {'M', tenths(144), other, "", klartext, no_five_axes},
+    {'M', tenths(145), other, "", klartext, {}},
+    {'M', tenths(148), other, "", klartext, {}},
+    {'M', tenths(149), other, "", klartext, {}},
     {'M', tenths(198), subprogram, "PLQ", fanuc, no_subprogram},
 };
 

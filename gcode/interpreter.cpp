@@ -4,6 +4,8 @@
 
 #include "gcode/execution.h"
 #include "gcode/flow.h"
+#include "gcode/klartext.h"
+#include "gcode/klartext_parser.h"
 #include "gcode/parser.h"
 #include "gcode/program_parameters.h"
 
@@ -45,6 +47,7 @@ struct Before {
     bool tape_open, said_unit, said_home;
     Ending ending;
     Shared<Tables> tables;
+    Shared<KlartextState> klartext;
 };
 
 void keep(const InterpreterState& state, Before& before) {
@@ -56,6 +59,7 @@ void keep(const InterpreterState& state, Before& before) {
     before.said_home = state.said_home;
     before.ending = state.ending;
     before.tables = state.tables;
+    before.klartext = state.klartext;
 }
 
 void restore(InterpreterState& state, const Before& before) {
@@ -67,6 +71,7 @@ void restore(InterpreterState& state, const Before& before) {
     state.said_home = before.said_home;
     state.ending = before.ending;
     state.tables = before.tables;
+    state.klartext = before.klartext;
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -104,6 +109,8 @@ struct Interpreter::Scratch {
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
+    core::SourceSpan place_of(core::SourceSpan where) const;
+    void place_in_lines();
 };
 
 /// Reads the next line that says something; false at the end of the text.
@@ -112,7 +119,10 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         const Program& program = library.program(state.next.source);
         if (state.next.line > program.line_count()) return false;
         const uint32_t number = state.next.line++;
-        const std::string_view text = program.line(number);
+        const std::string_view text = dialect.language == Language::klartext
+                                          ? klartext_block(program, number)
+                                          : program.line(number);
+        if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
@@ -234,6 +244,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     if (auto looked_up = look_up(block, dialect, environment, statement); !looked_up)
         return looked_up;
     Execution execution{library, environment, dialect, block, statement, state, result};
+    if (dialect.language == Language::klartext) return run_klartext(execution);
     for (const Step step : steps)
         if (auto done = step(execution); !done) return done;
     return {};
@@ -260,6 +271,16 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     return true;
 }
 
+/// Where a place of the block really is: a block may have several lines.
+core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
+    const bool several = dialect.language == Language::klartext && where.line == block.line;
+    return several ? gcode::place_in_lines(block.text, where) : where;
+}
+
+void Interpreter::Scratch::place_in_lines() {
+    for (Warning& warning : result.warnings) warning.where = place_of(warning.where);
+}
+
 Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment)
     : scratch_(new Scratch{library, environment, gcode::dialect(environment.dialect)}) {}
 
@@ -271,8 +292,12 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
     scratch_->undos.clear();
     const uint32_t source = state.next.source;
     auto found = scratch_->try_next(state);
-    if (found) return *found ? &scratch_->result : nullptr;
+    if (found) {
+        scratch_->place_in_lines();
+        return *found ? &scratch_->result : nullptr;
+    }
     scratch_->take_back(state);
+    found.error().where = scratch_->place_of(found.error().where);
     if (found.error().file.empty()) found.error().file = scratch_->library.program(source).file;
     return tl::unexpected(std::move(found).error());
 }

@@ -12,6 +12,7 @@
 #include "gcode/canonical.h"
 #include "gcode/environment.h"
 #include "gcode/frame.h"
+#include "gcode/klartext_state.h"
 #include "gcode/parameters.h"
 #include "gcode/program_library.h"
 #include "gcode/shared.h"
@@ -69,6 +70,7 @@ struct InterpreterState {
     std::optional<ModalMacro> modal_macro;             // G66
     Shared<Parameters> parameters;
     Shared<Tables> tables;
+    Shared<KlartextState> klartext;
     LoopWatch watch;
 
     bool operator==(const InterpreterState&) const = default;
