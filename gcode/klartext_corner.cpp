@@ -189,11 +189,14 @@ bool is_known(const Position& place, const PlaneAxes& axes) {
 }
 
 /// The motion behind the corner, found by running the program ahead on a copy of the state.
-core::Result<std::optional<Element>> motion_ahead(Execution& execution, const Position& end) {
+core::Result<std::optional<Element>> motion_ahead(Execution& execution, const Position& end,
+                                                  const Element& before) {
     InterpreterState ahead = execution.state;
     ahead.modal.position = end;
     ahead.klartext.write().looks_ahead = true;
     ahead.klartext.write().corner.reset();
+    if (before.turn != 0 || size(sum(before.end, before.start, -1.0)) > fuzz)
+        ahead.klartext.write().direction = before.direction(before.end);
     Interpreter interpreter(execution.library, execution.environment);
     const PlaneAxes axes = axes_of(execution.modal().plane);
     for (int count = 0; count < most_blocks_ahead; ++count) {
@@ -228,7 +231,7 @@ bool is_inside(double share) { return share > -fuzz && share < 1.0 + fuzz; }
 /// Lays the corner between two motions, and remembers it.
 core::Result<Position> lay_corner(Execution& execution, const Block& block, const Position& end,
                                   const Element& first, double corner_size) {
-    FEELER_TRY(const auto second, motion_ahead(execution, end));
+    FEELER_TRY(const auto second, motion_ahead(execution, end, first));
     if (!second)
         return tl::unexpected(refusal(block, "a motion with feed in the plane belongs behind it, "
                                              "at the same height"));
