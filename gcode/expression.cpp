@@ -61,6 +61,7 @@ std::string_view objection_to(Operation operation, double a, double b) {
     case Operation::to_decimal_code:
         return a < 0.0 || a > largest_whole ? "BIN and BCD take whole numbers from 0" : "";
     case Operation::divide:
+        return b == 0.0 ? "a division by zero: what stands behind the '/' is 0" : "";
     case Operation::modulo:
     case Operation::divide_whole:
         return b == 0.0 ? "a division by zero" : "";

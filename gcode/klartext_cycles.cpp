@@ -78,7 +78,7 @@ void drill_universal(Hole& hole) {
     const DefinedCycle& cycle = hole.cycle;
     const bool by_count = cycle.number == 203;
     const double start = hole.surface - std::abs(cycle.start_depth);
-    if (start < hole.above) hole.rapid(start + (cycle.start_depth != 0.0 ? cycle.clearance : 0.0));
+    if (cycle.start_depth != 0.0) hole.rapid(start + cycle.clearance);
     double step = cycle.peck > 0.0 ? cycle.peck : start - hole.bottom;
     double level = start, since_break = 0.0;
     int breaks = 0;

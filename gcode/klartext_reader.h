@@ -47,6 +47,16 @@ core::Result<void> read_contour_word(KlartextReader& reader);
 /// Reads an M word.
 core::Result<void> read_m_word(KlartextReader& reader);
 
+/// Reads the name of a label: a number, a name in quotation marks, or a Q parameter.
+core::Result<void> read_label_name(KlartextReader& reader);
+
+/// Reads a whole number without a sign.
+core::Result<int> read_whole(KlartextReader& reader, std::string_view behind);
+
+/// Reads `Q5 =`, and adds the assignment of a value to it.
+core::Result<int> read_target(KlartextReader& reader);
+core::Result<void> set_result(KlartextReader& reader, int target, Expression value);
+
 // What stands behind the first keyword of a statement.
 core::Result<void> read_tool(KlartextReader& reader);       // TOOL CALL, TOOL DEF
 core::Result<void> read_cycle(KlartextReader& reader);      // CYCL DEF, CYCL CALL

@@ -74,6 +74,7 @@ core::Result<void> read_turn(KlartextReader& reader) {
 
 /// M codes that other words follow which are not those of the motion.
 core::Result<void> skip_arguments(KlartextReader& reader, int code) {
+    if (code == 140) reader.lexer.at = reader.lexer.line.size(); // MB MAX; it is refused
     const std::string_view letters = code == 118                  ? "XYZABCUVW"
                                      : code == 120                ? "LA"
                                      : code == 124                ? "T"

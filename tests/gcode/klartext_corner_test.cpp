@@ -46,7 +46,7 @@ TEST(KlartextCorner, RoundsBetweenALineAndAnArc) {
     const std::string ran =
         klartext("L X+5 Y+0 F100\nCC X+0 Y+0\nL X+10\nRND R1\nC X+0 Y+10 DR+\n");
     EXPECT_THAT(ran, HasSubstr("straight_feed x=8.944272 y=0 z=0"));
-    EXPECT_THAT(ran, HasSubstr("arc_feed x=9.938080 y=1.111111 z=0 plane=XY centre=8.944272,1 "
+    EXPECT_THAT(ran, HasSubstr("arc_feed x=9.93808 y=1.111111 z=0 plane=XY centre=8.944272,1 "
                                "turns=1"));
     EXPECT_THAT(ran, HasSubstr("arc_feed x=0 y=10 z=0 plane=XY centre=0,0 turns=1"));
 }

@@ -130,6 +130,7 @@ TEST(KlartextArc, PolarHelixHasItsTurns) {
 TEST(KlartextTool, CallBringsToolLengthAndSpeed) {
     EXPECT_EQ(klartext("TOOL DEF 5 L+20 R+3\nTOOL CALL 5 Z S1000 F200 DL+0.5 DR+0.1\n"
                        "L Z+30 FAUTO M3\nTOOL CALL S500\nL Z+Q108\n"),
+              "select_plane plane=XY\n"
               "select_tool tool=5\n"
               "change_tool tool=5\n"
               "use_tool_length_offset number=5 length=20.5\n"
