@@ -10,16 +10,21 @@
 
 namespace gcode {
 
+/// How an axis word counts: as the distance mode says, or by itself, as `IX5` does.
+enum class Addressing : uint8_t { modal, absolute, incremental };
+
 /// A letter and its value as written, in the units of the program.
 struct Word {
     char letter = '\0'; // upper case; '@' and '^' of polar places, 'r' and 'c' of `,R` and `,C`
     double value = 0.0;
     core::SourceSpan span{};
-    bool has_point = false;  // X5. rather than X5, or a computed value
+    bool has_point = false; // X5. rather than X5, or a computed value
+    Addressing addressing = Addressing::modal;
     Expression expression{}; // gives the value when it is there
 
     bool operator==(const Word& other) const {
-        return letter == other.letter && value == other.value && has_point == other.has_point;
+        return letter == other.letter && value == other.value && has_point == other.has_point
+               && addressing == other.addressing;
     }
 };
 
@@ -64,6 +69,12 @@ enum class FlowKind : uint8_t {
     if_then,
     while_do,
     end_do,
+    // Klartext
+    label,
+    call_label,
+    call_program,
+    end_program,
+    if_go_to_label,
 };
 
 /// The flow statement of a line. It stands alone on its line but for a block number and comments;
@@ -80,6 +91,41 @@ struct Flow {
     std::vector<Expression> arguments{};
 };
 
+/// What a line does that says so with a keyword rather than with a G code.
+enum class CommandKind : uint8_t {
+    none,
+    straight,         // L
+    straight_polar,   // LP
+    pole,             // CC
+    arc,              // C, around the pole
+    arc_polar,        // CP
+    arc_of_radius,    // CR
+    tangent_arc,      // CT
+    tangent_polar,    // CTP
+    rounding,         // RND
+    chamfer,          // CHF
+    tool_call,        // TOOL CALL
+    tool_definition,  // TOOL DEF
+    cycle_definition, // CYCL DEF
+    cycle_call,       // CYCL CALL, CYCL CALL POS
+    read_system,      // FN 18
+    program_error,    // FN 14
+    note,             // what is read and has no effect here
+    modes,            // M words alone
+};
+
+/// A statement that begins with a keyword. Its values are words of the block: a radius is R, polar
+/// places are @ and ^, the rest as the kind says.
+struct Command {
+    CommandKind kind = CommandKind::none;
+    core::SourceSpan span{};
+    int number = 0, part = 0;     // CYCL DEF 7.1: 7 and 1
+    int turn = 0;                 // DR+: 1, DR-: -1
+    bool rapid = false;           // FMAX
+    bool calls_cycle = false;     // M99, or a call of its own
+    bool calls_from_here = false; // M89: after every motion
+};
+
 /// One line of an NC program after parsing. Views refer to the program's text.
 struct Block {
     uint32_t line = 0;
@@ -88,6 +134,7 @@ struct Block {
     std::vector<Comment> comments{};
     std::vector<Assignment> assignments{};
     Flow flow{};
+    Command command{};
     ExpressionPool pool{};
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
     bool tape_mark = false;            // a line that begins with %
@@ -96,7 +143,8 @@ struct Block {
 
     /// Whether the line says anything that is run.
     bool is_empty() const {
-        return words.empty() && assignments.empty() && flow.kind == FlowKind::none && !has_message;
+        return words.empty() && assignments.empty() && flow.kind == FlowKind::none
+               && command.kind == CommandKind::none && !has_message;
     }
     void clear();
 };

@@ -15,6 +15,7 @@ constexpr DialectSet linuxcnc = bit(DialectId::linuxcnc);
 constexpr DialectSet fanuc = bit(DialectId::fanuc) | bit(DialectId::haas);
 constexpr DialectSet haas = bit(DialectId::haas);
 constexpr DialectSet grbl = bit(DialectId::grbl);
+constexpr DialectSet klartext = bit(DialectId::heidenhain);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
@@ -30,6 +31,16 @@ constexpr std::string_view no_pocket =
     "pocket cycles are not supported yet: write their moves out with G1, G2 and G3";
 constexpr std::string_view no_engraving =
     "engraving is not supported yet: write the letters out with G1, G2 and G3";
+
+constexpr std::string_view no_five_axes = "motion of rotary axes is not supported yet";
+
+constexpr std::string_view no_machine_point =
+    "the machine builder's own datum is not known here: use M91";
+
+constexpr std::string_view no_turn_feed = "feeds per turn are not supported yet: write F in mm/min";
+
+constexpr std::string_view no_retreat =
+    "a retreat along the tool axis is not supported yet: write it as L with M91";
 
 // Sorted by letter and number. The groups are those of NISTIR 6556, table 4, where it has them.
 constexpr Code codes[] = {
@@ -54,14 +65,14 @@ constexpr Code codes[] = {
     {'G', tenths(13), action, "XYZIJKQDL", haas, no_pocket},
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, {}},
-    {'G', tenths(17), ModalGroup::plane, "", every, {}},
+    {'G', tenths(17), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(17, 1), ModalGroup::plane, "", linuxcnc, {}},
-    {'G', tenths(18), ModalGroup::plane, "", every, {}},
+    {'G', tenths(18), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(18, 1), ModalGroup::plane, "", linuxcnc, {}},
-    {'G', tenths(19), ModalGroup::plane, "", every, {}},
+    {'G', tenths(19), ModalGroup::plane, "", every | klartext, {}},
     {'G', tenths(19, 1), ModalGroup::plane, "", linuxcnc, {}},
-    {'G', tenths(20), units, "", every, {}},
-    {'G', tenths(21), units, "", every, {}},
+    {'G', tenths(20), units, "", every | klartext, {}},
+    {'G', tenths(21), units, "", every | klartext, {}},
     {'G', tenths(27), action, "XYZ", fanuc, {}},
     {'G', tenths(28), action, "XYZ", every, {}},
     {'G', tenths(28, 1), action, "", linuxcnc | grbl, {}},
@@ -93,7 +104,7 @@ constexpr Code codes[] = {
     {'G', tenths(51), scaling, "XYZPIJK", fanuc, {}},
     {'G', tenths(51, 1), mirror, "XYZ", fanuc, {}},
     {'G', tenths(52), action, "XYZ", mills, {}},
-    {'G', tenths(53), action, "XYZ", every, {}},
+    {'G', tenths(53), action, "XYZ", every | klartext, {}},
     {'G', tenths(53, 1), other, "PR", fanuc, {}},
     {'G', tenths(54), work_offset, "", every, {}},
     {'G', tenths(54, 1), work_offset, "P", fanuc, {}},
@@ -180,20 +191,20 @@ constexpr Code codes[] = {
     {'G', tenths(150), action, "XYZPIJKQRDS", haas, no_pocket},
     {'G', tenths(154), work_offset, "P", haas, {}},
     {'G', tenths(187), other, "PE", haas, {}},
-    {'M', tenths(0), stopping, "", every, {}},
-    {'M', tenths(1), stopping, "", every, {}},
-    {'M', tenths(2), stopping, "", every, {}},
-    {'M', tenths(3), spindle, "", every, {}},
-    {'M', tenths(4), spindle, "", every, {}},
-    {'M', tenths(5), spindle, "", every, {}},
-    {'M', tenths(6), tool_change, "", every, {}},
-    {'M', tenths(7), coolant, "", every, {}},
-    {'M', tenths(8), coolant, "", every, {}},
-    {'M', tenths(9), coolant, "", every, {}},
+    {'M', tenths(0), stopping, "", every | klartext, {}},
+    {'M', tenths(1), stopping, "", every | klartext, {}},
+    {'M', tenths(2), stopping, "", every | klartext, {}},
+    {'M', tenths(3), spindle, "", every | klartext, {}},
+    {'M', tenths(4), spindle, "", every | klartext, {}},
+    {'M', tenths(5), spindle, "", every | klartext, {}},
+    {'M', tenths(6), tool_change, "", every | klartext, {}},
+    {'M', tenths(7), coolant, "", every | klartext, {}},
+    {'M', tenths(8), coolant, "", every | klartext, {}},
+    {'M', tenths(9), coolant, "", every | klartext, {}},
     {'M', tenths(16), tool_change, "", haas, no_other_change},
     {'M', tenths(19), spindle, "RQPD", mills, {}},
     {'M', tenths(29), other, "", bit(DialectId::fanuc), {}},
-    {'M', tenths(30), stopping, "", every, {}},
+    {'M', tenths(30), stopping, "", every | klartext, {}},
     {'M', tenths(46), other, "PQ", haas, no_jump},
     {'M', tenths(48), overrides, "", mills, {}},
     {'M', tenths(49), overrides, "", mills, {}},
@@ -215,10 +226,47 @@ constexpr Code codes[] = {
     {'M', tenths(71), other, "", linuxcnc, {}},
     {'M', tenths(72), other, "", linuxcnc, {}},
     {'M', tenths(73), other, "", linuxcnc, {}},
+    {'M', tenths(90), other, "", klartext, {}},
+    {'M', tenths(92), other, "", klartext, no_machine_point},
+    {'M', tenths(94), other, "", klartext, {}},
     {'M', tenths(96), subprogram, "PQ", haas, {}},
     {'M', tenths(97), subprogram, "PL", haas, {}},
     {'M', tenths(98), subprogram, "PLQ", mills, {}},
     {'M', tenths(99), subprogram, "P", mills, {}},
+    {'M', tenths(101), other, "", klartext, {}},
+    {'M', tenths(102), other, "", klartext, {}},
+    {'M', tenths(103), other, "", klartext, {}},
+    {'M', tenths(107), other, "", klartext, {}},
+    {'M', tenths(108), other, "", klartext, {}},
+    {'M', tenths(109), other, "", klartext, {}},
+    {'M', tenths(110), other, "", klartext, {}},
+    {'M', tenths(111), other, "", klartext, {}},
+    {'M', tenths(112), other, "", klartext, {}},
+    {'M', tenths(113), other, "", klartext, {}},
+    {'M', tenths(114), other, "", klartext, no_five_axes},
+    {'M', tenths(115), other, "", klartext, no_five_axes},
+    {'M', tenths(116), other, "", klartext, {}},
+    {'M', tenths(117), other, "", klartext, {}},
+    {'M', tenths(118), other, "", klartext, {}},
+    {'M', tenths(120), other, "", klartext, {}},
+    {'M', tenths(124), other, "", klartext, {}},
+    {'M', tenths(126), other, "", klartext, {}},
+    {'M', tenths(127), other, "", klartext, {}},
+    {'M', tenths(128), other, "", klartext, {}},
+    {'M', tenths(129), other, "", klartext, {}},
+    {'M', tenths(130), other, "", klartext, no_five_axes},
+    {'M', tenths(134), other, "", klartext, {}},
+    {'M', tenths(135), other, "", klartext, {}},
+    {'M', tenths(136), other, "", klartext, no_turn_feed},
+    {'M', tenths(137), other, "", klartext, {}},
+    {'M', tenths(138), other, "", klartext, {}},
+    {'M', tenths(140), other, "", klartext, no_retreat},
+    {'M', tenths(141), other, "", klartext, {}},
+    {'M', tenths(143), other, "", klartext, {}},
+    {'M', tenths(144), other, "", klartext, no_five_axes},
+    {'M', tenths(145), other, "", klartext, {}},
+    {'M', tenths(148), other, "", klartext, {}},
+    {'M', tenths(149), other, "", klartext, {}},
     {'M', tenths(198), subprogram, "PLQ", fanuc, {}},
 };
 
@@ -231,15 +279,14 @@ static_assert(std::is_sorted(std::begin(codes), std::end(codes), before));
 /// for none.
 struct Positions {
     static constexpr int most = 2000;
-    std::array<uint8_t, most> g{}, m{};
+    std::array<uint16_t, most> g{}, m{};
 };
 
 constexpr Positions positions = [] {
-    static_assert(std::size(codes) < 256);
     Positions found;
     for (size_t i = std::size(codes); i-- > 0;)
         (codes[i].letter == 'G' ? found.g : found.m)[static_cast<size_t>(codes[i].tenths)] =
-            static_cast<uint8_t>(i + 1);
+            static_cast<uint16_t>(i + 1);
     return found;
 }();
 
@@ -251,7 +298,7 @@ const Code* find_code(char letter, double value, DialectId id) {
     const auto rounded = static_cast<int>(scaled + 0.5);
     if (std::abs(scaled - rounded) > 1e-6) return nullptr;
     const auto& by_tenths = letter == 'G' ? positions.g : positions.m;
-    const uint8_t place = by_tenths[static_cast<size_t>(rounded)];
+    const uint16_t place = by_tenths[static_cast<size_t>(rounded)];
     if (place == 0) return nullptr;
     // A code that means something else on another control has a row for each, side by side.
     const Code* found = &codes[place - 1];

@@ -60,6 +60,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .repeats_with_k = false,
                               .tape_mark_ends_program = true,
                               .repeated_codes_are_errors = true,
+                              .language = Language::words,
                               .expressions = ExpressionSyntax::rs274,
                               .arithmetic = {.equality = 0.0001},
                               .tool_entries_by_axes = true,
@@ -115,6 +116,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .repeats_with_k = true,
                            .tape_mark_ends_program = false,
                            .repeated_codes_are_errors = false,
+                           .language = Language::words,
                            .expressions = ExpressionSyntax::fanuc,
                            .arithmetic = {.bitwise_logic = true},
                            .tool_entries_by_axes = false,
@@ -171,6 +173,32 @@ constexpr Dialect grbl = [] {
     return entry;
 }();
 
+// The input tolerance of the iTNC's manual for the end of an arc around CC is 0.016 mm.
+constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
+                                         .absolute_inch = 0.016 / 25.4,
+                                         .relative = 0.0,
+                                         .limit = 1.0,
+                                         .warned_mm = 0.05};
+
+constexpr Dialect heidenhain = [] {
+    Dialect entry = fanuc;
+    entry.id = DialectId::heidenhain;
+    entry.name = "heidenhain";
+    entry.arc = heidenhain_arc;
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
+    entry.dwell_without_point_is_milliseconds = false;
+    entry.language = Language::klartext;
+    entry.expressions = ExpressionSyntax::klartext;
+    entry.arithmetic = {};
+    entry.has_fanuc_flow = false;
+    entry.has_corner_words = false;
+    entry.unset_is_vacant = false;
+    entry.local_count = 0;
+    entry.deepest_calls = 30;
+    return entry;
+}();
+
 constexpr Dialect unsupported(DialectId id, std::string_view name) {
     Dialect entry = fanuc;
     entry.id = id;
@@ -179,12 +207,8 @@ constexpr Dialect unsupported(DialectId id, std::string_view name) {
     return entry;
 }
 
-constexpr std::array dialects = {linuxcnc,
-                                 fanuc,
-                                 haas,
-                                 grbl,
-                                 unsupported(DialectId::siemens, "siemens"),
-                                 unsupported(DialectId::heidenhain, "heidenhain")};
+constexpr std::array dialects = {
+    linuxcnc, fanuc, haas, grbl, unsupported(DialectId::siemens, "siemens"), heidenhain};
 
 } // namespace
 

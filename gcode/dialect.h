@@ -13,6 +13,9 @@ namespace gcode {
 
 enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain };
 
+/// What the lines of a program look like: letters with numbers, or keywords.
+enum class Language : uint8_t { words, klartext };
+
 /// How far the radius to an arc's end may be from the radius to its start.
 struct ArcTolerance {
     double absolute_mm;   // always allowed
@@ -61,6 +64,7 @@ struct Dialect {
     bool repeated_codes_are_errors;          // the same G code twice in a block
 
     // the language around the words
+    Language language;
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
     bool tool_entries_by_axes;             // G10 L1, L10 and L11 take P and axis words

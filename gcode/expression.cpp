@@ -52,6 +52,7 @@ std::string_view objection_to(Operation operation, double a, double b) {
     case Operation::square_root:
         return a < 0.0 ? "the square root of a negative number" : "";
     case Operation::logarithm:
+    case Operation::decimal_logarithm:
         return a <= 0.0 ? "the logarithm of a number that is not above zero" : "";
     case Operation::arc_cosine:
     case Operation::arc_sine:
@@ -60,6 +61,7 @@ std::string_view objection_to(Operation operation, double a, double b) {
     case Operation::to_decimal_code:
         return a < 0.0 || a > largest_whole ? "BIN and BCD take whole numbers from 0" : "";
     case Operation::divide:
+        return b == 0.0 ? "a division by zero: what stands behind the '/' is 0" : "";
     case Operation::modulo:
     case Operation::divide_whole:
         return b == 0.0 ? "a division by zero" : "";
@@ -108,6 +110,18 @@ double of_one(Operation operation, double a) {
         return recode(a, 16, 10);
     case Operation::to_decimal_code:
         return recode(a, 10, 16);
+    case Operation::decimal_logarithm:
+        return std::log10(a);
+    case Operation::sign:
+        return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
+    case Operation::fraction:
+        return a - std::trunc(a);
+    case Operation::truncate:
+        return std::trunc(a);
+    case Operation::square:
+        return a * a;
+    case Operation::full_turn:
+        return modulo(a, 360.0);
     default:
         return truth(a == 0.0); // truth_not
     }
@@ -124,6 +138,8 @@ double of_two(Operation operation, double a, double b, double equality) {
     switch (operation) {
     case Operation::arc_tangent:
         return std::atan2(a, b) * degrees;
+    case Operation::hypotenuse:
+        return std::hypot(a, b);
     case Operation::power:
         return std::pow(a, b);
     case Operation::multiply:

@@ -36,8 +36,15 @@ enum class Operation : uint8_t {
     from_decimal_code, // BIN
     to_decimal_code,   // BCD
     truth_not,
+    decimal_logarithm,
+    sign,     // -1, 0 or 1
+    fraction, // what is behind the point
+    truncate, // what is before the point
+    square,
+    full_turn, // an angle in degrees, from 0 to 360
     // of two
     arc_tangent,
+    hypotenuse, // the root of the sum of squares
     power,
     multiply,
     divide,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <span>
 
 #include <fmt/format.h>
@@ -58,8 +60,9 @@ constexpr Operator siemens_operators[] = {
     {"==", equal, 1},         {"<>", not_equal, 1},   {">=", greater_or_equal, 1},
     {"<=", less_or_equal, 1}, {">", greater, 1},      {"<", less, 1}};
 
-constexpr Operator klartext_operators[] = {
-    {"*", multiply, 5}, {"/", divide, 5}, {"^", power, 6}, {"+", add, 4}, {"-", subtract, 4}};
+constexpr Operator klartext_operators[] = {{"*", multiply, 5}, {"/", divide, 5},
+                                           {"%", modulo, 5},   {"^", power, 6},
+                                           {"+", add, 4},      {"-", subtract, 4}};
 
 struct Function {
     std::string_view name;
@@ -84,6 +87,15 @@ constexpr Function functions[] = {{"ABS", absolute},
                                   {"BCD", to_decimal_code},
                                   {"TRUNC", fix},
                                   {"NOT", truth_not}};
+
+// Of two that begin alike, the longer one comes first. The angle of ATAN is that of y over 1.
+constexpr Function klartext_functions[] = {
+    {"SQRT", square_root}, {"SQ", square},       {"SIN", sine},
+    {"SGN", sign},         {"COS", cosine},      {"TAN", tangent},
+    {"ASIN", arc_sine},    {"ACOS", arc_cosine}, {"ATAN", Operation::arc_tangent},
+    {"ABS", absolute},     {"INT", truncate},    {"FRAC", fraction},
+    {"NEG", negate},       {"LN", logarithm},    {"LOG", decimal_logarithm},
+    {"EXP", exponential}};
 
 std::span<const Operator> operators_of(ExpressionSyntax syntax) {
     switch (syntax) {
@@ -123,6 +135,7 @@ private:
     const Operator* next_operator(int lowest_rank);
     core::Result<void> parameter();
     core::Result<void> function();
+    core::Result<void> klartext_operand();
     core::Result<void> arc_tangent(size_t column);
     core::Result<void> number();
     core::Result<void> exists(size_t column);
@@ -233,7 +246,38 @@ core::Result<void> Parser::exists(size_t column) {
     return expect(close());
 }
 
+/// `Q5`, `PI`, or a function of the operand behind it: `SIN Q5`, `SQRT(...)`.
+core::Result<void> Parser::klartext_operand() {
+    const size_t begin = lexer_.at;
+    const auto push = [&](double value) {
+        pool_.instructions.push_back({Operation::number, static_cast<uint32_t>(begin + 1), value});
+    };
+    if (upper(lexer_.line[begin]) == 'Q') {
+        FEELER_TRY(const int number, parse_q_parameter(lexer_));
+        push(number);
+        emit(numbered, begin);
+        return {};
+    }
+    if (lexer_.accept_word("PI")) {
+        push(std::numbers::pi);
+        return {};
+    }
+    for (const Function& candidate : klartext_functions) {
+        if (!lexer_.accept_word(candidate.name)) continue;
+        if (++depth_ > deepest) return lexer_.unexpected_character();
+        if (auto done = value(); !done) return done;
+        --depth_;
+        if (candidate.operation == Operation::arc_tangent) push(1.0);
+        emit(candidate.operation, begin);
+        return {};
+    }
+    const std::string letters = lexer_.letters();
+    return core::fail(ErrorCode::syntax, fmt::format("there is no function '{}'", letters),
+                      lexer_.span(begin, begin + letters.size()));
+}
+
 core::Result<void> Parser::function() {
+    if (syntax_ == ExpressionSyntax::klartext) return klartext_operand();
     const size_t begin = lexer_.at;
     if (lexer_.accept_word("ATAN")) return arc_tangent(begin);
     if (lexer_.accept_word("EXISTS")) return exists(begin);
@@ -333,6 +377,33 @@ core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
     if (auto done = Parser(lexer, syntax, pool).brackets(); !done)
         return tl::unexpected(std::move(done).error());
     return Expression{first, static_cast<uint32_t>(pool.instructions.size()) - first};
+}
+
+core::Result<int> parse_q_parameter(Lexer& lexer) {
+    constexpr int highest = 1999, highest_kept = 499;
+    const size_t begin = lexer.at++;
+    const char kind = lexer.at < lexer.line.size() ? upper(lexer.line[lexer.at]) : '\0';
+    if (kind == 'R' || kind == 'L' || kind == 'S') ++lexer.at;
+    if (kind == 'L' || kind == 'S')
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("'{}': {} are not supported yet: use Q0 to Q99", lexer.written_from(begin),
+                        kind == 'L' ? "the local QL parameters" : "the texts of QS parameters"),
+            lexer.span_from(begin));
+    if (lexer.at >= lexer.line.size() || !is_digit(lexer.line[lexer.at]))
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("'{}' has no number behind it: Q parameters are Q0 to Q{}",
+                                      lexer.written_from(begin), highest),
+                          lexer.span_from(begin));
+    FEELER_TRY(const Number number, lexer.number());
+    const double last = kind == 'R' ? highest_kept : highest;
+    if (number.value > last || number.value != std::floor(number.value))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("'{}': the numbers of Q parameters go to {}",
+                                      lexer.written_from(begin), last),
+                          lexer.span_from(begin));
+    const int index = static_cast<int>(number.value);
+    return kind == 'R' ? first_kept_q + index : index == 0 ? q_zero : index;
 }
 
 core::Result<std::string> parse_name(Lexer& lexer) {

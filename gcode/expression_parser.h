@@ -29,6 +29,15 @@ core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, Expres
 core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
                                          ExpressionPool& pool);
 
+/// Where Q0 and QR0 are kept among the numbered parameters; Q1 to Q1999 have their own numbers.
+constexpr int q_zero = 2000, first_kept_q = 2001;
+
+/// Reads `Q5` or `QR5`, and gives the number under which it is kept.
+///
+/// Errors: syntax without a number; unsupported for QL and QS; invalid_value when there is no such
+///         parameter.
+core::Result<int> parse_q_parameter(Lexer& lexer);
+
 /// Reads the name of a parameter between `<` and `>`: lower case, without blanks.
 ///
 /// Errors: syntax when it has no end or no letters.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gcode/flow_index.h"
+#include "gcode/klartext.h"
 #include "gcode/modes.h"
 #include "gcode/parser.h"
 
@@ -282,7 +283,10 @@ core::Result<void> Flowing::run() {
 
 } // namespace
 
-core::Result<void> run_flow(const FlowStep& step) { return Flowing(step).run(); }
+core::Result<void> run_flow(const FlowStep& step) {
+    if (step.dialect.language == Language::klartext) return run_klartext_flow(step);
+    return Flowing(step).run();
+}
 
 core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
                                    const Dialect& dialect) {

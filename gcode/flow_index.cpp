@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
 #include "gcode/parser.h"
 
@@ -93,6 +94,7 @@ std::optional<uint32_t> FlowIndex::line_of_number(double number, uint32_t from,
 }
 
 FlowIndex index_of(const Program& program, const Dialect& dialect) {
+    if (dialect.language == Language::klartext) return klartext_index(program, dialect);
     FlowIndex index;
     Block block;
     uint32_t scope = 0;

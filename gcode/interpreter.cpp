@@ -7,6 +7,8 @@
 #include "gcode/execution.h"
 #include "gcode/fanuc_parameters.h"
 #include "gcode/flow.h"
+#include "gcode/klartext.h"
+#include "gcode/klartext_parser.h"
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
 #include "gcode/program_parameters.h"
@@ -65,6 +67,7 @@ struct Before {
     bool has_calls = false;
     std::vector<Frame> frames;
     std::vector<ModalMacro> modal_macros;
+    Shared<KlartextState> klartext;
 };
 
 void keep_calls(const InterpreterState& state, Before& before) {
@@ -85,6 +88,7 @@ void keep(const InterpreterState& state, Before& before) {
     before.points = state.points;
     before.tables = state.tables;
     before.has_calls = false;
+    before.klartext = state.klartext;
 }
 
 void restore(InterpreterState& state, const Before& before) {
@@ -98,6 +102,7 @@ void restore(InterpreterState& state, const Before& before) {
     state.said_time = before.said_time;
     state.points = before.points;
     state.tables = before.tables;
+    state.klartext = before.klartext;
 }
 
 /// Whether a flow statement goes to another level of calls.
@@ -142,6 +147,8 @@ struct Interpreter::Scratch {
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
+    core::SourceSpan place_of(core::SourceSpan where) const;
+    void place_in_lines();
 };
 
 /// Reads the next line that says something; false at the end of the text.
@@ -150,7 +157,10 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         const Program& program = library.program(state.next.source);
         if (state.next.line > program.line_count()) return false;
         const uint32_t number = state.next.line++;
-        const std::string_view text = program.line(number);
+        const std::string_view text = dialect.language == Language::klartext
+                                          ? klartext_block(program, number)
+                                          : program.line(number);
+        if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
@@ -316,6 +326,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         || !state.modal_macros.empty())
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
+    if (dialect.language == Language::klartext) return run_klartext(execution);
     for (const Step step : steps)
         if (auto done = step(execution); !done) return done;
     return {};
@@ -343,6 +354,16 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     return true;
 }
 
+/// Where a place of the block really is: a block may have several lines.
+core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
+    const bool several = dialect.language == Language::klartext && where.line == block.line;
+    return several ? gcode::place_in_lines(block.text, where) : where;
+}
+
+void Interpreter::Scratch::place_in_lines() {
+    for (Warning& warning : result.warnings) warning.where = place_of(warning.where);
+}
+
 Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment)
     : scratch_(new Scratch{library, environment, gcode::dialect(environment.dialect)}) {}
 
@@ -362,6 +383,10 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         scratch_->undos.clear();
         const uint32_t source = state.next.source;
         auto found = scratch_->try_next(state);
+        if (found)
+            scratch_->place_in_lines();
+        else
+            found.error().where = scratch_->place_of(found.error().where);
         const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
         if (found && *found && straight_out) return &scratch_->result;
         core::Result<void> taken;

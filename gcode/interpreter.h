@@ -13,6 +13,7 @@
 #include "gcode/contour.h"
 #include "gcode/environment.h"
 #include "gcode/frame.h"
+#include "gcode/klartext_state.h"
 #include "gcode/parameters.h"
 #include "gcode/program_library.h"
 #include "gcode/shared.h"
@@ -59,6 +60,7 @@ struct InterpreterState {
     Shared<Parameters> parameters;
     Shared<Tables> tables;
     Contour contour; // blocks on their way through cutter radius compensation
+    Shared<KlartextState> klartext;
     LoopWatch watch;
 
     bool operator==(const InterpreterState&) const = default;

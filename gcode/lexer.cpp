@@ -76,6 +76,28 @@ bool read_short_number(std::string_view line, size_t& at, Number& number) {
     return true;
 }
 
+/// Klartext: only behind the sign may blanks stand.
+Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
+    Digits found;
+    size_t at = begin;
+    if (at < line.size() && (line[at] == '-' || line[at] == '+')) {
+        if (line[at] == '-') found.text[found.count++] = '-';
+        for (++at; at < line.size() && is_blank(line[at]);) ++at;
+    }
+    for (; at < line.size(); ++at) {
+        const bool point = (line[at] == '.' || line[at] == ',') && !found.has_point;
+        if (!point && !is_digit(line[at])) break;
+        found.has_point |= point;
+        found.digits += !point;
+        if (found.count < found.text.size())
+            found.text[found.count++] = point ? '.' : line[at];
+        else
+            found.too_long = true;
+    }
+    found.end = at;
+    return found;
+}
+
 } // namespace
 
 bool Lexer::accept_word(std::string_view wanted) {
@@ -102,9 +124,10 @@ bool Lexer::is_at_number() {
 
 core::Result<Number> Lexer::number() {
     peek();
-    if (Number number; read_short_number(line, at, number)) return number;
+    if (Number number; !blanks_end_numbers && read_short_number(line, at, number)) return number;
     const size_t begin = at;
-    const Digits found = collect_digits(line, begin);
+    const Digits found = blanks_end_numbers ? collect_digits_without_blanks(line, begin)
+                                            : collect_digits(line, begin);
     if (found.digits == 0)
         return core::fail(ErrorCode::syntax, "a number is missing here", span(begin, begin + 1));
     at = found.end;

@@ -32,6 +32,7 @@ struct Lexer {
     std::string_view line;
     uint32_t line_number = 1;
     size_t at = 0;
+    bool blanks_end_numbers = false; // Klartext, where a comma may be the point as well
 
     /// The next character that is no blank, which stays to be read; NUL at the end.
     char peek() {

@@ -214,7 +214,10 @@ core::Result<Position> target_of(const Execution& execution) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word || (polar && (axis == plane.first || axis == plane.second))) continue;
         const double value = axis_value(execution, axis, *word);
-        if (modal.distance == DistanceMode::absolute)
+        const bool absolute = word->addressing == Addressing::modal
+                                  ? modal.distance == DistanceMode::absolute
+                                  : word->addressing == Addressing::absolute;
+        if (absolute)
             target[axis] = value;
         else if (target[axis])
             *target[axis] += value;

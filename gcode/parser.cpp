@@ -6,6 +6,7 @@
 
 #include "gcode/expression_parser.h"
 #include "gcode/flow_parser.h"
+#include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
 #include "gcode/messages.h"
 
@@ -250,6 +251,7 @@ void Block::clear() {
     pool.clear();
     flow.arguments.clear();
     flow = Flow{.arguments = std::move(flow.arguments)};
+    command = {};
     block_delete.reset();
     tape_mark = false;
     has_message = false;
@@ -260,6 +262,7 @@ core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialec
     block.clear();
     block.line = line;
     block.text = text;
+    if (dialect.language == Language::klartext) return parse_klartext(text, line, dialect, block);
     return LineParser(text, line, dialect, block).parse();
 }
 

@@ -153,6 +153,43 @@ void add(Digest& digest, const Tables& tables) {
     }
 }
 
+void add(Digest& digest, const DefinedCycle& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.clearance,   cycle.depth,       cycle.feed,
+                               cycle.peck,        cycle.surface,     cycle.second_clearance,
+                               cycle.dwell_above, cycle.dwell_below, cycle.retract_feed,
+                               cycle.decrement,   cycle.breaks,      cycle.least_peck,
+                               cycle.break_back,  cycle.break_every, cycle.stop_above,
+                               cycle.stop_below,  cycle.start_depth, cycle.disengage,
+                               cycle.pitch,       cycle.infeed,      cycle.diameter})
+        digest.add(value);
+}
+
+void add(Digest& digest, const Transforms& transforms) {
+    for (const auto kind : transforms.order) digest.add(number_of(int(kind)));
+    add_all(digest, transforms.shift);
+    for (const bool mirrored : transforms.mirrored) digest.add(uint64_t{mirrored});
+    digest.add(transforms.turn_deg);
+    digest.add(transforms.scale);
+}
+
+void add(Digest& digest, const KlartextState& klartext) {
+    add_all(digest, klartext.pole);
+    digest.add(uint64_t{klartext.direction.has_value()});
+    if (klartext.direction) add_all(digest, *klartext.direction);
+    digest.add(uint64_t{klartext.corner.has_value()});
+    if (klartext.corner) {
+        for (const Position* place : {&klartext.corner->point, &klartext.corner->end})
+            add_all(digest, *place);
+        add_all(digest, klartext.corner->centre);
+        digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
+    }
+    add(digest, klartext.cycle);
+    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)));
+    digest.add(klartext.call_feed);
+    add(digest, klartext.transforms);
+}
+
 } // namespace
 
 uint64_t digest_of(const InterpreterState& state) {
@@ -177,6 +214,7 @@ uint64_t digest_of(const InterpreterState& state) {
     add_all(digest, state.said);
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
+    add(digest, *state.klartext);
     return digest.value();
 }
 

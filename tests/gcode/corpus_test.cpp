@@ -53,12 +53,14 @@ TEST_P(Corpus, RunsOrSaysWhereAndWhyNot) {
                   std::string::npos)
             << path << ": " << error.message;
     }
+    // Of heidenhain, one calls a program that is stored under another name, one is that program,
+    // which stops itself without its parameters, and one divides by a way that is made by hand.
     RecordProperty("finished", static_cast<int>(finished));
     const std::map<std::string, size_t> least = {{"fanuc-like", 16},
                                                  {"linuxcnc", 10},
                                                  {"grbl-hobby", 12},
                                                  {"siemens", 0},
-                                                 {"heidenhain", 0}};
+                                                 {"heidenhain", 9}};
     EXPECT_GE(finished, least.at(GetParam()));
 }
 

@@ -67,7 +67,7 @@ TEST(Expression, NamesWhatCannotBeComputed) {
     const auto refused = [](const std::string& text) {
         return error_of("#1=" + text, DialectId::linuxcnc);
     };
-    EXPECT_EQ(refused("[1/0]"), "1:6: this is a division by zero");
+    EXPECT_EQ(refused("[1/0]"), "1:6: this is a division by zero: what stands behind the '/' is 0");
     EXPECT_THAT(refused("SQRT[-1]"), HasSubstr("1:4: this is the square root of a negative"));
     EXPECT_THAT(refused("[1 + ]"), HasSubstr("1:9: ']' has no meaning here"));
     EXPECT_THAT(refused("[1+2"), HasSubstr("a ']' is missing"));

@@ -1,0 +1,299 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "gcode/arc_geometry.h"
+#include "gcode/klartext.h"
+
+namespace gcode {
+namespace {
+
+using enum CommandKind;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+constexpr double shortest = 1e-9; // mm: what is shorter has no direction
+
+/// A motion of the contour: where it ends, and how it gets there.
+struct Contour {
+    Position end;
+    PlanePoint centre{};
+    int turn = 0;  // 0 for a straight line
+    int turns = 1; // of an arc, as ArcFeed has them, without their sign
+};
+
+PlaneAxes plane_of(const Execution& execution) { return axes_of(execution.modal().plane); }
+
+/// The place that increments count from.
+Position base_of(const Execution& execution) {
+    const auto& corner = execution.state.klartext->corner;
+    return corner ? corner->point : execution.modal().position;
+}
+
+core::Result<PlanePoint> known_point(const Execution& execution, const Position& place) {
+    const PlaneAxes axes = plane_of(execution);
+    for (const size_t axis : {axes.first, axes.second})
+        if (!place[axis])
+            return refuse_statement(execution,
+                                    fmt::format("where the tool is along {} is not known: move "
+                                                "there first, or say where the machine starts",
+                                                axis_letters[axis]));
+    return PlanePoint{*place[axes.first], *place[axes.second]};
+}
+
+core::Result<PlanePoint> known_pole(const Execution& execution) {
+    const auto& pole = execution.state.klartext->pole;
+    if (!pole[0] || !pole[1]) return refuse_statement(execution, "no CC came before it");
+    return PlanePoint{*pole[0], *pole[1]};
+}
+
+/// Where the axis words lead, from the programmed corner where there is one.
+core::Result<Position> klartext_target(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Position before = modal.position;
+    modal.position = base_of(execution);
+    auto target = target_of(execution);
+    modal.position = before;
+    return target;
+}
+
+/// The place that PR and PA name; a missing one is as it is now.
+core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
+    const PlaneAxes axes = plane_of(execution);
+    FEELER_TRY(Position target, klartext_target(execution));
+    FEELER_TRY(const PlanePoint pole, known_pole(execution));
+    const Word* radius_word = execution.statement.polar_radius;
+    const Word* angle_word = execution.statement.polar_angle;
+    const auto relative = [](const Word* word) {
+        return !word || word->addressing == Addressing::incremental;
+    };
+    double radius = 0.0, angle = 0.0;
+    if (relative(radius_word) || relative(angle_word)) {
+        FEELER_TRY(const PlanePoint from, known_point(execution, base_of(execution)));
+        const double along = from[0] - pole[0], across = from[1] - pole[1];
+        if (relative(radius_word)) radius = std::hypot(along, across);
+        if (relative(angle_word)) angle = std::atan2(across, along) * degrees;
+    }
+    if (radius_word) radius += length_of(execution, *radius_word);
+    if (angle_word) angle += angle_word->value;
+    if (turned_deg && angle_word && relative(angle_word)) *turned_deg = angle_word->value;
+    target[axes.first] = pole[0] + radius * std::cos(angle / degrees);
+    target[axes.second] = pole[1] + radius * std::sin(angle / degrees);
+    return target;
+}
+
+core::Result<int> turn_of(const Execution& execution) {
+    const int turn = execution.block.command.turn;
+    if (turn == 0) return refuse_statement(execution, "DR+ or DR- is missing");
+    return turn;
+}
+
+/// The radii to start and end of an arc around the pole may differ by what the control allows.
+core::Result<void> check_radii(Execution& execution, const PlanePoint& start, const PlanePoint& end,
+                               const PlanePoint& centre) {
+    const double to_start = std::hypot(start[0] - centre[0], start[1] - centre[1]);
+    const double to_end = std::hypot(end[0] - centre[0], end[1] - centre[1]);
+    if (to_start < shortest)
+        return refuse_statement(execution, "the arc has no radius, its centre is where it starts");
+    const double difference = std::abs(to_start - to_end);
+    const ArcTolerance& allowed = execution.dialect.arc;
+    if (difference <= allowed.absolute_mm) return {};
+    const std::string message = fmt::format(
+        "the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end", to_start, to_end);
+    if (difference > allowed.warned_mm) return refuse_statement(execution, message);
+    execution.warn(execution.block.command.span, message);
+    return {};
+}
+
+core::Result<Contour> around_pole(Execution& execution) {
+    Contour contour;
+    double turned_deg = 0.0;
+    FEELER_TRY(contour.turn, turn_of(execution));
+    if (execution.block.command.kind == arc_polar) {
+        FEELER_TRY(contour.end, polar_target(execution, &turned_deg));
+    } else {
+        FEELER_TRY(contour.end, klartext_target(execution));
+    }
+    FEELER_TRY(contour.centre, known_pole(execution));
+    FEELER_TRY(const PlanePoint start, known_point(execution, execution.modal().position));
+    FEELER_TRY(const PlanePoint end, known_point(execution, contour.end));
+    if (turned_deg != 0.0) {
+        if ((turned_deg > 0.0) != (contour.turn > 0))
+            return refuse_statement(execution, "IPA and DR have different signs");
+        contour.turns = std::max(
+            1, static_cast<int>(std::ceil(std::min(std::abs(turned_deg), 1e8) / 360.0 - 1e-9)));
+    }
+    if (auto checked = check_radii(execution, start, end, contour.centre); !checked)
+        return tl::unexpected(std::move(checked).error());
+    return contour;
+}
+
+/// CR: R+ is the shorter arc, R- the longer one.
+core::Result<Contour> of_radius(Execution& execution) {
+    Contour contour;
+    FEELER_TRY(contour.turn, turn_of(execution));
+    FEELER_TRY(contour.end, klartext_target(execution));
+    FEELER_TRY(const PlanePoint start, known_point(execution, execution.modal().position));
+    FEELER_TRY(const PlanePoint end, known_point(execution, contour.end));
+    const Word* word = execution.statement.word('R');
+    if (!word) return refuse_statement(execution, "the radius R is missing");
+    const double radius = length_of(execution, *word);
+    const double chord[2] = {end[0] - start[0], end[1] - start[1]};
+    const double half = 0.5 * std::hypot(chord[0], chord[1]);
+    if (half < shortest)
+        return refuse_statement(execution, "an arc with a radius cannot end where it starts: write "
+                                           "a full circle as CC and C");
+    if (half - std::abs(radius) > execution.dialect.arc.absolute_mm)
+        return refuse_statement(execution,
+                                fmt::format("the radius {:.4f} mm does not reach the end, half of "
+                                            "the way is {:.4f} mm",
+                                            std::abs(radius), half));
+    const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
+    const double side = (radius > 0.0 ? contour.turn : -contour.turn) * height / (2.0 * half);
+    contour.centre = {0.5 * (start[0] + end[0]) - side * chord[1],
+                      0.5 * (start[1] + end[1]) + side * chord[0]};
+    return contour;
+}
+
+/// The arc that goes on in the direction of the motion before it.
+core::Result<Contour> tangent(Execution& execution) {
+    Contour contour;
+    if (execution.block.command.kind == tangent_polar) {
+        FEELER_TRY(contour.end, polar_target(execution, nullptr));
+    } else {
+        FEELER_TRY(contour.end, klartext_target(execution));
+    }
+    const auto& direction = execution.state.klartext->direction;
+    if (!direction)
+        return refuse_statement(execution, "no motion in the plane came before it whose direction "
+                                           "it could go on in");
+    FEELER_TRY(const PlanePoint start, known_point(execution, execution.modal().position));
+    FEELER_TRY(const PlanePoint end, known_point(execution, contour.end));
+    const double way[2] = {end[0] - start[0], end[1] - start[1]};
+    const double left[2] = {-(*direction)[1], (*direction)[0]};
+    const double aside = way[0] * left[0] + way[1] * left[1];
+    const double ahead = way[0] * (*direction)[0] + way[1] * (*direction)[1];
+    const double squared = way[0] * way[0] + way[1] * way[1];
+    if (std::abs(aside) <= 1e-9 * std::sqrt(squared)) {
+        if (ahead > 0.0) return contour; // straight on
+        return refuse_statement(execution, "no arc goes on in the direction of the motion before "
+                                           "it and ends there");
+    }
+    const double radius = squared / (2.0 * aside); // positive to the left
+    contour.turn = radius > 0.0 ? 1 : -1;
+    contour.centre = {start[0] + radius * left[0], start[1] + radius * left[1]};
+    return contour;
+}
+
+core::Result<Contour> contour_of(Execution& execution) {
+    Contour contour;
+    switch (execution.block.command.kind) {
+    case straight_polar: {
+        FEELER_TRY(contour.end, polar_target(execution, nullptr));
+        return contour;
+    }
+    case arc:
+    case arc_polar:
+        return around_pole(execution);
+    case arc_of_radius:
+        return of_radius(execution);
+    case tangent_arc:
+    case tangent_polar:
+        return tangent(execution);
+    default: {
+        FEELER_TRY(contour.end, klartext_target(execution));
+        return contour;
+    }
+    }
+}
+
+/// Remembers the direction in which a motion ends.
+void remember_direction(Execution& execution, const Position& start, const Contour& contour,
+                        const Position& end) {
+    const PlaneAxes axes = plane_of(execution);
+    KlartextState& klartext = execution.state.klartext.write();
+    const auto known = [&](const Position& place) {
+        return place[axes.first] && place[axes.second];
+    };
+    if (!known(end) || (contour.turn == 0 && !known(start))) {
+        klartext.direction.reset();
+        return;
+    }
+    PlanePoint way;
+    if (contour.turn == 0)
+        way = {*end[axes.first] - *start[axes.first], *end[axes.second] - *start[axes.second]};
+    else
+        way = {-contour.turn * (*end[axes.second] - contour.centre[1]),
+               contour.turn * (*end[axes.first] - contour.centre[0])};
+    const double length = std::hypot(way[0], way[1]);
+    if (length > shortest) klartext.direction = PlanePoint{way[0] / length, way[1] / length};
+}
+
+core::Result<void> go_along(Execution& execution, const Contour& contour) {
+    ModalState& modal = execution.modal();
+    const bool rapid = execution.block.command.rapid;
+    if (contour.turn == 0 && rapid) {
+        execution.traverse(contour.end);
+        return {};
+    }
+    if (rapid)
+        execution.warn(execution.block.command.span,
+                       "FMAX on an arc is looked at as a motion with the feed F");
+    FEELER_TRY(const double feed, klartext_feed(execution));
+    if (contour.turn == 0) {
+        execution.feed(contour.end, feed);
+        return {};
+    }
+    modal.position = contour.end;
+    execution.emit(ArcFeed{.end = contour.end,
+                           .plane = modal.plane,
+                           .centre = {contour.centre[0], contour.centre[1]},
+                           .turns = contour.turn * contour.turns,
+                           .feed = feed});
+    return {};
+}
+
+/// CC: the pole; without axis words, where the tool is.
+core::Result<void> set_pole(Execution& execution) {
+    const PlaneAxes axes = plane_of(execution);
+    const Statement& statement = execution.statement;
+    const Position base = base_of(execution);
+    std::array<std::optional<double>, 2> pole = execution.state.klartext->pole;
+    const size_t plane_axes[] = {axes.first, axes.second};
+    const bool here =
+        !statement.word(axis_letters[axes.first]) && !statement.word(axis_letters[axes.second]);
+    for (size_t i = 0; i < 2; ++i) {
+        const Word* word = statement.word(axis_letters[plane_axes[i]]);
+        const std::optional<double>& from = base[plane_axes[i]];
+        if (here) pole[i] = from;
+        if (!word) continue;
+        const double value = axis_value(execution, plane_axes[i], *word);
+        if (word->addressing != Addressing::incremental)
+            pole[i] = value;
+        else
+            pole[i] = from ? std::optional(*from + value) : std::nullopt;
+    }
+    execution.state.klartext.write().pole = pole;
+    return {};
+}
+
+} // namespace
+
+core::Result<void> move_in_klartext(Execution& execution) {
+    const Command& command = execution.block.command;
+    const Statement& statement = execution.statement;
+    if (command.kind == pole) return set_pole(execution);
+    const bool still =
+        (command.kind == straight || command.kind == cycle_call) && !statement.has_axis_word();
+    if (still) return {};
+    const Position start = execution.modal().position;
+    FEELER_TRY(Contour contour, contour_of(execution));
+    execution.state.klartext.write().corner.reset();
+    FEELER_TRY(contour.end,
+               end_before_corner(execution, contour.end, contour.centre, contour.turn));
+    if (auto done = go_along(execution, contour); !done) return done;
+    remember_direction(execution, start, contour, contour.end);
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/axes.h"
+#include "gcode/expression_parser.h"
+#include "gcode/klartext_reader.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+/// `F500`, `FQ5`, `FMAX`, `FAUTO`, or an F that says nothing.
+core::Result<void> read_feed(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    const size_t from = lexer.at;
+    const std::string letters = reader.letters();
+    if (letters == "FU" || letters == "FZ")
+        return reader.refuse(fmt::format("'{}': feeds per turn and per tooth are not supported "
+                                         "yet: write the feed in mm/min",
+                                         letters),
+                             from, ErrorCode::unsupported);
+    lexer.at = from + 1;
+    if (reader.accept("MAX")) {
+        reader.block.command.rapid = true;
+        return {};
+    }
+    if (reader.accept("AUTO")) {
+        reader.add_word('E', 0.0, from);
+        return {};
+    }
+    const char next = upper(lexer.peek());
+    if (!lexer.is_at_number() && next != 'Q') return {};
+    return reader.word('F', from);
+}
+
+/// R0, RL and RR; the radius of CR and RND; or an R that says nothing.
+core::Result<void> read_radius(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    const size_t from = lexer.at;
+    const std::string letters = reader.letters();
+    if (letters == "RL" || letters == "RR")
+        return reader.refuse(
+            fmt::format("'{}': cutter radius compensation is not supported yet", letters), from,
+            ErrorCode::unsupported);
+    const CommandKind kind = reader.block.command.kind;
+    const auto has_radius = std::any_of(reader.block.words.begin(), reader.block.words.end(),
+                                        [](const Word& word) { return word.letter == 'R'; });
+    ++lexer.at;
+    if ((kind == CommandKind::arc_of_radius || kind == CommandKind::rounding) && !has_radius)
+        return reader.word('R', from);
+    if (!lexer.is_at_number()) return {};
+    if (lexer.accept('0')) return {};
+    return reader.refuse("'R' takes 0 here: R0 is without radius compensation; R+ and R- are not "
+                         "supported yet",
+                         from, ErrorCode::unsupported);
+}
+
+core::Result<void> read_turn(KlartextReader& reader) {
+    const size_t from = reader.lexer.at;
+    reader.lexer.at += 2;
+    if (reader.lexer.accept('+'))
+        reader.block.command.turn = 1;
+    else if (reader.lexer.accept('-'))
+        reader.block.command.turn = -1;
+    else
+        return reader.refuse("'DR' needs a sign: DR+ is counter-clockwise, DR- clockwise", from);
+    return {};
+}
+
+/// M codes that other words follow which are not those of the motion.
+core::Result<void> skip_arguments(KlartextReader& reader, int code) {
+    if (code == 140) reader.lexer.at = reader.lexer.line.size(); // MB MAX; it is refused
+    const std::string_view letters = code == 118                  ? "XYZABCUVW"
+                                     : code == 120                ? "LA"
+                                     : code == 124                ? "T"
+                                     : code == 103 || code == 128 ? "F"
+                                                                  : "";
+    while (is_letter(reader.next())
+           && letters.find(upper(reader.lexer.line[reader.lexer.at])) != std::string_view::npos) {
+        while (letters.find(upper(reader.lexer.peek())) != std::string_view::npos
+               && reader.lexer.peek() != '\0')
+            ++reader.lexer.at;
+        const size_t kept = reader.block.words.size();
+        if (auto done = reader.word('M', reader.lexer.at); !done) return done;
+        reader.block.words.resize(kept);
+    }
+    return {};
+}
+
+} // namespace
+
+char KlartextReader::next() {
+    while (true) {
+        const char c = lexer.peek();
+        if (c == ';') {
+            const size_t from = lexer.at;
+            const size_t end = std::min(lexer.line.find_first_of("\r\n", from), lexer.line.size());
+            block.comments.push_back(
+                {lexer.line.substr(from + 1, end - from - 1), lexer.span(from, end)});
+            lexer.at = end;
+        } else if (c == '~' || is_line_end(c)) {
+            ++lexer.at;
+        } else {
+            return c;
+        }
+    }
+}
+
+std::string KlartextReader::letters() {
+    std::string found;
+    next();
+    for (size_t at = lexer.at; at < lexer.line.size() && is_letter(lexer.line[at]); ++at)
+        found.push_back(upper(lexer.line[at]));
+    return found;
+}
+
+bool KlartextReader::accept(std::string_view keyword) {
+    if (letters() != keyword) return false;
+    lexer.at += keyword.size();
+    return true;
+}
+
+bool KlartextReader::accept_prefix(std::string_view prefix) {
+    if (!std::string_view(letters()).starts_with(prefix)) return false;
+    lexer.at += prefix.size();
+    return true;
+}
+
+void KlartextReader::add_word(char letter, double value, size_t from) {
+    block.words.push_back({.letter = letter, .value = value, .span = span_from(from)});
+}
+
+core::Result<void> KlartextReader::word(char letter, size_t from, Addressing addressing) {
+    Word entry{.letter = letter, .addressing = addressing};
+    Number plain;
+    const char c = upper(next());
+    if (!lexer.is_at_number() && c != 'Q' && c != '(') {
+        const std::string name(lexer.line.substr(from, std::max<size_t>(lexer.at - from, 1)));
+        return refuse(fmt::format("'{}' needs a number or a Q parameter behind it", name), from);
+    }
+    FEELER_TRY(entry.expression, parse_value(lexer, dialect.expressions, block.pool, plain));
+    entry.value = plain.value;
+    entry.has_point = plain.has_point;
+    entry.span = span_from(from);
+    const auto same = [&](const Word& other) { return other.letter == letter; };
+    const bool repeatable = letter == 'M' || letter == 'G';
+    if (!repeatable && std::any_of(block.words.begin(), block.words.end(), same))
+        return refuse(fmt::format("'{}' stands twice in this block", lexer.written_from(from)),
+                      from);
+    block.words.push_back(entry);
+    return {};
+}
+
+core::Result<Expression> KlartextReader::operand() {
+    next();
+    Number plain;
+    FEELER_TRY(const Expression found, parse_value(lexer, dialect.expressions, block.pool, plain));
+    if (found) return found;
+    const auto first = static_cast<uint32_t>(block.pool.instructions.size());
+    block.pool.instructions.push_back(
+        {Operation::number, static_cast<uint32_t>(lexer.at), plain.value});
+    return Expression{first, 1};
+}
+
+tl::unexpected<core::Error> KlartextReader::refuse(std::string message, size_t from,
+                                                   core::ErrorCode code) {
+    const size_t end = std::min(std::max(lexer.at, from + 1), lexer.line.size());
+    return core::fail(code, std::move(message), lexer.span(from, end));
+}
+
+tl::unexpected<core::Error> KlartextReader::stray() {
+    next();
+    const size_t from = lexer.at;
+    const std::string word = letters();
+    if (word.empty() && lexer.is_at_number()) {
+        if (!lexer.number()) ++lexer.at;
+        return refuse(fmt::format("'{}' has no letter before it", lexer.written_from(from)), from);
+    }
+    if (word.empty()) return lexer.unexpected_character();
+    return refuse(fmt::format("'{}' has no meaning in this block", word), from);
+}
+
+core::Result<void> read_m_word(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    const size_t from = lexer.at++;
+    if (!lexer.is_at_number()) return {}; // an M that says nothing
+    FEELER_TRY(const Number number, lexer.number());
+    const auto code = static_cast<int>(std::clamp(number.value, -1.0, 1e6));
+    Command& command = reader.block.command;
+    switch (code) {
+    case 13: // M3 and M8
+    case 14: // M4 and M8
+        reader.add_word('M', code == 13 ? 3.0 : 4.0, from);
+        reader.add_word('M', 8.0, from);
+        return {};
+    case 89:
+        command.calls_from_here = true;
+        return {};
+    case 91:
+        reader.add_word('G', 53.0, from);
+        return {};
+    case 97: // small steps of a compensated contour
+    case 98: // its open corners
+        return {};
+    case 99:
+        command.calls_cycle = true;
+        return {};
+    default:
+        reader.add_word('M', number.value, from);
+        return skip_arguments(reader, code);
+    }
+}
+
+core::Result<void> read_contour_word(KlartextReader& reader) {
+    const std::string letters = reader.letters();
+    const size_t from = reader.lexer.at;
+    const char first = letters[0];
+    if (letters == "DR") return read_turn(reader);
+    if (reader.accept_prefix("PR")) return reader.word('@', from);
+    if (reader.accept_prefix("PA")) return reader.word('^', from);
+    if (reader.accept_prefix("IPR")) return reader.word('@', from, Addressing::incremental);
+    if (reader.accept_prefix("IPA")) return reader.word('^', from, Addressing::incremental);
+    if (first == 'F') return read_feed(reader);
+    if (first == 'R') return read_radius(reader);
+    if (first == 'M') return read_m_word(reader);
+    const bool incremental = first == 'I' && letters.size() > 1;
+    const char axis = incremental ? letters[1] : first;
+    if (axis_letters.find(axis) == std::string_view::npos) return reader.stray();
+    reader.lexer.at += incremental ? 2 : 1;
+    return reader.word(axis, from, incremental ? Addressing::incremental : Addressing::absolute);
+}
+
+} // namespace gcode
