@@ -76,7 +76,7 @@ struct Recognition {
     std::string reason; // "line 2 is a program number (O1000)"
 };
 
-/// The dialect a program looks like, and what in it says so.
+/// The dialect a program looks like, and what in it says so. Looks at its first 10,000 blocks.
 Recognition recognise(const Program& program);
 
 } // namespace gcode

@@ -267,13 +267,22 @@ core::Result<void> Flowing::run() {
         return {};
     }
     default:
-        return {}; // do, endif, a program number
+        return {}; // statements that only mark a place
     }
 }
 
 } // namespace
 
-core::Result<void> run_flow(const FlowStep& step) { return Flowing(step).run(); }
+core::Result<void> run_flow(const FlowStep& step) {
+    switch (step.block.flow.kind) {
+    case do_loop:
+    case end_if:
+    case program_number:
+        return {}; // says where something is; not worth an index of all lines
+    default:
+        return Flowing(step).run();
+    }
+}
 
 core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
                                    const Dialect& dialect) {

@@ -92,6 +92,7 @@ struct Interpreter::Scratch {
     Block block{};
     Statement statement{};
     BlockResult result{};
+    std::string line_text{};
     Before before{};
     std::vector<Undo> undos{};
     std::vector<Value> values{};
@@ -110,9 +111,11 @@ struct Interpreter::Scratch {
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     while (true) {
         const Program& program = library.program(state.next.source);
-        if (state.next.line > program.line_count()) return false;
+        FEELER_TRY(const bool is_there, program.has_line(state.next.line));
+        if (!is_there) return false;
         const uint32_t number = state.next.line++;
-        const std::string_view text = program.line(number);
+        std::string_view text = program.line(number);
+        if (program.windows) text = line_text.assign(text); // flow statements look at other lines
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());

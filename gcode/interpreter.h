@@ -33,7 +33,8 @@ struct Warning {
 struct BlockResult {
     core::BlockIndex block{};
     uint32_t line = 0;
-    std::string_view text{};       // the line, as long as the library stays where it is
+    std::string_view text{};       // the line, as long as the library stays where it is; of a
+                                   // program that is read in windows, until the next block
     std::string_view file{};       // of a subprogram's file; empty for the main program
     std::vector<uint32_t> calls{}; // lines that called it, the outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
@@ -106,7 +107,7 @@ private:
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state);
 
-/// A whole program, up to its end or its first error.
+/// A whole program, which is not read in windows, up to its end or its first error.
 struct Run {
     std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
     std::vector<BlockResult> blocks;

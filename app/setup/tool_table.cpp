@@ -86,8 +86,10 @@ void read_length_offset(TableReader& table, SetupFile& file) {
     offset.wear = table.number_or("wear", 0.0);
     offset.diameter = table.number_or("diameter", 0.0);
     table.finish();
-    if (!file.environment.length_offsets.emplace(core::OffsetNumber{*number}, offset).second)
+    const core::OffsetNumber key{*number};
+    if (!file.lengths_set.insert(key).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
+    file.environment.length_offsets[key] = offset; // a tool table may have had another
 }
 
 } // namespace app
