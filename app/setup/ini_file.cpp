@@ -81,8 +81,7 @@ core::Result<IniFile> read_ini(const std::string& path) {
             continue;
         }
         const size_t equals = text.find('=');
-        if (equals == std::string::npos)
-            return tl::unexpected(line_error(path, line, "is no section, no key and no comment"));
+        if (equals == std::string::npos) continue; // LinuxCNC passes over it as well
         const std::string wrong =
             reader.take(trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)));
         if (!wrong.empty()) return tl::unexpected(line_error(path, line, wrong));

@@ -19,9 +19,8 @@ struct IniFile {
     std::string startup_code;             // [RS274NGC] RS274NGC_STARTUP_CODE
 };
 
-/// Errors: io when it cannot be read; syntax, with its line, for one that is neither a section, a
-///         key nor a comment; invalid_value for units that are neither mm nor inches; unsupported
-///         for #INCLUDE.
+/// Errors: io when it cannot be read; syntax, with its line, for units that are neither mm nor
+///         inches; unsupported for #INCLUDE.
 core::Result<IniFile> read_ini(const std::string& path);
 
 } // namespace app

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -44,14 +45,23 @@ void take_places(gcode::Environment& environment) {
             environment.work_offsets[i] = *offset;
 }
 
+/// A file that an ini file names, or nothing: LinuxCNC writes some of them only when it ends.
+std::string existing(const std::string& path, const ProgramSettings& settings,
+                     std::vector<std::string>& notes) {
+    std::error_code failure;
+    if (path.empty() || std::filesystem::exists(path, failure)) return path;
+    notes.push_back(fmt::format("{}: there is no {}; it is taken as empty", settings.ini, path));
+    return {};
+}
+
 /// The settings with what their ini file adds.
 core::Result<ProgramSettings> with_ini(ProgramSettings settings, std::vector<std::string>& notes) {
     if (settings.ini.empty()) return settings;
     FEELER_TRY(const IniFile ini, read_ini(settings.ini));
     ProgramSettings stated;
     stated.machine_unit = ini.machine_unit;
-    stated.parameters = ini.parameters;
-    stated.tool_table = ini.tool_table;
+    stated.parameters = existing(ini.parameters, settings, notes);
+    stated.tool_table = existing(ini.tool_table, settings, notes);
     stated.search_path = ini.search_path;
     if (!ini.startup_code.empty())
         notes.push_back(fmt::format("{}: RS274NGC_STARTUP_CODE is not run before the program; if "

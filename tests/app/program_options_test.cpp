@@ -113,6 +113,15 @@ TEST(IniFile, NamesUnitVariablesToolsAndSearchPathFromItsOwnFolder) {
     EXPECT_TRUE(traced.says("length=4\n")) << traced.ran.out;
 }
 
+TEST(IniFile, MayNameFilesThatAreNotThereYet) {
+    Traced traced;
+    const std::string ini =
+        traced.folder.write("mill.ini", "[RS274NGC]\nPARAMETER_FILE = new.var\nwhat is this\n");
+    traced.run("g21 g0 x1\nm2\n", {"--ini", ini});
+    EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
+    EXPECT_TRUE(traced.warns("new.var; it is taken as empty"));
+}
+
 TEST(MaxBlocks, StopsAProgramThatRunsLonger) {
     const std::string program = "G21\nG0 X1\nG0 X2\nG0 X3\nM2\n";
     Traced traced;
@@ -213,7 +222,6 @@ TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
     refused("--tool-table", "T1 Zlong\n", "'Zlong': is no letter and number");
     refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
     refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
-    refused("--ini", "[TRAJ\nwhat\n", "bad.txt:2: is no section");
     refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not followed");
 }
 
