@@ -92,9 +92,11 @@ struct Block {
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
     bool tape_mark = false;            // a line that begins with %
 
+    bool has_message = false; // a comment that the control acts on
+
     /// Whether the line says anything that is run.
     bool is_empty() const {
-        return words.empty() && assignments.empty() && flow.kind == FlowKind::none;
+        return words.empty() && assignments.empty() && flow.kind == FlowKind::none && !has_message;
     }
     void clear();
 };

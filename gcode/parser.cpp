@@ -7,13 +7,14 @@
 #include "gcode/expression_parser.h"
 #include "gcode/flow_parser.h"
 #include "gcode/lexer.h"
+#include "gcode/messages.h"
 
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view word_letters = "ABCDFGHIJKLMNOPQRSTUVWXYZ";
+constexpr std::string_view word_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
 /// Two or more letters in a row are a keyword of some control, which deserves a better message.
 core::Error missing_number(const Lexer& lexer, size_t begin) {
@@ -47,6 +48,8 @@ private:
         if (c == '(') {
             FEELER_TRY(const Comment comment, lexer_.bracket_comment());
             block_.comments.push_back(comment);
+            block_.has_message =
+                dialect_.has_active_comments && active_comment(comment.text).has_value();
             return {};
         }
         if (c == ';') {
@@ -70,7 +73,7 @@ private:
             && lexer_.line[lexer_.at] <= '9')
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
-        const bool in_place = block_.is_empty() || (after_number && block_.assignments.empty());
+        const bool in_place = block_.words.empty() || (after_number && block_.assignments.empty());
         if (!in_place || block_.block_delete)
             return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
                               lexer_.span_from(begin));
@@ -80,7 +83,7 @@ private:
 
     /// What follows a tape mark on its line is the name some controls put there.
     core::Result<void> tape_mark() {
-        if (!block_.is_empty())
+        if (!block_.words.empty())
             return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
         block_.tape_mark = true;
@@ -220,6 +223,7 @@ void Block::clear() {
     flow = Flow{.arguments = std::move(flow.arguments)};
     block_delete.reset();
     tape_mark = false;
+    has_message = false;
 }
 
 core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,

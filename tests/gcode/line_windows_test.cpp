@@ -135,5 +135,21 @@ TEST(Interpreter, RunsLoopsBranchesAndCallsThroughWindowsAsInTheWholeText) {
     EXPECT_EQ(traced(*windows, DialectId::linuxcnc), expected);
 }
 
+TEST(Interpreter, KeepsTheTextsOfBlocksThatWaitForLaterOnesWhileWindowsMoveOn) {
+    std::string program = "g21 g90 g17 f100\ng0 x-20 y-20 z0\ng41.1 d4 g1 x0 y0\n";
+    for (int i = 1; i < 60; ++i) {
+        program += "g1 x" + std::to_string(10 * i) + " y" + std::to_string(5 * (i % 2)) + "\n";
+        program += std::string(i % 5, '\n') + "m8 (while the contour waits)\n";
+    }
+    program += "g40 g1 x700 y50\nm2\n";
+    const ScopedFolder folder;
+    const auto windows = opened(folder, program);
+    const auto whole = program_from_text(program);
+    ASSERT_TRUE(windows && windows->windows && whole);
+    const std::string expected = traced(*whole, DialectId::linuxcnc);
+    EXPECT_THAT(expected, HasSubstr("program_end"));
+    EXPECT_EQ(traced(*windows, DialectId::linuxcnc), expected);
+}
+
 } // namespace
 } // namespace gcode
