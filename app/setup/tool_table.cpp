@@ -68,6 +68,7 @@ void read_tool(TableReader& table, SetupFile& file) {
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
+    if (tool.diameter > 0.0) file.environment.tool_diameters[tool.number] = tool.diameter;
     if (tool.holder.empty())
         file.assumptions.push_back(fmt::format(
             "tool {} has no holder in the set-up: only what is described is checked", *number));
