@@ -25,10 +25,11 @@ TEST(JsonLine, WritesNumbersToTheLastBit) {
         line.add("value", value);
         line.finish();
         const Json json = Json::parse(text);
-        if (std::isfinite(value))
+        if (std::isfinite(value)) {
             ASSERT_EQ(json["value"].get<double>(), value) << text;
-        else
+        } else {
             ASSERT_TRUE(json["value"].is_null()) << text;
+        }
     }
 }
 
@@ -44,7 +45,9 @@ TEST(JsonLine, WritesAnyBytesAsAText) {
         line.finish();
         EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
         const Json json = Json::parse(text);
-        if (i % 2 == 0) EXPECT_EQ(json["text"], bytes);
+        if (i % 2 == 0) {
+            EXPECT_EQ(json["text"], bytes);
+        }
     }
 }
 
