@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,13 +25,15 @@ struct Warning {
 struct BlockResult {
     core::BlockIndex block{};
     uint32_t line = 0;
-    std::string_view text{};       // the line, as long as the library stays where it is
+    std::string_view text{};       // the line, as long as the library stays where it is; of a
+                                   // program that is read in windows, until the next block
     std::string_view file{};       // of a subprogram's file; empty for the main program
     std::vector<uint32_t> calls{}; // lines that called it, the outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
     std::vector<CanonicalCommand> commands{};
     std::vector<uint32_t> columns{}; // of the words that the commands come from
     std::vector<Warning> warnings{};
+    std::shared_ptr<const std::string> own_text{}; // what `text` refers to where windows moved on
 };
 
 } // namespace gcode

@@ -78,11 +78,11 @@ struct Dialect {
     bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
     bool brackets_optional_in_assignments; // #1=#2+1
     bool unset_is_vacant;                  // an unset parameter is nothing, else 0
-    bool feed_mode_clears_feed; // G94 and G95 leave no feed rate, the same mode again as well
-    bool bare_h0_is_tool;       // G43 H0 means the tool in the spindle
-    bool repeats_in_program_number;        // M98 P31000 calls O1000 three times
-    bool calls_stand_alone;                // M98 and M99 have no other words beside them
-    bool decimal_points_matter;            // X5 may mean 5 of the smallest steps
+    bool feed_mode_clears_feed;     // G94 and G95 leave no feed rate, the same mode again as well
+    bool bare_h0_is_tool;           // G43 H0 means the tool in the spindle
+    bool repeats_in_program_number; // M98 P31000 calls O1000 three times
+    bool calls_stand_alone;         // M98 and M99 have no other words beside them
+    bool decimal_points_matter;     // X5 may mean 5 of the smallest steps
     SystemParameters system_parameters;
     int first_alarm; // #3000=1 is the alarm after this
     int local_count; // #1 to this are of each level of calls
@@ -99,7 +99,7 @@ struct Recognition {
     std::string reason; // "line 2 is a program number (O1000)"
 };
 
-/// The dialect a program looks like, and what in it says so.
+/// The dialect a program looks like, and what in it says so. Looks at its first 10,000 blocks.
 Recognition recognise(const Program& program);
 
 } // namespace gcode

@@ -277,7 +277,7 @@ core::Result<void> Flowing::run() {
         return {};
     }
     default:
-        return {}; // do, endif, a program number
+        return {}; // statements that only mark a place
     }
 }
 
@@ -285,7 +285,14 @@ core::Result<void> Flowing::run() {
 
 core::Result<void> run_flow(const FlowStep& step) {
     if (step.dialect.language == Language::klartext) return run_klartext_flow(step);
-    return Flowing(step).run();
+    switch (step.block.flow.kind) {
+    case do_loop:
+    case end_if:
+    case program_number:
+        return {}; // says where something is; not worth an index of all lines
+    default:
+        return Flowing(step).run();
+    }
 }
 
 core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,

@@ -99,7 +99,7 @@ FlowIndex index_of(const Program& program, const Dialect& dialect) {
     Block block;
     uint32_t scope = 0;
     std::vector<std::string> open_loops;
-    for (size_t number = 1; number <= program.line_count(); ++number) {
+    for (size_t number = 1; program.has_line(number).value_or(false); ++number) {
         const auto line = static_cast<uint32_t>(number);
         Lexer lexer{.line = program.line(number), .line_number = line};
         if (const auto block_number = take_number(lexer))

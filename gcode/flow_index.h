@@ -56,7 +56,8 @@ struct FlowIndex {
 /// The name of a label that is written as a number: 5, or 5.5.
 std::string label_of(double number);
 
-/// Looks through all lines. What cannot be read is left out: it is an error when it is run.
+/// Looks through all lines, or those before the first that is not to be had. What cannot be read is
+/// left out: it is an error when it is run.
 FlowIndex index_of(const Program& program, const Dialect& dialect);
 
 } // namespace gcode

@@ -133,6 +133,7 @@ struct Interpreter::Scratch {
     Block block{};
     Statement statement{};
     BlockResult result{};
+    std::string line_text{};
     Before before{};
     std::vector<Undo> undos{};
     std::vector<Value> values{};
@@ -155,12 +156,14 @@ struct Interpreter::Scratch {
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     while (true) {
         const Program& program = library.program(state.next.source);
-        if (state.next.line > program.line_count()) return false;
+        FEELER_TRY(const bool is_there, program.has_line(state.next.line));
+        if (!is_there) return false;
         const uint32_t number = state.next.line++;
-        const std::string_view text = dialect.language == Language::klartext
-                                          ? klartext_block(program, number)
-                                          : program.line(number);
+        std::string_view text = dialect.language == Language::klartext
+                                    ? klartext_block(program, number)
+                                    : program.line(number);
         if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
+        if (program.windows) text = line_text.assign(text); // flow statements look at other lines
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
@@ -208,6 +211,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, Place pla
     result.block = core::BlockIndex(state.next_block);
     result.line = block.line;
     result.text = block.text;
+    result.own_text.reset();
     result.file = place.source == 0 ? std::string_view() : library.program(place.source).file;
     result.calls.clear();
     for (size_t level = 1; level < state.frames.size(); ++level)
@@ -363,6 +367,15 @@ core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
 void Interpreter::Scratch::place_in_lines() {
     for (Warning& warning : result.warnings) warning.where = place_of(warning.where);
 }
+namespace {
+
+/// Gives a block that waits for later ones a text of its own.
+void keep_text(BlockResult& result) {
+    result.own_text = std::make_shared<const std::string>(result.text);
+    result.text = *result.own_text;
+}
+
+} // namespace
 
 Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment)
     : scratch_(new Scratch{library, environment, gcode::dialect(environment.dialect)}) {}
@@ -390,6 +403,8 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
         if (found && *found && straight_out) return &scratch_->result;
         core::Result<void> taken;
+        if (found && *found && scratch_->library.program(source).windows)
+            keep_text(scratch_->result);
         if (found && *found)
             taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
         else if (found)

@@ -98,7 +98,7 @@ private:
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state);
 
-/// A whole program, up to its end or its first error.
+/// A whole program, which is not read in windows, up to its end or its first error.
 struct Run {
     std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
     std::vector<BlockResult> blocks;

@@ -121,15 +121,19 @@ Clue program_number_clue(const Block& block) {
 } // namespace
 
 Recognition recognise(const Program& program) {
+    constexpr size_t enough_lines = 10000; // that say something
     Habits habits;
     Block block;
-    for (size_t number = 1; number <= program.line_count(); ++number) {
+    size_t lines = 0;
+    for (size_t number = 1; lines < enough_lines; ++number) {
+        if (!program.has_line(number).value_or(false)) break;
         const std::string_view text = program.line(number);
         if (Clue clue = foreign_clue(text, number)) return *clue;
         if (Clue clue = linuxcnc_clue(text, number)) return *clue;
         // Fanuc's is the widest of the languages whose lines hold words.
         if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
             continue;
+        lines += !block.is_empty();
         habits.has_expressions |= !block.pool.instructions.empty();
         if (Clue clue = program_number_clue(block)) return *clue;
         if (block.flow.kind != FlowKind::none)

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/program_text.h"
+
 namespace gcode {
 namespace {
 
@@ -18,18 +20,6 @@ using core::ErrorCode;
 
 constexpr size_t chunk_size = 65536;
 constexpr size_t longest_program = size_t(1) << 30;
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-
-/// Tape readers left XON, XOFF and friends; DOS left its end-of-file mark.
-bool is_harmless_control(char c) {
-    return (c >= '\t' && c <= '\r') || (c >= 0x11 && c <= 0x14) || c == 0x1A;
-}
-
-bool is_control(char c) {
-    return (static_cast<unsigned char>(c) < 0x20 && !is_harmless_control(c)) || c == 0x7F;
-}
 
 /// Collects a text piece by piece, and stops as soon as it cannot be an NC program.
 class Collector {
@@ -61,7 +51,7 @@ private:
 
 std::optional<Error> Collector::add(char c) {
     if (c == '\0') return refusal("holds NUL bytes: it is a binary file, not an NC program", line_);
-    controls_ += is_control(c);
+    controls_ += is_stray_control(c);
     if (is_line_end(c)) {
         const bool after_return = c == '\n' && program_.text.ends_with('\r');
         line_ += !after_return;
@@ -81,38 +71,10 @@ void Collector::strip_byte_order_mark() {
     if (program_.text.starts_with(byte_order_mark)) program_.text.erase(0, byte_order_mark.size());
 }
 
-std::vector<size_t> starts_of_lines(std::string_view text) {
-    std::vector<size_t> starts;
-    size_t at = 0;
-    while (at < text.size()) {
-        starts.push_back(at);
-        at = std::min(text.find_first_of("\r\n", at), text.size());
-        if (text.substr(at).starts_with("\r\n")) ++at;
-        ++at;
-    }
-    return starts;
-}
-
-/// Whether anything stands outside of comments, tape marks and blanks.
-bool has_a_block(std::string_view text) {
-    char comment = '\0';
-    for (const char c : text) {
-        if (is_line_end(c))
-            comment = '\0';
-        else if (comment == '(' && c == ')')
-            comment = '\0';
-        else if (comment == '\0' && (c == '(' || c == ';' || c == '%'))
-            comment = c;
-        else if (comment == '\0' && static_cast<unsigned char>(c) > ' ')
-            return true;
-    }
-    return false;
-}
-
 core::Result<Program> Collector::finish() && {
     strip_byte_order_mark();
     // A stray control character is a damaged line, which the lexer names; many are another format.
-    if (controls_ * 10 > program_.text.size())
+    if (looks_binary(controls_, program_.text.size()))
         return tl::unexpected(refusal("is a binary file, not an NC program", 0));
     if (!has_a_block(program_.text))
         return tl::unexpected(refusal("has no blocks: there is nothing to run in it", 0));
@@ -127,9 +89,19 @@ core::Error cannot_read(const std::string& path, std::string_view why) {
 } // namespace
 
 std::string_view Program::line(size_t number) const {
+    if (windows) {
+        const auto found = windows->line(number);
+        return found && *found ? **found : std::string_view();
+    }
     const size_t begin = line_starts[number - 1];
-    const std::string_view rest = std::string_view(text).substr(begin);
-    return rest.substr(0, rest.find_first_of("\r\n"));
+    const size_t end = number < line_starts.size() ? line_starts[number] : text.size();
+    return without_line_end(std::string_view(text).substr(begin, end - begin));
+}
+
+core::Result<bool> Program::has_line(size_t number) const {
+    if (!windows) return number >= 1 && number <= line_starts.size();
+    FEELER_TRY(const auto found, windows->line(number));
+    return found.has_value();
 }
 
 core::Result<Program> read_program(const std::string& path) {
@@ -152,6 +124,20 @@ core::Result<Program> read_program(const std::string& path) {
     }
     if (stream.bad()) return tl::unexpected(cannot_read(path, "the file system reports an error"));
     return std::move(collector).finish();
+}
+
+core::Result<Program> open_program(const std::string& path, size_t window) {
+    std::error_code failure;
+    // What cannot be read twice, as a pipe, is held whole.
+    const bool is_file = std::filesystem::is_regular_file(path, failure);
+    if (!is_file || std::filesystem::file_size(path, failure) <= 4 * window || failure)
+        return read_program(path);
+    Program program;
+    program.file = path;
+    FEELER_TRY(program.windows, LineWindows::open(path, window));
+    FEELER_TRY(const bool has_lines, program.has_line(1));
+    (void)has_lines;
+    return program;
 }
 
 core::Result<Program> program_from_text(std::string_view text, std::string file) {

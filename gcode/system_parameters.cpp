@@ -25,8 +25,7 @@ std::optional<Value> system_parameter(const InterpreterState& state, const Envir
 
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
                                         int number, Value value, core::SourceSpan where) {
-    if (is_fanuc(environment))
-        return set_fanuc_parameter(state, environment, number, value, where);
+    if (is_fanuc(environment)) return set_fanuc_parameter(state, environment, number, value, where);
     return set_linuxcnc_parameter(state, environment, number, value, where);
 }
 

@@ -5,6 +5,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
 #include "app/report/json_report.h"
 #include "app/report/text_report.h"
 
@@ -12,7 +13,8 @@ namespace app {
 namespace {
 
 struct Options {
-    std::string program, setup, dialect, output;
+    std::string program, setup, output;
+    ProgramArguments reading;
     std::string format = "text";
     std::optional<double> allowance, mesh_size;
     bool blocks = false;
@@ -32,9 +34,13 @@ ExitCode check(const Options& options) {
                      "is not inferred from the program yet; assets/setups holds examples)"});
         return ExitCode::failed;
     }
-    CheckJob job{options.program, options.setup, options.allowance, options.mesh_size, {}};
-    if (!options.dialect.empty()) job.dialect = gcode::dialect_named(options.dialect);
-    const auto run = run_check(job);
+    const auto settings = settings_of(options.reading);
+    if (!settings) {
+        print_error(settings.error());
+        return ExitCode::failed;
+    }
+    const auto run = run_check(
+        {options.program, options.setup, options.allowance, options.mesh_size, *settings});
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
@@ -64,8 +70,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300));
-    command.add_option("--dialect", options->dialect, "linuxcnc, fanuc, haas or grbl")
-        ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
+    add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();

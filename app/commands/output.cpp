@@ -1,5 +1,6 @@
 #include "app/commands/output.h"
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -20,17 +21,43 @@ tl::unexpected<core::Error> refused(const std::string& path, const std::string& 
     return tl::unexpected<core::Error>({core::ErrorCode::io, {}, why, path});
 }
 
-bool write_all(std::FILE* file, const std::string& text) {
-    return std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+bool write_all(std::FILE* file, std::string_view text) {
+    return std::fwrite(text.data(), 1, text.size(), file) == text.size();
+}
+
+tl::unexpected<core::Error> standard_output_failed() {
+    return refused("standard output", "cannot be written");
 }
 
 } // namespace
 
-core::Result<void> write_output(const std::string& path, const std::string& text) {
-    if (path.empty()) {
-        if (!write_all(stdout, text)) return refused("standard output", "cannot be written");
-        return {};
+struct OutputStream::State {
+    std::string path{};             // as the user gave it; empty: standard output
+    std::filesystem::path target{}; // that the finished file gets; empty: written as it goes
+    std::string fresh{};            // the file that is being written
+    std::unique_ptr<std::FILE, Close> file{};
+
+    ~State() {
+        file.reset();
+        std::error_code ignored;
+        if (!target.empty() && !fresh.empty()) std::filesystem::remove(fresh, ignored);
     }
+    tl::unexpected<core::Error> failed() const {
+        if (path.empty()) return standard_output_failed();
+        return refused(path, target.empty() ? "could not be written to its end"
+                                            : "could not be written to its end; what was there "
+                                              "is unchanged");
+    }
+};
+
+OutputStream::OutputStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
+OutputStream::OutputStream(OutputStream&&) noexcept = default;
+OutputStream::~OutputStream() = default;
+
+core::Result<OutputStream> OutputStream::open(const std::string& path) {
+    auto state = std::make_unique<State>();
+    if (path.empty()) return OutputStream(std::move(state));
+    state->path = path;
     std::error_code failure;
     const std::filesystem::path target = std::filesystem::weakly_canonical(path, failure);
     if (failure) return refused(path, "cannot be written: " + failure.message());
@@ -40,17 +67,47 @@ core::Result<void> write_output(const std::string& path, const std::string& text
                          || kind == std::filesystem::file_type::not_found;
     const std::string fresh =
         replace ? fmt::format("{}.{}.new", target.string(), ::getpid()) : target.string();
-    std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "wb"));
-    if (!file) return refused(path, "cannot be written: no such folder, or no permission");
-    const bool written =
-        write_all(file.get(), text) && (!replace || ::fsync(::fileno(file.get())) == 0);
-    file.reset();
-    failure.clear();
-    if (written && replace) std::filesystem::rename(fresh, target, failure);
-    if (written && !failure) return {};
-    if (!replace) return refused(path, "could not be written to its end");
-    std::filesystem::remove(fresh, failure);
-    return refused(path, "could not be written to its end; what was there is unchanged");
+    state->file.reset(std::fopen(fresh.c_str(), replace ? "wb+" : "wb"));
+    if (!state->file) return refused(path, "cannot be written: no such folder, or no permission");
+    state->fresh = fresh;
+    if (replace) state->target = target;
+    return OutputStream(std::move(state));
+}
+
+core::Result<void> OutputStream::write(std::string_view text) {
+    if (!write_all(state_->path.empty() ? stdout : state_->file.get(), text))
+        return state_->failed();
+    return {};
+}
+
+core::Result<void> OutputStream::finish() {
+    State& state = *state_;
+    std::FILE* const file = state.path.empty() ? stdout : state.file.get();
+    if (std::fflush(file) != 0) return state.failed();
+    if (state.target.empty()) return {};
+    if (::fsync(::fileno(file)) != 0) return state.failed();
+    state.file.reset();
+    std::error_code failure;
+    std::filesystem::rename(state.fresh, state.target, failure);
+    if (failure) return state.failed();
+    state.fresh.clear();
+    return {};
+}
+
+core::Result<void> OutputStream::give_up() {
+    State& state = *state_;
+    if (state.target.empty()) return finish();
+    std::rewind(state.file.get());
+    std::array<char, 65536> piece;
+    while (const size_t count = std::fread(piece.data(), 1, piece.size(), state.file.get()))
+        if (!write_all(stdout, {piece.data(), count})) return standard_output_failed();
+    return std::fflush(stdout) == 0 ? core::Result<void>{} : standard_output_failed();
+}
+
+core::Result<void> write_output(const std::string& path, const std::string& text) {
+    FEELER_TRY(OutputStream stream, OutputStream::open(path));
+    if (auto written = stream.write(text); !written) return written;
+    return stream.finish();
 }
 
 void print_error(const core::Error& error) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.h"
 
@@ -12,6 +14,32 @@ namespace app {
 ///
 /// Errors: io, with the path.
 core::Result<void> write_output(const std::string& path, const std::string& text);
+
+/// A result that is written piece by piece, to a file or to standard output, as write_output does.
+/// The old file stays unless the new one is finished.
+class OutputStream {
+public:
+    OutputStream(OutputStream&&) noexcept;
+    ~OutputStream();
+
+    /// Errors: io, with the path.
+    static core::Result<OutputStream> open(const std::string& path);
+
+    core::Result<void> write(std::string_view text);
+
+    /// Puts everything written in its place. Nothing may be written after.
+    core::Result<void> finish();
+
+    /// Leaves the old file as it is. What was written for it goes to standard output, whole files
+    /// only being what a name stands for.
+    core::Result<void> give_up();
+
+private:
+    struct State;
+    explicit OutputStream(std::unique_ptr<State> state);
+
+    std::unique_ptr<State> state_;
+};
 
 /// Prints an error to standard error.
 void print_error(const core::Error& error);

@@ -22,12 +22,12 @@ core::Error named(core::Error error, const std::string& file) {
     return error;
 }
 
-/// The dialect by the command line, else the set-up, else what the program looks like.
-core::Result<gcode::DialectId> choose_dialect(const CheckJob& job, const SetupFile& setup,
-                                              const gcode::Program& program, CheckRun& run) {
+/// The dialect that was stated, else what the program looks like.
+core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
+                                              CheckRun& run) {
     gcode::DialectId chosen{};
-    if (job.dialect || setup.dialect) {
-        chosen = job.dialect ? *job.dialect : *setup.dialect;
+    if (setup.dialect) {
+        chosen = *setup.dialect;
     } else {
         const gcode::Recognition seen = gcode::recognise(program);
         chosen = seen.dialect;
@@ -205,13 +205,13 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto program = gcode::read_program(job.program);
     if (!program) return tl::unexpected(named(program.error(), job.program));
     run.sha256 = sha256_of_file(job.program);
-    FEELER_TRY(SetupFile file, read_setup(job.setup));
+    FEELER_TRY(SetupFile file, read_setup(job.setup, job.settings));
     run.assumptions = file.assumptions;
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     look_beyond_allowances(run.setup);
-    const auto dialect = choose_dialect(job, file, *program, run);
+    const auto dialect = choose_dialect(file, *program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));

@@ -54,7 +54,7 @@ struct CheckJob {
     std::string setup;
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
-    std::optional<gcode::DialectId> dialect;
+    ProgramSettings settings; // replace what the set-up says under [program]
 };
 
 /// Runs a program against its set-up.

@@ -1,9 +1,12 @@
 #include "app/setup/setup_file.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "app/setup/body_table.h"
 #include "app/setup/machine_table.h"
+#include "app/setup/program_table.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/tool_table.h"
 
@@ -34,24 +37,32 @@ core::Result<toml::table> parse(const std::string& path) {
     }
 }
 
-void read_program(TableReader& table, SetupFile& file) {
-    if (const auto name =
-            table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}))
-        file.dialect = gcode::dialect_named(*name);
-    file.environment.block_delete = table.boolean("block_delete").value_or(false);
-    if (auto start = table.table("start", "[program] start")) {
-        for (size_t i = 0; i < 3; ++i) file.environment.start[i] = start->number(axis_keys[i]);
-        start->finish();
+/// The settings of the program's table and of the command line, in effect for all that follows: the
+/// frames of bodies stand on the work offsets of a variables file.
+void apply_settings(const ProgramSettings& settings, SetupFile& file,
+                    std::optional<core::Error>& error) {
+    if (error) return;
+    auto notes = apply(settings, file.environment);
+    if (!notes) {
+        error = std::move(notes).error();
+        return;
     }
-    table.finish();
+    file.dialect = settings.dialect;
+    file.assumptions.insert(file.assumptions.end(), notes->begin(), notes->end());
 }
 
 void read_offsets(TableReader& table, SetupFile& file) {
     for (size_t i = 0; i < std::size(offset_names); ++i) {
         auto offset = table.table(offset_names[i], fmt::format("[offsets] {}", offset_names[i]));
         if (!offset) continue;
-        for (int axis = 0; axis < 3; ++axis)
-            file.environment.work_offsets[i][axis] = offset->number_or(axis_keys[axis], 0.0);
+        gcode::AxisValues& origin = file.environment.work_offsets[i];
+        const gcode::AxisValues of_variables = std::exchange(origin, {});
+        for (size_t axis = 0; axis < 3; ++axis)
+            origin[axis] = offset->number_or(axis_keys[axis], 0.0);
+        if (of_variables != gcode::AxisValues{} && of_variables != origin)
+            file.assumptions.push_back(
+                fmt::format("{} is where [offsets] puts it; the variables file puts it elsewhere",
+                            offset_names[i]));
         offset->finish();
         file.offsets_set.insert(static_cast<int>(i));
     }
@@ -146,7 +157,7 @@ void read_machine_table(TableReader& table, BodyContext& context,
         read_machine_file((context.folder / *name).string(), machine, error);
     read_machine(table, machine);
     const core::AxisPosition home = machine.home();
-    if (home[0] && home[1] && home[2])
+    if (home[0] && home[1] && home[2] && !context.file.environment.home)
         context.file.environment.home = gcode::AxisValues{*home[0], *home[1], *home[2]};
 }
 
@@ -180,12 +191,16 @@ void read_bodies(TableReader& root, BodyContext& context) {
     }
 }
 
-void read_root(TableReader& root, BodyContext& context, std::optional<core::Error>& error) {
+void read_root(TableReader& root, BodyContext& context, const ProgramSettings& over,
+               std::optional<core::Error>& error) {
     SetupFile& file = context.file;
     core::Setup& setup = file.setup;
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
-    if (auto table = root.table("program", "[program]")) read_program(*table, file);
+    ProgramSettings settings;
+    if (auto table = root.table("program", "[program]"))
+        settings = read_program_table(*table, context.folder);
+    apply_settings(overlaid(std::move(settings), over), file, error);
     if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     place_offsets(context);
@@ -201,7 +216,7 @@ void read_root(TableReader& root, BodyContext& context, std::optional<core::Erro
 
 } // namespace
 
-core::Result<SetupFile> read_setup(const std::string& path) {
+core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over) {
     SetupFile file;
     file.path = path;
     std::optional<core::Error> error;
@@ -209,7 +224,7 @@ core::Result<SetupFile> read_setup(const std::string& path) {
     if (parsed) {
         BodyContext context{std::filesystem::path(path).parent_path(), {}, file};
         TableReader root(*parsed, "set-up", error);
-        read_root(root, context, error);
+        read_root(root, context, over, error);
         settle_start(file);
     } else {
         error = parsed.error();

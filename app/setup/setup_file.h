@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/program_settings.h"
 #include "core/base/result.h"
 #include "core/sim/setup.h"
 #include "gcode/environment.h"
@@ -16,15 +17,17 @@ struct SetupFile {
     std::string path; // as the user gave it
     core::Setup setup;
     gcode::Environment environment;
-    std::optional<gcode::DialectId> dialect; // empty: recognise it
-    std::set<int> offsets_set;               // the work offsets that the file states, 0 is G54
-    std::vector<std::string> assumptions;    // what the file leaves open or what had to be repaired
+    std::optional<gcode::DialectId> dialect;  // empty: recognise it
+    std::set<int> offsets_set;                // the work offsets that the file states, 0 is G54
+    std::set<core::OffsetNumber> lengths_set; // the length offsets that it states
+    std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
 };
 
-/// Reads a set-up (TOML) and every file it names; relative paths are relative to the file.
+/// Reads a set-up (TOML) and every file it names; relative paths are relative to the file. What
+/// `over` says replaces what stands under [program].
 ///
 /// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value, a mesh that
 ///         is no solid, a tool that cannot be.
-core::Result<SetupFile> read_setup(const std::string& path);
+core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over = {});
 
 } // namespace app

@@ -122,8 +122,10 @@ std::optional<std::vector<std::string>> TableReader::strings(const char* key, si
     if (const toml::array* array = at->as_array())
         for (const toml::node& item : *array)
             if (const auto value = item.value<std::string>()) values.push_back(*value);
-    if (values.size() != length || at->as_array()->size() != length) {
-        refuse(key, fmt::format("must be a list of {} texts in quotes", length));
+    const bool all = at->is_array() && values.size() == at->as_array()->size();
+    if (!all || (length != 0 && values.size() != length)) {
+        refuse(key, length == 0 ? std::string("must be a list of texts in quotes")
+                                : fmt::format("must be a list of {} texts in quotes", length));
         return std::nullopt;
     }
     return values;

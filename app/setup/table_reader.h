@@ -36,7 +36,7 @@ public:
     /// One of a few words.
     std::optional<std::string> word(const char* key, std::initializer_list<const char*> words);
 
-    /// A list of texts of a fixed length.
+    /// A list of texts, of a fixed length unless `length` is 0.
     std::optional<std::vector<std::string>> strings(const char* key, size_t length);
 
     /// A list of numbers, of a fixed length unless `length` is 0.

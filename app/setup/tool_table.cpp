@@ -68,6 +68,7 @@ void read_tool(TableReader& table, SetupFile& file) {
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
+    if (tool.diameter > 0.0) file.environment.tool_diameters[tool.number] = tool.diameter;
     if (tool.holder.empty())
         file.assumptions.push_back(fmt::format(
             "tool {} has no holder in the set-up: only what is described is checked", *number));
@@ -86,8 +87,10 @@ void read_length_offset(TableReader& table, SetupFile& file) {
     offset.wear = table.number_or("wear", 0.0);
     offset.diameter = table.number_or("diameter", 0.0);
     table.finish();
-    if (!file.environment.length_offsets.emplace(core::OffsetNumber{*number}, offset).second)
+    const core::OffsetNumber key{*number};
+    if (!file.lengths_set.insert(key).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
+    file.environment.length_offsets[key] = offset; // a tool table may have had another
 }
 
 } // namespace app

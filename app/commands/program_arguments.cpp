@@ -1,0 +1,80 @@
+#include "app/commands/program_arguments.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/setup/search_path.h"
+
+namespace app {
+namespace {
+
+std::string why_no_position(const std::string& text) {
+    if (position_in(text)) return {};
+    return fmt::format("'{}' is no place: write the machine coordinates of the axes in mm, as "
+                       "X=-100,Y=-50,Z=0",
+                       text);
+}
+
+std::string why_no_count(const std::string& text) {
+    const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+    if (digits && !text.empty() && text.size() <= 18 && text.find_first_not_of('0') < text.size())
+        return {};
+    return fmt::format("'{}' is no whole number above 0", text);
+}
+
+} // namespace
+
+void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
+    command.add_option("--dialect", arguments.dialect, "linuxcnc, fanuc, haas or grbl")
+        ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
+    command
+        .add_option("--start-position", arguments.start_position,
+                    "Machine coordinates at the first block, mm: X=-100,Y=-50,Z=0")
+        ->check(CLI::Validator(why_no_position, "AXIS=MM,..."));
+    command.add_option("--block-delete", arguments.block_delete, "on leaves out blocks with /")
+        ->check(CLI::IsMember({"on", "off"}));
+    command.add_option("--parameters", arguments.parameters, "Variables file of LinuxCNC");
+    command.add_option("--tool-table", arguments.tool_table, "Tool table of LinuxCNC");
+    command.add_option("--ini", arguments.ini,
+                       "Ini file of LinuxCNC: unit, variables, tool table and search path");
+    command
+        .add_option("--machine-unit", arguments.machine_unit,
+                    "Unit of lengths in variables files and tool tables")
+        ->check(CLI::IsMember({"mm", "inch"}));
+    command
+        .add_option("--search-path", arguments.search_path,
+                    "Folder with subprograms; more of them with ':' or by repeating")
+        ->allow_extra_args(false);
+    command
+        .add_option("--max-blocks", arguments.max_blocks,
+                    "Stop a program that runs more blocks than this")
+        ->check(CLI::Validator(why_no_count, "COUNT"));
+}
+
+core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
+    ProgramSettings settings;
+    settings.dialect = gcode::dialect_named(arguments.dialect);
+    if (!arguments.start_position.empty())
+        settings.start = position_in(arguments.start_position).value_or(gcode::Position{});
+    if (!arguments.block_delete.empty()) settings.block_delete = arguments.block_delete == "on";
+    if (!arguments.machine_unit.empty())
+        settings.machine_unit =
+            arguments.machine_unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    settings.parameters = arguments.parameters;
+    settings.tool_table = arguments.tool_table;
+    settings.ini = arguments.ini;
+    settings.max_blocks = arguments.max_blocks;
+    for (const std::string& list : arguments.search_path) {
+        for (const std::string& folder : split_search_path(list)) {
+            std::error_code failure;
+            if (!std::filesystem::is_directory(folder, failure))
+                return core::fail(core::ErrorCode::io,
+                                  fmt::format("--search-path: there is no folder {}", folder));
+            settings.search_path.push_back(folder);
+        }
+    }
+    return settings;
+}
+
+} // namespace app

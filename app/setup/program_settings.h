@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "gcode/environment.h"
+
+namespace app {
+
+/// What a user says about the control that reads a program, on the command line or under [program]
+/// of a set-up. Empty where nothing was said.
+struct ProgramSettings {
+    std::optional<gcode::DialectId> dialect;
+    std::optional<bool> block_delete;
+    gcode::Position start{}; // machine coordinates, mm and degrees
+    std::optional<gcode::LengthUnit> machine_unit;
+    std::optional<uint64_t> max_blocks;
+    std::string ini, parameters, tool_table; // paths
+    std::vector<std::string> search_path;
+    std::set<int> machine_codes; // M codes of the machine's builder
+};
+
+/// Both together; what `over` says wins.
+ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over);
+
+/// Puts settings and the files they name into an environment, and gives what a user should know of
+/// them. Offsets and reference points of a variables file become those of the environment. What an
+/// ini file says counts where the settings themselves say nothing.
+///
+/// Errors: of the files, with file and line.
+core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
+                                             gcode::Environment& environment);
+
+/// The place in a text such as `X=10,Y=-5.5,A=90` or `X10 Y-5.5`: mm and degrees; axes that are not
+/// named stay unknown. Empty when it is no such text.
+std::optional<gcode::Position> position_in(const std::string& text);
+
+} // namespace app

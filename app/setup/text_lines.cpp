@@ -1,0 +1,60 @@
+#include "app/setup/text_lines.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace app {
+namespace {
+
+constexpr size_t largest_file = size_t(16) << 20; // bytes
+
+core::Error io_error(const std::string& path, const std::string& why) {
+    return {core::ErrorCode::io, {}, why, path};
+}
+
+} // namespace
+
+core::Result<std::vector<std::string>> lines_of_file(const std::string& path) {
+    std::error_code failure;
+    if (std::filesystem::is_directory(path, failure))
+        return tl::unexpected(io_error(path, "is a folder, not a file"));
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) return tl::unexpected(io_error(path, "there is no such file, or no permission"));
+    std::vector<std::string> lines;
+    size_t size = 0;
+    for (std::string line; std::getline(stream, line);) {
+        size += line.size() + 1;
+        if (size > largest_file)
+            return tl::unexpected(io_error(path, "is larger than 16 MiB: it is no such table"));
+        if (line.ends_with('\r')) line.pop_back();
+        lines.push_back(std::move(line));
+    }
+    if (stream.bad()) return tl::unexpected(io_error(path, "cannot be read to its end"));
+    return lines;
+}
+
+std::vector<std::string> words_of_line(const std::string& line) {
+    std::istringstream stream(line);
+    std::vector<std::string> words;
+    for (std::string word; stream >> word;) words.push_back(std::move(word));
+    return words;
+}
+
+std::optional<double> number_in(std::string_view text) {
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failure != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
+        return std::nullopt;
+    return number;
+}
+
+core::Error line_error(const std::string& path, size_t line, std::string message) {
+    return {
+        core::ErrorCode::syntax, {.line = static_cast<uint32_t>(line)}, std::move(message), path};
+}
+
+} // namespace app

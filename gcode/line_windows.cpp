@@ -1,0 +1,186 @@
+#include "gcode/line_windows.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "gcode/program_text.h"
+#include "gcode/source.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// Enough for a loop across the border of two stretches that calls subprograms elsewhere.
+constexpr size_t window_count = 4;
+
+/// How much of a text are whole lines: up to behind its last line end. A CR at the very end may be
+/// half of one.
+size_t whole_lines(std::string_view text) {
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    const size_t last = text.find_last_of("\r\n");
+    return last == std::string_view::npos ? 0 : last + 1;
+}
+
+} // namespace
+
+std::string_view LineWindows::Window::line(uint64_t number) const {
+    const auto at = static_cast<size_t>(number - first_line);
+    const size_t end = at + 1 < starts.size() ? starts[at + 1] : text.size();
+    return without_line_end(std::string_view(text).substr(starts[at], end - starts[at]));
+}
+
+LineWindows::LineWindows(std::string path, int file, size_t size)
+    : path_(std::move(path)), file_(file), size_(size), windows_(window_count) {}
+
+LineWindows::~LineWindows() { ::close(file_); }
+
+core::Error LineWindows::refusal(ErrorCode code, std::string_view what, uint64_t line) const {
+    return {code, {.line = static_cast<uint32_t>(line)}, fmt::format("{} {}", path_, what), path_};
+}
+
+core::Result<std::shared_ptr<LineWindows>> LineWindows::open(const std::string& path,
+                                                             size_t window) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return core::fail(ErrorCode::io,
+                          fmt::format("cannot read {}: {}", path,
+                                      std::error_code(errno, std::generic_category()).message()));
+    return std::shared_ptr<LineWindows>(new LineWindows(path, file, window));
+}
+
+core::Result<std::optional<std::string_view>> LineWindows::line(size_t number) {
+    if (number == 0) return std::nullopt;
+    if (!windows_[current_].holds(number)) {
+        if (auto there = go_to(number); !there) return tl::unexpected(std::move(there).error());
+        if (!windows_[current_].holds(number)) return std::nullopt;
+    }
+    return windows_[current_].line(number);
+}
+
+/// Makes the window with a line the current one, as far as there is such a line.
+core::Result<void> LineWindows::go_to(uint64_t number) {
+    if (end_ && number >= end_->first_line) return {};
+    for (size_t i = 0; i < windows_.size(); ++i) {
+        if (windows_[i].last_use == 0 || !windows_[i].holds(number)) continue;
+        current_ = i;
+        windows_[i].last_use = ++uses_;
+        return {};
+    }
+    auto behind =
+        std::upper_bound(marks_.begin(), marks_.end(), number,
+                         [](uint64_t line, const Mark& mark) { return line < mark.first_line; });
+    auto stretch = static_cast<size_t>(behind - marks_.begin()) - 1;
+    while (true) {
+        if (auto loaded = load(stretch); !loaded) return loaded;
+        if (windows_[current_].holds(number) || ++stretch >= marks_.size()) return {};
+    }
+}
+
+/// Reads whole lines from an offset on; true when they reach to the end of the file.
+core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text) const {
+    text.clear();
+    while (true) {
+        const size_t wanted = text.size() + size_;
+        bool at_end = false;
+        while (text.size() < wanted && !at_end) {
+            const size_t before = text.size();
+            text.resize(wanted);
+            const ssize_t count = ::pread(file_, text.data() + before, wanted - before,
+                                          static_cast<off_t>(offset + before));
+            text.resize(before + static_cast<size_t>(std::max<ssize_t>(count, 0)));
+            if (count < 0 && errno != EINTR)
+                return tl::unexpected(
+                    refusal(ErrorCode::io, "cannot be read: the file system reports an error"));
+            at_end = count == 0;
+        }
+        if (at_end) return true;
+        const size_t whole = whole_lines(text);
+        if (whole == 0 && text.size() <= longest_line) continue;
+        if (whole > 0) text.resize(whole);
+        return false;
+    }
+}
+
+/// Whether a stretch can be part of an NC program.
+core::Result<void> LineWindows::check(const Window& window) const {
+    size_t controls = 0;
+    uint64_t line = window.first_line;
+    for (size_t i = 0; i < window.starts.size(); ++i, ++line) {
+        const std::string_view text = window.line(line);
+        if (text.size() > longest_line)
+            return tl::unexpected(refusal(
+                ErrorCode::syntax,
+                fmt::format("has a line {} of more than {} characters; break it into blocks", line,
+                            longest_line),
+                line));
+        if (text.find('\0') != std::string_view::npos)
+            return tl::unexpected(refusal(ErrorCode::syntax,
+                                          "holds NUL bytes: it is a binary file, not an NC program",
+                                          line));
+        controls += static_cast<size_t>(std::count_if(text.begin(), text.end(), is_stray_control));
+    }
+    if (looks_binary(controls, window.text.size()))
+        return tl::unexpected(
+            refusal(ErrorCode::syntax, "is a binary file, not an NC program", window.first_line));
+    return {};
+}
+
+/// Remembers where a stretch ends, or sees whether that is where it ended before.
+core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, bool is_last) {
+    const Mark behind{offset, window.first_line + window.starts.size()};
+    if (behind.first_line > std::numeric_limits<uint32_t>::max())
+        return tl::unexpected(refusal(ErrorCode::syntax, "has more lines than can be counted"));
+    const bool is_known = window.stretch + 1 < marks_.size() || end_;
+    if (!is_known) {
+        if (is_last && !has_block_)
+            return tl::unexpected(
+                refusal(ErrorCode::syntax, "has no blocks: there is nothing to run in it"));
+        if (is_last)
+            end_ = behind;
+        else
+            marks_.push_back(behind);
+        return {};
+    }
+    const bool was_last = window.stretch + 1 == marks_.size();
+    const Mark& known = was_last ? *end_ : marks_[window.stretch + 1];
+    if (was_last == is_last && known.offset == behind.offset
+        && known.first_line == behind.first_line)
+        return {};
+    return tl::unexpected(refusal(ErrorCode::io, "has changed while it was read"));
+}
+
+/// Reads a stretch into the window that was not used for longest.
+core::Result<void> LineWindows::load(size_t stretch) {
+    Window& window =
+        *std::min_element(windows_.begin(), windows_.end(),
+                          [](const Window& a, const Window& b) { return a.last_use < b.last_use; });
+    current_ = static_cast<size_t>(&window - windows_.data());
+    window.last_use = 0;
+    window.starts.clear();
+    const Mark mark = marks_[stretch];
+    FEELER_TRY(const bool is_last, read_stretch(mark.offset, window.text));
+    const uint64_t end = mark.offset + window.text.size();
+    if (mark.offset == 0 && window.text.starts_with(byte_order_mark))
+        window.text.erase(0, byte_order_mark.size());
+    window.stretch = stretch;
+    window.first_line = mark.first_line;
+    window.starts = starts_of_lines(window.text);
+    auto good = check(window);
+    has_block_ = has_block_ || (good && has_a_block(window.text));
+    if (good) good = note_end(window, end, is_last);
+    if (!good) {
+        window.starts.clear();
+        return good;
+    }
+    window.last_use = ++uses_;
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+
+namespace app_test {
+namespace {
+
+using test_support::Ran;
+using test_support::ScopedFolder;
+using test_support::SetupWriter;
+
+/// A folder with a program, and what `feeler trace` makes of it.
+struct Traced {
+    ScopedFolder folder{};
+    std::string dialect = "linuxcnc";
+    Ran ran{};
+
+    void run(const std::string& program, std::vector<std::string> words) {
+        words.insert(words.begin(), {"trace", folder.write("p.ngc", program)});
+        if (!dialect.empty()) words.insert(words.end(), {"--dialect", dialect});
+        ran = feeler(words);
+    }
+    bool says(const std::string& text) const { return ran.out.find(text) != std::string::npos; }
+    bool warns(const std::string& text) const { return ran.err.find(text) != std::string::npos; }
+};
+
+TEST(StartPosition, IsWhereTheAxesStandInMachineCoordinates) {
+    for (const char* place :
+         {"X=-100,Y=20.5,Z=-3,A=90", "X-100Y20.5Z-3A90", "x=-100, y=+20.5 z-3 a90"}) {
+        Traced traced;
+        traced.run("G21 G91 G0 X10 Y1 Z1 A5\nM2\n", {"--start-position", place});
+        EXPECT_TRUE(traced.says("straight_traverse x=-90 y=21.5 z=-2 a=95\n"))
+            << place << traced.ran.out << traced.ran.err;
+    }
+}
+
+TEST(StartPosition, LeavesAxesUnknownThatItDoesNotName) {
+    Traced traced;
+    traced.run("G21 G0 X10\nM2\n", {"--start-position", "Y=3"});
+    EXPECT_TRUE(traced.says("straight_traverse x=10 y=3\n")) << traced.ran.out;
+}
+
+TEST(BlockDelete, LeavesBlocksWithASlashOut) {
+    const std::string program = "G21 G0 X1\n/G0 X2\nM2\n";
+    for (const bool on : {true, false}) {
+        Traced traced;
+        traced.run(program, {"--block-delete", on ? "on" : "off"});
+        EXPECT_EQ(traced.says("x=2"), !on);
+        EXPECT_TRUE(traced.says("x=1"));
+    }
+}
+
+TEST(VariablesFile, HoldsParametersAndOffsetsInTheMachinesUnit) {
+    for (const bool inch : {false, true}) {
+        Traced traced;
+        const std::string variables =
+            traced.folder.write("v.var", "31\t7.5\n5161 1\n5221 -2.0\n5222 3\n5223 0\n");
+        traced.run("G21 G0 X#31 Y0 Z0\nG28\nM2\n",
+                   {"--parameters", variables, "--machine-unit", inch ? "inch" : "mm"});
+        EXPECT_TRUE(traced.says("x=7.5")) << traced.ran.err;
+        EXPECT_TRUE(traced.says(inch ? "x=76.2 y=-76.2" : "x=3 y=-3")) << traced.ran.out;
+    }
+}
+
+TEST(ToolTable, GivesLengthsInTheMachinesUnit) {
+    for (const bool inch : {false, true}) {
+        Traced traced;
+        const std::string table = traced.folder.write(
+            "t.tbl", ";tools\nT3 P3 Z51.0 D5 ;a mill\n\nT4 P1 D+.25 X2 Z-1.5 I10 J20 Q2\n");
+        traced.run("G21 G43 H4\nG43 H3\nM2\n",
+                   {"--tool-table", table, "--machine-unit", inch ? "inch" : "mm"});
+        EXPECT_TRUE(traced.says(inch ? "number=3 length=1295.4" : "number=3 length=51\n"))
+            << traced.ran.out << traced.ran.err;
+        EXPECT_TRUE(traced.says(inch ? "length=-38.1 x=50.8" : "length=-1.5 x=2\n"));
+    }
+}
+
+TEST(SearchPath, IsWhereSubprogramsAreLookedFor) {
+    Traced traced;
+    std::filesystem::create_directories(traced.folder / "a");
+    std::filesystem::create_directories(traced.folder / "b");
+    std::filesystem::create_directories(traced.folder / "c");
+    traced.folder.write("b/far.ngc", "o<far> sub\ng0 x42\no<far> endsub\n");
+    traced.folder.write("c/farther.ngc", "o<farther> sub\ng0 x43\no<farther> endsub\n");
+    const std::string program = "g21\no<far> call\no<farther> call\nm2\n";
+    traced.run(program, {"--search-path", (traced.folder / "a") + ":" + (traced.folder / "b"),
+                         "--search-path", traced.folder / "c"});
+    EXPECT_TRUE(traced.says("x=42") && traced.says("x=43")) << traced.ran.err;
+    traced.run(program, {"--search-path", traced.folder / "a"});
+    EXPECT_EQ(traced.ran.status, 2);
+    EXPECT_TRUE(traced.warns("far"));
+}
+
+TEST(IniFile, NamesUnitVariablesToolsAndSearchPathFromItsOwnFolder) {
+    Traced traced;
+    std::filesystem::create_directories(traced.folder / "machine/subs");
+    traced.folder.write("machine/v.var", "5221 2\n");
+    traced.folder.write("machine/t.tbl", "T1 P1 Z4\n");
+    traced.folder.write("machine/subs/far.ngc", "o<far> sub\ng53 g0 x0\no<far> endsub\n");
+    const std::string ini = traced.folder.write(
+        "machine/mill.ini", "# a mill\n[EMC]\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = v.var\n"
+                            "SUBROUTINE_PATH = nowhere:subs\nRS274NGC_STARTUP_CODE = G17\n"
+                            "[EMCIO]\nTOOL_TABLE=t.tbl\n[TRAJ]\nLINEAR_UNITS = inch\n");
+    traced.run("g21\ng43 h1\no<far> call\nm2\n", {"--ini", ini});
+    EXPECT_TRUE(traced.says("length=101.6")) << traced.ran.out << traced.ran.err;
+    EXPECT_TRUE(traced.says("straight_traverse x=-50.8")) << traced.ran.out;
+    EXPECT_TRUE(traced.warns("RS274NGC_STARTUP_CODE is not run"));
+    traced.run("g21\ng43 h1\nm2\n", {"--ini", ini, "--machine-unit", "mm"});
+    EXPECT_TRUE(traced.says("length=4\n")) << traced.ran.out;
+}
+
+TEST(IniFile, MayNameFilesThatAreNotThereYet) {
+    Traced traced;
+    const std::string ini =
+        traced.folder.write("mill.ini", "[RS274NGC]\nPARAMETER_FILE = new.var\nwhat is this\n");
+    traced.run("g21 g0 x1\nm2\n", {"--ini", ini});
+    EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
+    EXPECT_TRUE(traced.warns("new.var; it is taken as empty"));
+}
+
+TEST(MaxBlocks, StopsAProgramThatRunsLonger) {
+    const std::string program = "G21\nG0 X1\nG0 X2\nG0 X3\nM2\n";
+    Traced traced;
+    traced.run(program, {"--max-blocks", "5"});
+    EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
+    traced.run(program, {"--max-blocks", "3"});
+    EXPECT_EQ(traced.ran.status, 2);
+    EXPECT_TRUE(traced.says("x=2") && !traced.says("x=3"));
+    EXPECT_TRUE(traced.warns("stopped after 3 blocks"));
+}
+
+TEST(ProgramTable, SaysTheSameInASetup) {
+    Traced traced;
+    std::filesystem::create_directories(traced.folder / "subs");
+    traced.folder.write("subs/far.ngc", "o<far> sub\ng53 g0 x0\no<far> endsub\n");
+    traced.folder.write("v.var", "5241 -7\n");
+    traced.folder.write("t.tbl", "T1 Z4\nT2 Z5\n");
+    const std::string keys = "dialect = \"linuxcnc\"\nstart = { A = 30 }\nunit = \"inch\"\n"
+                             "parameters = \"v.var\"\ntool_table = \"t.tbl\"\n"
+                             "search_path = [\"subs\"]\nmax_blocks = 9\nmachine_codes = [331]\n";
+    const std::string setup = traced.folder.write("s.toml", SetupWriter().program(keys).text());
+    traced.dialect.clear();
+    traced.run("g21 m331\ng43 h2\ng55\no<far> call\ng91 g0 a1\nm2\n", {"--setup", setup});
+    EXPECT_TRUE(traced.says("number=2 length=127\n")) << traced.ran.out << traced.ran.err;
+    EXPECT_TRUE(traced.says("offset=G55 x=-177.8")) << traced.ran.out;
+    EXPECT_TRUE(traced.says("straight_traverse x=177.8")) << traced.ran.out;
+    EXPECT_TRUE(traced.says("a=31")) << traced.ran.out;
+    EXPECT_FALSE(traced.warns("331")) << traced.ran.err;
+    traced.run("g21\ng43 h1\nm2\n", {"--setup", setup});
+    EXPECT_TRUE(traced.says("number=1 length=95\n")) << "[[length_offset]] counts before the file";
+    traced.run("g21\ng43 h2\nm2\n", {"--setup", setup, "--machine-unit", "mm"});
+    EXPECT_TRUE(traced.says("number=2 length=5\n")) << "the command line counts before the set-up";
+}
+
+TEST(ProgramOptions, OfCheckMoveWhatStandsInAWorkOffset) {
+    const ScopedFolder folder;
+    const std::string variables = folder.write("v.var", "5221 -350\n5222 -200\n5223 -420\n");
+    const std::string nc =
+        folder.write("p.nc", test_support::program({"G0 X-20. Y50.", "Z-5.", "X120.", "Z60."}));
+    const std::string toml = folder.write("s.toml", SetupWriter().offsets("").text());
+    EXPECT_NE(check_files(nc, toml).errors(),
+              check_files(nc, toml, {"--parameters", variables}).errors());
+    const std::string stated = folder.write("stated.toml", SetupWriter().text());
+    EXPECT_EQ(check_files(nc, toml, {"--parameters", variables}).errors(),
+              check_files(nc, stated).errors());
+    const std::string other = folder.write("w.var", "5221 -300\n");
+    const Checked both = check_files(nc, stated, {"--parameters", other});
+    EXPECT_EQ(both.errors(), check_files(nc, stated).errors());
+    EXPECT_NE(std::find(both.assumptions.begin(), both.assumptions.end(),
+                        "G54 is where [offsets] puts it; the variables file puts it elsewhere"),
+              both.assumptions.end());
+}
+
+/// Exit status 2, nothing on standard output, these words on standard error.
+void expect_refused(const std::vector<std::string>& more, const std::string& told) {
+    const ScopedFolder folder;
+    const std::string program = folder.write("p.nc", "G21 G0 X1\nM2\n");
+    const std::string setup = folder.write("s.toml", SetupWriter().text());
+    for (const char* command : {"trace", "check"}) {
+        std::vector<std::string> words = {command, program, "--setup", setup};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ran ran = feeler(words);
+        EXPECT_EQ(ran.status, 2) << command << told;
+        EXPECT_EQ(ran.out, "") << command << told;
+        EXPECT_NE(ran.err.find(told), std::string::npos) << told << " in: " << ran.err;
+    }
+}
+
+TEST(ProgramOptions, RefuseValuesThatMeanNothing) {
+    for (const char* place : {"", "X", "X=1,X=2", "Q=1", "X=nan", "X=1;Y=2", "1,2,3", "X=1e999"})
+        expect_refused({"--start-position", place}, "--start-position");
+    expect_refused({"--start-position", "here"}, "X=-100,Y=-50,Z=0");
+    expect_refused({"--block-delete", "yes"}, "--block-delete");
+    expect_refused({"--machine-unit", "cm"}, "--machine-unit");
+    for (const char* count : {"0", "-1", "1.5", "many", ""})
+        expect_refused({"--max-blocks", count}, "--max-blocks");
+    expect_refused({"--search-path", "/nowhere/at/all"}, "there is no folder /nowhere/at/all");
+    for (const char* option : {"--parameters", "--tool-table", "--ini"}) {
+        expect_refused({option, "/nowhere.txt"}, "/nowhere.txt: there is no such file");
+        expect_refused({option, "/"}, "is a folder");
+    }
+}
+
+TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
+    const ScopedFolder folder;
+    const auto refused = [&](const std::string& option, const std::string& text,
+                             const std::string& told) {
+        expect_refused({option, folder.write("bad.txt", text)}, told);
+    };
+    refused("--parameters", "5221 1\nfive 1\n", "bad.txt:2: a line of a variables file");
+    refused("--parameters", "5221 1 1\n", "bad.txt:1: ");
+    refused("--parameters", "0 1\n", "there is no parameter #0");
+    refused("--parameters", "99999 1\n", "there is no parameter #99999");
+    refused("--parameters", "31 1\n31 2\n", "bad.txt:2: #31 is there twice");
+    refused("--tool-table", "T1 Z1\nT1 Z2\n", "bad.txt:2: T1 is there twice");
+    refused("--tool-table", "P1 Z1\n", "needs a T word");
+    refused("--tool-table", "T1 K1\n", "'K1': K is no letter");
+    refused("--tool-table", "T1 Zlong\n", "'Zlong': is no letter and number");
+    refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
+    refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
+    refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not followed");
+}
+
+} // namespace
+} // namespace app_test
