@@ -115,7 +115,7 @@ enum class CommandKind : uint8_t {
 };
 
 /// A statement that begins with a keyword. Its values are words of the block: a radius is R, polar
-/// places are @ and ^, the rest as the kind says.
+/// places are P and H, the rest as the kind says.
 struct Command {
     CommandKind kind = CommandKind::none;
     core::SourceSpan span{};
@@ -139,10 +139,12 @@ struct Block {
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
     bool tape_mark = false;            // a line that begins with %
 
+    bool has_message = false; // a comment that the control acts on
+
     /// Whether the line says anything that is run.
     bool is_empty() const {
         return words.empty() && assignments.empty() && flow.kind == FlowKind::none
-               && command.kind == CommandKind::none;
+               && command.kind == CommandKind::none && !has_message;
     }
     void clear();
 };

@@ -19,12 +19,9 @@ constexpr DialectSet klartext = bit(DialectId::heidenhain);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
-constexpr std::string_view no_radius = "cutter radius compensation is not supported yet";
 constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
-constexpr std::string_view no_thread = "motion synchronised with the spindle is not supported yet";
 constexpr std::string_view no_probe = "probing is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
-constexpr std::string_view no_lathe = "turning is not supported yet";
 constexpr std::string_view no_rotation =
     "rotated, scaled and polar coordinates are not supported yet";
 constexpr std::string_view no_macro = "macro calls are not supported yet";
@@ -32,16 +29,11 @@ constexpr std::string_view no_subprogram =
     "subprograms are not supported yet: write their blocks where they are called";
 constexpr std::string_view no_jump =
     "jumps are not supported yet: write the blocks in the order they are run";
-constexpr std::string_view no_saved_modes =
-    "saved and restored modes are not supported yet: write the codes out";
-constexpr std::string_view no_tool_naming =
-    "naming the tool in the spindle is not supported yet: change it with T and M6";
 constexpr std::string_view no_other_change =
     "this way to change a tool is not supported yet: write M6";
 constexpr std::string_view no_pallet =
     "pallets are not supported yet: check the program of each pallet on its own";
 constexpr std::string_view no_five_axes = "motion of rotary axes is not supported yet";
-constexpr std::string_view no_surface_speed = "constant surface speed is not supported yet";
 constexpr std::string_view no_more_offsets = "extended work offsets are not supported yet";
 
 constexpr std::string_view no_machine_point =
@@ -61,8 +53,9 @@ constexpr Code codes[] = {
     {'G', tenths(5, 1), motion, "XYZIJ", linuxcnc, no_spline},
     {'G', tenths(5, 2), motion, "XYZPL", linuxcnc, no_spline},
     {'G', tenths(5, 3), motion, "", linuxcnc, no_spline},
-    {'G', tenths(7), other, "", linuxcnc, no_lathe},
-    {'G', tenths(8), other, "", mills, {}},
+    {'G', tenths(7), diameter, "", linuxcnc, {}},
+    {'G', tenths(8), diameter, "", linuxcnc, {}},
+    {'G', tenths(8), other, "P", fanuc, {}},
     {'G', tenths(9), exact_stop, "", fanuc, {}},
     {'G', tenths(10), action, "XYZPLRQIJH", every, {}},
     {'G', tenths(11), action, "", fanuc, {}},
@@ -71,11 +64,11 @@ constexpr Code codes[] = {
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, no_rotation},
     {'G', tenths(17), ModalGroup::plane, "", every | klartext, {}},
-    {'G', tenths(17, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
+    {'G', tenths(17, 1), ModalGroup::plane, "", linuxcnc, {}},
     {'G', tenths(18), ModalGroup::plane, "", every | klartext, {}},
-    {'G', tenths(18, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
+    {'G', tenths(18, 1), ModalGroup::plane, "", linuxcnc, {}},
     {'G', tenths(19), ModalGroup::plane, "", every | klartext, {}},
-    {'G', tenths(19, 1), ModalGroup::plane, "", linuxcnc, no_five_axes},
+    {'G', tenths(19, 1), ModalGroup::plane, "", linuxcnc, {}},
     {'G', tenths(20), units, "", every | klartext, {}},
     {'G', tenths(21), units, "", every | klartext, {}},
     {'G', tenths(28), action, "XYZ", every, {}},
@@ -83,20 +76,20 @@ constexpr Code codes[] = {
     {'G', tenths(30), action, "XYZ", every, {}},
     {'G', tenths(30, 1), action, "", linuxcnc | grbl, {}},
     {'G', tenths(31), motion, "XYZ", fanuc, no_probe},
-    {'G', tenths(33), motion, "XYZK", linuxcnc, no_thread},
-    {'G', tenths(33, 1), motion, "XYZK", linuxcnc, no_thread},
-    {'G', tenths(38, 2), motion, "XYZ", linuxcnc | grbl, no_probe},
-    {'G', tenths(38, 3), motion, "XYZ", linuxcnc | grbl, no_probe},
-    {'G', tenths(38, 4), motion, "XYZ", linuxcnc | grbl, no_probe},
-    {'G', tenths(38, 5), motion, "XYZ", linuxcnc | grbl, no_probe},
+    {'G', tenths(33), motion, "XYZK", linuxcnc, {}},
+    {'G', tenths(33, 1), motion, "XYZK", linuxcnc, {}},
+    {'G', tenths(38, 2), motion, "XYZ", linuxcnc | grbl, {}},
+    {'G', tenths(38, 3), motion, "XYZ", linuxcnc | grbl, {}},
+    {'G', tenths(38, 4), motion, "XYZ", linuxcnc | grbl, {}},
+    {'G', tenths(38, 5), motion, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(40), cutter_radius, "", every, {}},
-    {'G', tenths(41), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, no_radius},
-    {'G', tenths(42), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, no_radius},
+    {'G', tenths(41), cutter_radius, "D", mills, {}},
+    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, {}},
+    {'G', tenths(42), cutter_radius, "D", mills, {}},
+    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, {}},
     {'G', tenths(43), tool_length, "H", mills, {}},
     {'G', tenths(43, 1), tool_length, "XYZ", linuxcnc | grbl, {}},
-    {'G', tenths(43, 2), tool_length, "HXYZ", linuxcnc, no_more_offsets},
+    {'G', tenths(43, 2), tool_length, "HXYZ", linuxcnc, {}},
     {'G', tenths(43, 4), tool_length, "H", fanuc, no_five_axes},
     {'G', tenths(43, 5), tool_length, "H", fanuc, no_five_axes},
     {'G', tenths(44), tool_length, "H", fanuc, {}},
@@ -150,7 +143,7 @@ constexpr Code codes[] = {
     {'G', tenths(93), feed_mode, "", every, {}},
     {'G', tenths(94), feed_mode, "", every, {}},
     {'G', tenths(95), feed_mode, "", mills, {}},
-    {'G', tenths(96), spindle_mode, "D", mills, no_surface_speed},
+    {'G', tenths(96), spindle_mode, "D", mills, {}},
     {'G', tenths(97), spindle_mode, "", mills, {}},
     {'G', tenths(98), retract, "", mills, {}},
     {'G', tenths(99), retract, "", mills, {}},
@@ -172,13 +165,24 @@ constexpr Code codes[] = {
     {'M', tenths(46), other, "PQ", haas, no_jump},
     {'M', tenths(48), overrides, "", mills, {}},
     {'M', tenths(49), overrides, "", mills, {}},
+    {'M', tenths(50), overrides, "P", linuxcnc, {}},
     {'M', tenths(50), other, "P", haas, no_pallet},
+    {'M', tenths(51), overrides, "P", linuxcnc, {}},
+    {'M', tenths(52), overrides, "P", linuxcnc, {}},
+    {'M', tenths(53), overrides, "P", linuxcnc, {}},
     {'M', tenths(60), stopping, "", linuxcnc, {}},
-    {'M', tenths(61), tool_change, "Q", linuxcnc, no_tool_naming},
-    {'M', tenths(70), other, "", linuxcnc, no_saved_modes},
-    {'M', tenths(71), other, "", linuxcnc, no_saved_modes},
-    {'M', tenths(72), other, "", linuxcnc, no_saved_modes},
-    {'M', tenths(73), other, "", linuxcnc, no_saved_modes},
+    {'M', tenths(61), tool_change, "Q", linuxcnc, {}},
+    {'M', tenths(62), other, "P", linuxcnc, {}},
+    {'M', tenths(63), other, "P", linuxcnc, {}},
+    {'M', tenths(64), other, "P", linuxcnc, {}},
+    {'M', tenths(65), other, "P", linuxcnc, {}},
+    {'M', tenths(66), other, "PELQ", linuxcnc, {}},
+    {'M', tenths(67), other, "EQ", linuxcnc, {}},
+    {'M', tenths(68), other, "EQ", linuxcnc, {}},
+    {'M', tenths(70), other, "", linuxcnc, {}},
+    {'M', tenths(71), other, "", linuxcnc, {}},
+    {'M', tenths(72), other, "", linuxcnc, {}},
+    {'M', tenths(73), other, "", linuxcnc, {}},
     {'M', tenths(90), other, "", klartext, {}},
     {'M', tenths(92), other, "", klartext, no_machine_point},
     {'M', tenths(94), other, "", klartext, {}},
@@ -228,7 +232,8 @@ constexpr bool before(const Code& a, const Code& b) {
 }
 static_assert(std::is_sorted(std::begin(codes), std::end(codes), before));
 
-/// For each letter, where the codes stand in the table by tenths, counted from 1; 0 for none.
+/// For each letter, where the first row of a code stands in the table by tenths, counted from 1; 0
+/// for none.
 struct Positions {
     static constexpr int most = 2000;
     std::array<uint8_t, most> g{}, m{};
@@ -237,7 +242,7 @@ struct Positions {
 constexpr Positions positions = [] {
     static_assert(std::size(codes) < 256);
     Positions found;
-    for (size_t i = 0; i < std::size(codes); ++i)
+    for (size_t i = std::size(codes); i-- > 0;)
         (codes[i].letter == 'G' ? found.g : found.m)[static_cast<size_t>(codes[i].tenths)] =
             static_cast<uint8_t>(i + 1);
     return found;
@@ -253,8 +258,11 @@ const Code* find_code(char letter, double value, DialectId id) {
     const auto& by_tenths = letter == 'G' ? positions.g : positions.m;
     const uint8_t place = by_tenths[static_cast<size_t>(rounded)];
     if (place == 0) return nullptr;
-    const Code& found = codes[place - 1];
-    return found.dialects & bit(id) ? &found : nullptr;
+    // A code that means something else on another control has a row for each, side by side.
+    const Code* found = &codes[place - 1];
+    for (; found != std::end(codes) && found->letter == letter && found->tenths == rounded; ++found)
+        if (found->dialects & bit(id)) return found;
+    return nullptr;
 }
 
 } // namespace gcode

@@ -36,6 +36,7 @@ enum class ModalGroup : uint8_t {
     coolant,
     overrides,
     subprogram,
+    diameter,
     count
 };
 

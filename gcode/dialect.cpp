@@ -58,6 +58,10 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .language = Language::words,
                               .expressions = ExpressionSyntax::rs274,
                               .arithmetic = {.equality = 0.0001},
+                              .tool_entries_by_axes = true,
+                              .arc_after_contour_is_error = true,
+                              .contour_breaks_are_errors = true,
+                              .has_active_comments = true,
                               .has_o_words = true,
                               .has_fanuc_flow = false,
                               .has_corner_words = false,
@@ -98,6 +102,10 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .language = Language::words,
                            .expressions = ExpressionSyntax::fanuc,
                            .arithmetic = {.bitwise_logic = true},
+                           .tool_entries_by_axes = false,
+                           .arc_after_contour_is_error = true,
+                           .contour_breaks_are_errors = false,
+                           .has_active_comments = false,
                            .has_o_words = false,
                            .has_fanuc_flow = true,
                            .has_corner_words = true,
@@ -127,6 +135,8 @@ constexpr Dialect grbl = [] {
     entry.local_offset_is_axis_offset = false;
     entry.work_offsets_turn = false;
     entry.feed_before_units = false;
+    entry.tool_entries_by_axes = false;
+    entry.has_active_comments = false;
     entry.has_o_words = false;
     entry.has_polar_words = false;
     return entry;

@@ -65,30 +65,42 @@ void change_offsets(Execution& execution, const Offsets& offsets);
 
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
-core::Result<void> set_feed_mode(Execution& execution);     // G93 G94 G95
-core::Result<void> set_feed(Execution& execution);          // F
-core::Result<void> set_speed(Execution& execution);         // S
-core::Result<void> select_tool(Execution& execution);       // T
-core::Result<void> change_tool(Execution& execution);       // M6
-core::Result<void> turn_spindle(Execution& execution);      // M3 M4 M5 M19
-core::Result<void> set_coolant(Execution& execution);       // M7 M8 M9
-core::Result<void> dwell(Execution& execution);             // G4
-core::Result<void> select_plane(Execution& execution);      // G17 G18 G19
-core::Result<void> set_units(Execution& execution);         // G20 G21
-core::Result<void> set_tool_length(Execution& execution);   // G43 G43.1 G44 G49, H
-core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
-core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
-core::Result<void> set_retract_mode(Execution& execution);  // G98 G99
-core::Result<void> act(Execution& execution);               // G10 G28 G30 G52 G92
-core::Result<void> move(Execution& execution);              // G0 to G3, G73 to G89, with G53
-core::Result<void> stop(Execution& execution);              // M0 M1 M2 M30 M60 M99
+core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95
+core::Result<void> set_feed(Execution& execution);              // F
+core::Result<void> set_speed(Execution& execution);             // S
+core::Result<void> select_tool(Execution& execution);           // T
+core::Result<void> change_tool(Execution& execution);           // M6
+core::Result<void> turn_spindle(Execution& execution);          // M3 M4 M5 M19
+core::Result<void> say_message(Execution& execution);           // (MSG, ...)
+core::Result<void> set_spindle_mode(Execution& execution);      // G96 G97
+core::Result<void> switch_machine(Execution& execution);        // M62 to M68
+core::Result<void> save_or_restore_modes(Execution& execution); // M70 to M73
+core::Result<void> set_coolant(Execution& execution);           // M7 M8 M9
+core::Result<void> set_overrides(Execution& execution);         // M48 to M53
+core::Result<void> dwell(Execution& execution);                 // G4
+core::Result<void> select_plane(Execution& execution);          // G17 G18 G19
+core::Result<void> set_units(Execution& execution);             // G20 G21
+core::Result<void> set_diameter_mode(Execution& execution);     // G7 G8
+core::Result<void> set_cutter_radius(Execution& execution);     // G40 G41 G42
+core::Result<void> set_path_mode(Execution& execution);         // G61 G61.1 G64
+core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44 G49, H
+core::Result<void> select_offset(Execution& execution);         // G54 to G59.3
+core::Result<void> set_distance_mode(Execution& execution);     // G90 G91 G90.1 G91.1
+core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
+core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
+core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
+core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60 M99
 
-core::Result<void> write_offset(Execution& execution);     // G10
-core::Result<void> go_home(Execution& execution);          // G28 G30
-core::Result<void> store_home(Execution& execution);       // G28.1 G30.1
-core::Result<void> set_local_offset(Execution& execution); // G52
-core::Result<void> set_axis_offset(Execution& execution);  // G92 to G92.3
-core::Result<void> move_along_arc(Execution& execution);   // G2 G3
-core::Result<void> run_canned_cycle(Execution& execution); // G73, G81 to G89
+core::Result<void> write_offset(Execution& execution);               // G10
+core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
+core::Result<void> name_tool(Execution& execution);                  // M61
+core::Result<void> go_home(Execution& execution);                    // G28 G30
+core::Result<void> store_home(Execution& execution);                 // G28.1 G30.1
+core::Result<void> set_local_offset(Execution& execution);           // G52
+core::Result<void> set_axis_offset(Execution& execution);            // G92 to G92.3
+core::Result<void> move_along_arc(Execution& execution);             // G2 G3
+core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
+core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
+core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
 
 } // namespace gcode

@@ -20,18 +20,26 @@ using Step = core::Result<void> (*)(Execution&);
 constexpr Step steps[] = {
     check_words,
     note_assumed_units,
+    say_message,
     set_feed_mode,
     set_feed,
     set_speed,
+    set_spindle_mode,
     select_tool,
+    switch_machine,
     change_tool,
     turn_spindle,
+    save_or_restore_modes,
     set_coolant,
+    set_overrides,
     dwell,
     select_plane,
     set_units,
+    set_diameter_mode,
+    set_cutter_radius,
     set_tool_length,
     select_offset,
+    set_path_mode,
     set_distance_mode,
     set_retract_mode,
     act,
@@ -287,19 +295,37 @@ Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment
 Interpreter::~Interpreter() = default;
 
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
-    if (state.ending != Ending::running) return nullptr;
-    keep(state, scratch_->before);
-    scratch_->undos.clear();
-    const uint32_t source = state.next.source;
-    auto found = scratch_->try_next(state);
-    if (found) {
-        scratch_->place_in_lines();
-        return *found ? &scratch_->result : nullptr;
+    while (true) {
+        Contour& contour = state.contour;
+        if (!contour.ready.empty()) {
+            scratch_->result = std::move(contour.ready.front());
+            contour.ready.pop_front();
+            return &scratch_->result;
+        }
+        if (contour.failure) return tl::unexpected(*contour.failure);
+        if (state.ending != Ending::running) return nullptr;
+        keep(state, scratch_->before);
+        scratch_->undos.clear();
+        const uint32_t source = state.next.source;
+        auto found = scratch_->try_next(state);
+        if (found) scratch_->place_in_lines();
+        const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
+        if (found && *found && straight_out) return &scratch_->result;
+        core::Result<void> taken;
+        if (found && *found)
+            taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
+        else if (found)
+            give_up(contour);
+        if (found && taken) continue;
+        core::Error error = found ? std::move(taken).error() : std::move(found).error();
+        scratch_->take_back(state);
+        error.where = scratch_->place_of(error.where);
+        if (error.file.empty()) error.file = scratch_->library.program(source).file;
+        if (contour.is_idle()) return tl::unexpected(std::move(error));
+        // What came before is complete but for the moves that waited for this one.
+        give_up(contour);
+        contour.failure = std::move(error);
     }
-    scratch_->take_back(state);
-    found.error().where = scratch_->place_of(found.error().where);
-    if (found.error().file.empty()) found.error().file = scratch_->library.program(source).file;
-    return tl::unexpected(std::move(found).error());
 }
 
 InterpreterState initial_state(const Environment& environment) {
@@ -312,6 +338,7 @@ InterpreterState initial_state(const Environment& environment) {
         tables.work[i].origin = environment.work_offsets[i];
     tables.lengths = environment.length_offsets;
     tables.tool_lengths = environment.tool_lengths;
+    tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
     Position start = environment.start;

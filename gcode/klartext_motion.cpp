@@ -15,7 +15,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double shortest = 1e-9; // mm: what is shorter has no direction
 
 /// A motion of the contour: where it ends, and how it gets there.
-struct Contour {
+struct PathElement {
     Position end;
     PlanePoint centre{};
     int turn = 0;  // 0 for a straight line
@@ -62,8 +62,8 @@ core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
     const PlaneAxes axes = plane_of(execution);
     FEELER_TRY(Position target, klartext_target(execution));
     FEELER_TRY(const PlanePoint pole, known_pole(execution));
-    const Word* radius_word = execution.statement.polar_radius;
-    const Word* angle_word = execution.statement.polar_angle;
+    const Word* radius_word = execution.statement.word('P');
+    const Word* angle_word = execution.statement.word('H');
     const auto relative = [](const Word* word) {
         return !word || word->addressing == Addressing::incremental;
     };
@@ -105,8 +105,8 @@ core::Result<void> check_radii(Execution& execution, const PlanePoint& start, co
     return {};
 }
 
-core::Result<Contour> around_pole(Execution& execution) {
-    Contour contour;
+core::Result<PathElement> around_pole(Execution& execution) {
+    PathElement contour;
     double turned_deg = 0.0;
     FEELER_TRY(contour.turn, turn_of(execution));
     if (execution.block.command.kind == arc_polar) {
@@ -129,8 +129,8 @@ core::Result<Contour> around_pole(Execution& execution) {
 }
 
 /// CR: R+ is the shorter arc, R- the longer one.
-core::Result<Contour> of_radius(Execution& execution) {
-    Contour contour;
+core::Result<PathElement> of_radius(Execution& execution) {
+    PathElement contour;
     FEELER_TRY(contour.turn, turn_of(execution));
     FEELER_TRY(contour.end, klartext_target(execution));
     FEELER_TRY(const PlanePoint start, known_point(execution, execution.modal().position));
@@ -156,8 +156,8 @@ core::Result<Contour> of_radius(Execution& execution) {
 }
 
 /// The arc that goes on in the direction of the motion before it.
-core::Result<Contour> tangent(Execution& execution) {
-    Contour contour;
+core::Result<PathElement> tangent(Execution& execution) {
+    PathElement contour;
     if (execution.block.command.kind == tangent_polar) {
         FEELER_TRY(contour.end, polar_target(execution, nullptr));
     } else {
@@ -185,8 +185,8 @@ core::Result<Contour> tangent(Execution& execution) {
     return contour;
 }
 
-core::Result<Contour> contour_of(Execution& execution) {
-    Contour contour;
+core::Result<PathElement> contour_of(Execution& execution) {
+    PathElement contour;
     switch (execution.block.command.kind) {
     case straight_polar: {
         FEELER_TRY(contour.end, polar_target(execution, nullptr));
@@ -208,7 +208,7 @@ core::Result<Contour> contour_of(Execution& execution) {
 }
 
 /// Remembers the direction in which a motion ends.
-void remember_direction(Execution& execution, const Position& start, const Contour& contour,
+void remember_direction(Execution& execution, const Position& start, const PathElement& contour,
                         const Position& end) {
     const PlaneAxes axes = plane_of(execution);
     KlartextState& klartext = execution.state.klartext.write();
@@ -229,7 +229,7 @@ void remember_direction(Execution& execution, const Position& start, const Conto
     if (length > shortest) klartext.direction = PlanePoint{way[0] / length, way[1] / length};
 }
 
-core::Result<void> go_along(Execution& execution, const Contour& contour) {
+core::Result<void> go_along(Execution& execution, const PathElement& contour) {
     ModalState& modal = execution.modal();
     const bool rapid = execution.block.command.rapid;
     if (contour.turn == 0 && rapid) {
@@ -287,7 +287,7 @@ core::Result<void> move_in_klartext(Execution& execution) {
         (command.kind == straight || command.kind == cycle_call) && !statement.has_axis_word();
     if (still) return {};
     const Position start = execution.modal().position;
-    FEELER_TRY(Contour contour, contour_of(execution));
+    FEELER_TRY(PathElement contour, contour_of(execution));
     execution.state.klartext.write().corner.reset();
     FEELER_TRY(contour.end,
                end_before_corner(execution, contour.end, contour.centre, contour.turn));

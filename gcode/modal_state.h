@@ -69,16 +69,16 @@ struct ModalState {
     PathMode path = PathMode::continuous;
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
     Side compensation = Side::none;
-    double compensation_radius = 0.0; // mm
+    double compensation_radius = 0.0; // mm; below zero it is on the other side
+    bool leaves_contour = false;      // since G40 no straight move was made
     bool diameter_mode = false;       // G7: X words are diameters
     bool surface_speed = false;       // G96
     double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
     bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 
-    Position position;                               // tool tip, program coordinates
-    Position home, second_home;                      // G28, G30: machine coordinates
-    Position suspended_axis = zero_position;         // kept by G92.2 for G92.3
-    std::optional<double> polar_radius, polar_angle; // of the last @ and ^; mm and degrees
+    Position position;                       // tool tip, program coordinates
+    Position home, second_home;              // G28, G30: machine coordinates
+    Position suspended_axis = zero_position; // kept by G92.2 for G92.3
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
     double speed = 0.0;         // rev/min, or m/min under G96

@@ -1,5 +1,7 @@
 #include "gcode/modes.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
@@ -171,6 +173,43 @@ core::Result<void> set_retract_mode(Execution& execution) {
     if (const CodeWord* entry = execution.statement.of(ModalGroup::retract))
         execution.modal().retract =
             entry->code->tenths == tenths(98) ? RetractMode::initial_level : RetractMode::r_level;
+    return {};
+}
+
+core::Result<void> set_path_mode(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::path_control);
+    if (!entry) return {};
+    ModalState& modal = execution.modal();
+    modal.path_tolerance = modal.naive_tolerance = 0.0;
+    modal.path = PathMode::continuous;
+    if (entry->code->tenths == tenths(61)) modal.path = PathMode::exact_path;
+    if (entry->code->tenths == tenths(61, 1)) modal.path = PathMode::exact_stop;
+    if (entry->code->tenths == tenths(64)) {
+        if (const Word* word = execution.statement.word('P'))
+            modal.path_tolerance = modal.naive_tolerance = length_of(execution, *word);
+        if (const Word* word = execution.statement.word('Q'))
+            modal.naive_tolerance = length_of(execution, *word);
+    }
+    execution.column = entry->word->span.column;
+    execution.emit(SetPathMode{modal.path, modal.path_tolerance, modal.naive_tolerance});
+    return {};
+}
+
+core::Result<void> set_spindle_mode(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
+    if (!entry) return {};
+    ModalState& modal = execution.modal();
+    modal.surface_speed = entry->code->tenths == tenths(96);
+    const Word* fastest = execution.statement.word('D');
+    modal.fastest_speed = modal.surface_speed && fastest ? std::abs(fastest->value) : 0.0;
+    execution.column = entry->word->span.column;
+    execution.emit(UseSpindleMode{modal.surface_speed, modal.speed, modal.fastest_speed});
+    return {};
+}
+
+core::Result<void> set_diameter_mode(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::diameter);
+    if (entry) execution.modal().diameter_mode = entry->code->tenths == tenths(7);
     return {};
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -102,11 +103,13 @@ core::Result<void> move_to_machine_place(Execution& execution) {
 
 void Execution::traverse(const Position& end) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightTraverse{end});
 }
 
 void Execution::feed(const Position& end, double rate) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightFeed{end, rate});
 }
 
@@ -126,6 +129,46 @@ double axis_value(const Execution& execution, size_t axis, const Word& word) {
     return axis == 0 && execution.modal().diameter_mode ? length / 2.0 : length;
 }
 
+namespace {
+
+/// @ and ^: X and Y by their distance from the origin and the angle there, in every plane. What is
+/// not said is that of the present place.
+core::Result<void> place_polar(const Execution& execution, Position& target) {
+    const Statement& statement = execution.statement;
+    const Word& first = statement.polar_radius ? *statement.polar_radius : *statement.polar_angle;
+    for (const char letter : {'X', 'Y'})
+        if (const Word* word = statement.word(letter))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{}: a place is given with @ and ^ or with X and Y, not "
+                                          "with both",
+                                          written(*word)),
+                              word->span);
+    const bool incremental = execution.modal().distance == DistanceMode::incremental;
+    const bool needs_place = incremental || !statement.polar_radius || !statement.polar_angle;
+    if (needs_place && !(target[0] && target[1]))
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{}: this counts from the present place, which is unknown; "
+                                      "give both @ and ^",
+                                      written(first)),
+                          first.span);
+    constexpr double radians = std::numbers::pi / 180.0;
+    double radius = needs_place ? std::hypot(*target[0], *target[1]) : 0.0;
+    double angle = needs_place ? std::atan2(*target[1], *target[0]) / radians : 0.0;
+    if (!statement.polar_angle && radius < 1e-9)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{}: at the origin there is no angle to keep: give ^", written(first)),
+            first.span);
+    if (statement.polar_radius)
+        radius = length_of(execution, *statement.polar_radius) + (incremental ? radius : 0.0);
+    if (statement.polar_angle) angle = statement.polar_angle->value + (incremental ? angle : 0.0);
+    target[0] = radius * std::cos(angle * radians);
+    target[1] = radius * std::sin(angle * radians);
+    return {};
+}
+
+} // namespace
+
 core::Result<Position> target_of(const Execution& execution) {
     const ModalState& modal = execution.modal();
     Position target = modal.position;
@@ -141,6 +184,9 @@ core::Result<Position> target_of(const Execution& execution) {
                 target[axis] = place[axis];
         return target;
     }
+    if (execution.statement.polar_radius || execution.statement.polar_angle)
+        if (auto placed = place_polar(execution, target); !placed)
+            return tl::unexpected(std::move(placed).error());
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
@@ -200,7 +246,8 @@ core::Result<void> move(Execution& execution) {
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    return move_along_arc(execution);
+    if (is_arc(modal.motion)) return move_along_arc(execution);
+    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace gcode

@@ -127,6 +127,9 @@ core::Result<void> write_offset(Execution& execution) {
                           "G10 does not say what to write: it needs L2 "
                           "or L20",
                           entry.word->span);
+    const bool is_tool = kind->value == 1.0 || kind->value == 10.0 || kind->value == 11.0;
+    if (is_tool && execution.dialect.tool_entries_by_axes)
+        return write_tool_entry(execution, static_cast<int>(kind->value));
     if (kind->value != 2.0 && kind->value != 20.0)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: only G10 L2 and L20 are supported yet", written(*kind)),

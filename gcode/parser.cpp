@@ -8,13 +8,14 @@
 #include "gcode/flow_parser.h"
 #include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
+#include "gcode/messages.h"
 
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view word_letters = "ABCDFGHIJKLMNOPQRSTUVWXYZ";
+constexpr std::string_view word_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
 /// Two or more letters in a row are a keyword of some control, which deserves a better message.
 core::Error missing_number(const Lexer& lexer, size_t begin) {
@@ -48,6 +49,8 @@ private:
         if (c == '(') {
             FEELER_TRY(const Comment comment, lexer_.bracket_comment());
             block_.comments.push_back(comment);
+            block_.has_message =
+                dialect_.has_active_comments && active_comment(comment.text).has_value();
             return {};
         }
         if (c == ';') {
@@ -71,7 +74,7 @@ private:
             && lexer_.line[lexer_.at] <= '9')
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
-        const bool in_place = block_.is_empty() || (after_number && block_.assignments.empty());
+        const bool in_place = block_.words.empty() || (after_number && block_.assignments.empty());
         if (!in_place || block_.block_delete)
             return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
                               lexer_.span_from(begin));
@@ -81,7 +84,7 @@ private:
 
     /// What follows a tape mark on its line is the name some controls put there.
     core::Result<void> tape_mark() {
-        if (!block_.is_empty())
+        if (!block_.words.empty())
             return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
         block_.tape_mark = true;
@@ -222,6 +225,7 @@ void Block::clear() {
     command = {};
     block_delete.reset();
     tape_mark = false;
+    has_message = false;
 }
 
 core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,

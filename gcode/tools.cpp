@@ -74,6 +74,34 @@ core::Result<void> use_given_offset(Execution& execution) {
     return {};
 }
 
+/// G43.2: one more offset on top of what is on, from the table or from the block.
+core::Result<void> add_table_offset(Execution& execution, const Word& word) {
+    AxisValues sum = execution.modal().offsets.tool;
+    const Word* number = execution.statement.word('H');
+    AxisValues more{};
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* value = execution.statement.word(axis_letters[axis]))
+            more[axis] = axis_value(execution, axis, *value);
+    if (number) {
+        FEELER_TRY(const int entry, whole_number(*number));
+        const std::optional<double> length = length_under(*execution.state.tables, entry);
+        if (!length)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: nothing is known about length offset H{}", written(word), entry),
+                number->span);
+        more = offset_under(execution, entry, *length);
+    } else if (!execution.statement.has_axis_word()) {
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs an H word, or the offset itself as axis words", written(word)),
+            word.span);
+    }
+    for (size_t axis = 0; axis < axis_count; ++axis) sum[axis] += more[axis];
+    use_offset(execution, execution.modal().length_number, sum);
+    return {};
+}
+
 } // namespace
 
 bool changes_length_alone(const Execution& execution) {
@@ -97,6 +125,8 @@ core::Result<void> change_tool(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
     if (!entry) return {};
     ModalState& modal = execution.modal();
+    execution.column = entry->word->span.column;
+    if (entry->code->tenths == tenths(61)) return name_tool(execution);
     if (!modal.selected_tool)
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word came before it",
@@ -123,6 +153,8 @@ core::Result<void> set_tool_length(Execution& execution) {
         return use_table_length(execution, *entry->word, +1.0);
     case tenths(44):
         return use_table_length(execution, *entry->word, -1.0);
+    case tenths(43, 2):
+        return add_table_offset(execution, *entry->word);
     case tenths(43, 1):
         modal.length_sign = 0.0;
         return use_given_offset(execution);

@@ -9,7 +9,7 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view letters_that_need_a_code = "DHIJKLPQR";
+constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 
 /// The code of the motion or cycle that a block without one goes on with.
@@ -66,8 +66,11 @@ bool is_used(const Execution& execution, char letter) {
 
 core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
-    const std::string message = fmt::format("{}: nothing in this block uses it", written(word));
-    if (execution.dialect.unused_words_are_errors)
+    const bool exponent = word.letter == 'E'; // of a number, most likely
+    const std::string message =
+        fmt::format("{}: nothing in this block uses it{}", written(word),
+                    exponent ? "; an exponent such as 1E3 is written out" : "");
+    if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);
     return {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/distance/box_tree_distance.h"
@@ -34,11 +35,21 @@ struct SideSeparation {
 SideSeparation separation(const BodySide& a, const BodySide& b, const BodyMotion& motion,
                           const SeparationGoal& goal = {});
 
-/// Whether the bodies surely share a point although lengths may be wrong by up to `error`. `near`
-/// is what separation() found; `false` says nothing.
+/// A point that two bodies have in common, and when in the sweep (0..1).
+struct SharedPoint {
+    Vec3 point;
+    double time;
+};
+
+/// A point that the bodies surely share although lengths may be wrong by up to `error`; nothing
+/// proves nothing. `near` is what separation() found.
 ///
-/// Proof: README.md beside this file, "Overlap".
-bool certainly_meet(const BodySide& a, const BodySide& b, const BodyMotion& motion,
-                    const SideSeparation& near, double error);
+/// Frame:  that of A.
+/// Result: the point lies in one body however lengths are rounded, and in the other or within
+///         `error` of it; not where `near` is, whose points may be as far apart as its tolerance.
+/// Proof:  README.md beside this file, "Overlap".
+std::optional<SharedPoint> certainly_shared(const BodySide& a, const BodySide& b,
+                                            const BodyMotion& motion, const SideSeparation& near,
+                                            double error);
 
 } // namespace core

@@ -92,9 +92,9 @@ private:
         if (!found.separation.found()) return;
         offer(found.separation.upper + error, found.separation);
         if (found.separation.upper > goal_.tolerance + error) return;
-        if (!certainly_meet(known_matter(a_), known_matter(b_), motion_, found, error)) return;
-        offer(0.0, found.separation);
-        result_.witness_b = result_.witness_a;
+        const auto shared =
+            certainly_shared(known_matter(a_), known_matter(b_), motion_, found, error);
+        if (shared) offer(0.0, {0.0, 0.0, shared->point, shared->point, shared->time});
     }
 
     void take_lower(const SideSeparation& found) {

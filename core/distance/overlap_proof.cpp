@@ -20,19 +20,26 @@ ConvexShape shrunk(const ExactPart& part, double by) {
     return shape;
 }
 
-/// What is nearer than the error to a part that was shrunk by twice as much is in the part.
-bool meets_shrunk(const ExactPart& a, const BodySide& b, const BodyMotion& motion, double error) {
-    if (!(a.depth > 2.0 * error)) return false;
+/// A point of B that is in the part, if one is nearer than the error to what shrinking by twice as
+/// much leaves of it.
+std::optional<SharedPoint> shared_with(const ExactPart& a, const BodySide& b,
+                                       const BodyMotion& motion, double error) {
+    if (!(a.depth > 2.0 * error)) return std::nullopt;
     const std::array part = {ExactPart{shrunk(a, 2.0 * error), {}, 0.0}};
     const SeparationGoal goal{.tolerance = 0.0, .limit = 2.0 * error};
-    return separation({part}, b, motion, goal).separation.upper <= error;
+    const Separation found = separation({part}, b, motion, goal).separation;
+    if (!(found.upper <= error)) return std::nullopt;
+    return SharedPoint{found.point_b, found.time_a};
 }
 
-bool meets_shrunk(const BodySide& a, const ExactPart& b, const BodyMotion& motion, double error) {
-    if (!(b.depth > 2.0 * error)) return false;
+std::optional<SharedPoint> shared_with(const BodySide& a, const ExactPart& b,
+                                       const BodyMotion& motion, double error) {
+    if (!(b.depth > 2.0 * error)) return std::nullopt;
     const std::array part = {ExactPart{shrunk(b, 2.0 * error), {}, 0.0}};
     const SeparationGoal goal{.tolerance = 0.0, .limit = 2.0 * error};
-    return separation(a, {part}, motion, goal).separation.upper <= error;
+    const Separation found = separation(a, {part}, motion, goal).separation;
+    if (!(found.upper <= error)) return std::nullopt;
+    return SharedPoint{found.point_a, found.time_a};
 }
 
 double to_surface(const SolidMesh& mesh, const Vec3& p, double limit) {
@@ -48,26 +55,28 @@ bool lies_in_or_on(const SolidMesh& mesh, const Vec3& p, double error) {
            || separation(convex_segment(p, p), *mesh.bvh, {0.0, 2.0 * error}).upper <= error;
 }
 
-/// Calls `prove` with places round the witness until one of them is a proof: at the moments and
+/// Calls `prove` with places round the witness until it finds a shared point: at the moments and
 /// steps given, from wide ones to those that the error drowns.
 template <typename Prove>
-bool any_place(const BodyMotion& motion, const Separation& near, double widest, double error,
-               const Prove& prove) {
+std::optional<SharedPoint> any_place(const BodyMotion& motion, const Separation& near,
+                                     double widest, double error, const Prove& prove) {
     const bool moves = motion.sweep != Vec3(0.0);
     for (const double later : {0.0, 0.015, -0.015, 0.125, -0.125}) {
         if (later != 0.0 && !moves) break;
         const double time = std::clamp(near.time_a + later, 0.0, 1.0);
         const Transform then = translation(time * motion.sweep) * motion.a_from_b;
         const Vec3 place = near.point_a + 0.5 * (time - near.time_a) * motion.sweep;
-        if (prove(then, place, 0.0)) return true;
+        if (const std::optional<Vec3> p = prove(then, place, 0.0)) return SharedPoint{*p, time};
         for (double step = 0.25 * widest; step > 8.0 * error; step *= 0.25)
-            if (prove(then, place, step)) return true;
+            if (const std::optional<Vec3> p = prove(then, place, step))
+                return SharedPoint{*p, time};
     }
-    return false;
+    return std::nullopt;
 }
 
-bool meet_deeply(const SolidMesh& a, const SolidMesh& b, const BodyMotion& motion,
-                 const Separation& near, double error) {
+std::optional<SharedPoint> shared_deeply(const SolidMesh& a, const SolidMesh& b,
+                                         const BodyMotion& motion, const Separation& near,
+                                         double error) {
     const double widest =
         std::min(glm::length(a.mesh->bounds().size()), glm::length(b.mesh->bounds().size()));
     const auto both_hold = [&](const Transform& a_from_b, const Vec3& p) {
@@ -75,33 +84,34 @@ bool meet_deeply(const SolidMesh& a, const SolidMesh& b, const BodyMotion& motio
         return (lies_deep(a, p, error) && lies_in_or_on(b, in_b, error))
                || (lies_deep(b, in_b, error) && lies_in_or_on(a, p, error));
     };
-    return any_place(motion, near, widest, error,
-                     [&](const Transform& then, const Vec3& place, double step) {
-                         if (step == 0.0) return both_hold(then, place);
-                         for (int i = 0; i < 27; ++i) {
-                             const Vec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-                             if (i != 13 && both_hold(then, place + step * way)) return true;
-                         }
-                         return false;
-                     });
+    const auto prove = [&](const Transform& then, const Vec3& place,
+                           double step) -> std::optional<Vec3> {
+        for (int i = 0; i < 27; ++i) {
+            const Vec3 p = place + step * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            if ((i == 13) == (step == 0.0) && both_hold(then, p)) return p;
+        }
+        return std::nullopt;
+    };
+    return any_place(motion, near, widest, error, prove);
 }
 
-/// Whether a point of a stretch of matter lies deep in a mesh; the stretch is in the frame of B.
-bool reaches_deep(const SolidMesh& a, const Aabb& stretch, const BodyMotion& motion,
-                  const Separation& near, double error) {
+/// A point of a stretch of matter that lies deep in a mesh; the stretch is in the frame of B.
+std::optional<SharedPoint> shared_deeply(const SolidMesh& a, const Aabb& stretch,
+                                         const BodyMotion& motion, const Separation& near,
+                                         double error) {
     const Vec3 along = stretch.size();
     const double length = glm::length(along);
-    return any_place(
-        motion, near, 4.0 * length, error,
-        [&](const Transform& then, const Vec3& place, double step) {
-            const double at = glm::dot(then.inverse() * place - stretch.min, along) / length;
-            for (const double sign : {-1.0, 1.0}) {
-                const Vec3 p =
-                    stretch.min + std::clamp(at + sign * step, 0.0, length) * (along / length);
-                if (lies_deep(a, then * p, error)) return true;
-            }
-            return false;
-        });
+    const auto prove = [&](const Transform& then, const Vec3& place,
+                           double step) -> std::optional<Vec3> {
+        const double at = glm::dot(then.inverse() * place - stretch.min, along) / length;
+        for (const double sign : {-1.0, 1.0}) {
+            const Vec3 p =
+                then * (stretch.min + std::clamp(at + sign * step, 0.0, length) * (along / length));
+            if (lies_deep(a, p, error)) return p;
+        }
+        return std::nullopt;
+    };
+    return any_place(motion, near, 4.0 * length, error, prove);
 }
 
 bool is_convex(const ExactPart& part) { return std::holds_alternative<ConvexShape>(part.body); }
@@ -113,28 +123,31 @@ BodyMotion seen_from_b(const BodyMotion& motion) {
 
 } // namespace
 
-bool certainly_meet(const BodySide& a, const BodySide& b, const BodyMotion& motion,
-                    const SideSeparation& near, double error) {
-    if (a.is_exact() && is_convex(a.parts[near.part_a])
-        && meets_shrunk(a.parts[near.part_a], b, motion, error))
-        return true;
-    if (b.is_exact() && is_convex(b.parts[near.part_b])
-        && meets_shrunk(a, b.parts[near.part_b], motion, error))
-        return true;
+std::optional<SharedPoint> certainly_shared(const BodySide& a, const BodySide& b,
+                                            const BodyMotion& motion, const SideSeparation& near,
+                                            double error) {
+    std::optional<SharedPoint> shared;
+    if (a.is_exact() && is_convex(a.parts[near.part_a]))
+        shared = shared_with(a.parts[near.part_a], b, motion, error);
+    if (!shared && b.is_exact() && is_convex(b.parts[near.part_b]))
+        shared = shared_with(a, b.parts[near.part_b], motion, error);
+    if (shared) return shared;
     const auto mesh_of = [](const BodySide& side, size_t part) {
         return side.is_exact() ? std::get_if<SolidMesh>(&side.parts[part].body) : nullptr;
     };
     const SolidMesh* mesh_a = mesh_of(a, near.part_a);
     const SolidMesh* mesh_b = mesh_of(b, near.part_b);
-    if (mesh_a && mesh_b) return meet_deeply(*mesh_a, *mesh_b, motion, near.separation, error);
+    if (mesh_a && mesh_b) return shared_deeply(*mesh_a, *mesh_b, motion, near.separation, error);
     if (mesh_a && !b.is_exact())
-        return reaches_deep(*mesh_a, b.boxes->boxes[near.part_b], motion, near.separation, error);
-    if (!mesh_b || a.is_exact()) return false;
+        return shared_deeply(*mesh_a, b.boxes->boxes[near.part_b], motion, near.separation, error);
+    if (!mesh_b || a.is_exact()) return std::nullopt;
     const BodyMotion back = seen_from_b(motion);
     Separation turned = near.separation;
     turned.point_a = motion.a_from_b.inverse()
                      * (near.separation.point_b - near.separation.time_a * motion.sweep);
-    return reaches_deep(*mesh_b, a.boxes->boxes[near.part_a], back, turned, error);
+    shared = shared_deeply(*mesh_b, a.boxes->boxes[near.part_a], back, turned, error);
+    if (shared) shared->point = motion.a_from_b * shared->point + shared->time * motion.sweep;
+    return shared;
 }
 
 } // namespace core

@@ -88,10 +88,6 @@ TEST(Parser, NamesANumberWithoutLetter) {
     EXPECT_EQ(refused("G0 X1+"), "6: '+' has no letter before it");
 }
 
-TEST(Parser, RefusesExponents) {
-    EXPECT_THAT(refused("X1e3"), AllOf(HasSubstr("3: 'e'"), HasSubstr("1E3")));
-}
-
 TEST(Parser, NamesARepeatedWord) {
     EXPECT_EQ(refused("G0 X1 Y2 X3"), "10: 'X3': a block takes one X word, this is the second");
     EXPECT_EQ(parsed("G0 G17 M3 M8").words.size(), 4u);
