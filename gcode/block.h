@@ -115,7 +115,7 @@ enum class CommandKind : uint8_t {
 };
 
 /// A statement that begins with a keyword. Its values are words of the block: a radius is R, polar
-/// places are @ and ^, the rest as the kind says.
+/// places are P and H, the rest as the kind says.
 struct Command {
     CommandKind kind = CommandKind::none;
     core::SourceSpan span{};

@@ -412,6 +412,7 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch_->take_back(state);
+        error.where = scratch_->place_of(error.where);
         if (error.file.empty()) error.file = scratch_->library.program(source).file;
         if (contour.is_idle()) return tl::unexpected(std::move(error));
         // What came before is complete but for the moves that waited for this one.

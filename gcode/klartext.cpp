@@ -83,7 +83,8 @@ core::Result<void> call_cycle(Execution& execution) {
     const Command& command = execution.block.command;
     KlartextState& klartext = execution.state.klartext.write();
     if (command.calls_from_here) klartext.calls_after_motions = true;
-    const bool moves = is_motion(command.kind) && execution.statement.has_axis_word();
+    const bool moves = is_motion(command.kind)
+                       && (command.kind != straight || execution.statement.has_axis_word());
     const bool calls =
         command.calls_cycle || command.calls_from_here || (klartext.calls_after_motions && moves);
     if (command.calls_cycle) klartext.calls_after_motions = false;

@@ -221,10 +221,10 @@ core::Result<void> read_contour_word(KlartextReader& reader) {
     const size_t from = reader.lexer.at;
     const char first = letters[0];
     if (letters == "DR") return read_turn(reader);
-    if (reader.accept_prefix("PR")) return reader.word('@', from);
-    if (reader.accept_prefix("PA")) return reader.word('^', from);
-    if (reader.accept_prefix("IPR")) return reader.word('@', from, Addressing::incremental);
-    if (reader.accept_prefix("IPA")) return reader.word('^', from, Addressing::incremental);
+    if (reader.accept_prefix("PR")) return reader.word('P', from);
+    if (reader.accept_prefix("PA")) return reader.word('H', from);
+    if (reader.accept_prefix("IPR")) return reader.word('P', from, Addressing::incremental);
+    if (reader.accept_prefix("IPA")) return reader.word('H', from, Addressing::incremental);
     if (first == 'F') return read_feed(reader);
     if (first == 'R') return read_radius(reader);
     if (first == 'M') return read_m_word(reader);
