@@ -12,7 +12,7 @@ namespace {
 using core::ErrorCode;
 
 /// An arc seen along its normal: coordinates along the plane's first and second axis.
-struct FlatArc {
+struct SeenArc {
     core::SourceSpan where;
     std::string code; // G2 or G3, for messages
     bool clockwise;
@@ -22,7 +22,7 @@ struct FlatArc {
 /// How far an R word may fall short of reaching the end (LinuxCNC: RADIUS_TOLERANCE).
 constexpr double reach_tolerance = 0.00127;
 
-core::Result<void> check_radii(Execution& execution, const FlatArc& arc, const double* centre) {
+core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const double* centre) {
     const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
     const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
     if (to_start < reach_tolerance || to_end < reach_tolerance)
@@ -53,7 +53,7 @@ struct CentreWords {
     const Word* second;
 };
 
-core::Result<void> centre_from_offsets(Execution& execution, const FlatArc& arc,
+core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
                                        const CentreWords& words, double* centre) {
     const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
     if (absolute && !(words.first && words.second))
@@ -69,7 +69,7 @@ core::Result<void> centre_from_offsets(Execution& execution, const FlatArc& arc,
 }
 
 /// The centre lies on the line that halves the chord, on the side that R's sign and the turn say.
-core::Result<void> centre_from_radius(const FlatArc& arc, const Word& word, double radius,
+core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, double radius,
                                       double* centre) {
     const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
     const double half = 0.5 * std::hypot(chord[0], chord[1]);
@@ -93,7 +93,7 @@ core::Result<void> centre_from_radius(const FlatArc& arc, const Word& word, doub
     return {};
 }
 
-core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const PlaneAxes& axes,
+core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
                                double* centre) {
     constexpr char offset_letters[] = {'I', 'J', 'K', 0, 0, 0, 'I', 'J', 'K'};
     const Statement& statement = execution.statement;
@@ -119,10 +119,10 @@ core::Result<void> find_centre(Execution& execution, const FlatArc& arc, const P
                       arc.where);
 }
 
-core::Result<FlatArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
+core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
                                const Position& end) {
     const bool clockwise = execution.modal().motion == tenths(2);
-    FlatArc arc{.where = moving_word(execution).span,
+    SeenArc arc{.where = moving_word(execution).span,
                 .code = clockwise ? "G2" : "G3",
                 .clockwise = clockwise,
                 .start = {},
@@ -155,8 +155,13 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
+    if (modal.leaves_contour && execution.dialect.arc_after_contour_is_error)
+        return core::fail(ErrorCode::syntax,
+                          "the first move behind G40 must be straight: an arc would not start "
+                          "where the tool is",
+                          moving_word(execution).span);
     FEELER_TRY(const Position end, target_of(execution));
-    FEELER_TRY(const FlatArc arc, flat_arc(execution, axes, end));
+    FEELER_TRY(const SeenArc arc, flat_arc(execution, axes, end));
     ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
     if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
     FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));

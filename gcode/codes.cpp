@@ -18,7 +18,6 @@ constexpr DialectSet grbl = bit(DialectId::grbl);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
-constexpr std::string_view no_radius = "cutter radius compensation is not supported yet";
 constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
 constexpr std::string_view no_probe = "probing is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
@@ -74,10 +73,10 @@ constexpr Code codes[] = {
     {'G', tenths(38, 4), motion, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(38, 5), motion, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(40), cutter_radius, "", every, {}},
-    {'G', tenths(41), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, no_radius},
-    {'G', tenths(42), cutter_radius, "D", mills, no_radius},
-    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, no_radius},
+    {'G', tenths(41), cutter_radius, "D", mills, {}},
+    {'G', tenths(41, 1), cutter_radius, "DL", linuxcnc, {}},
+    {'G', tenths(42), cutter_radius, "D", mills, {}},
+    {'G', tenths(42, 1), cutter_radius, "DL", linuxcnc, {}},
     {'G', tenths(43), tool_length, "H", mills, {}},
     {'G', tenths(43, 1), tool_length, "XYZ", linuxcnc | grbl, {}},
     {'G', tenths(43, 2), tool_length, "HXYZ", linuxcnc, {}},

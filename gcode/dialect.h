@@ -59,6 +59,8 @@ struct Dialect {
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
     bool tool_entries_by_axes;             // G10 L1, L10 and L11 take P and axis words
+    bool arc_after_contour_is_error;       // a circle right behind G40
+    bool contour_breaks_are_errors;        // G28, G53 and the like between G41 and G40
     bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
     bool has_o_words;                      // o<name> sub, if, while ...
     bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65

@@ -27,7 +27,8 @@ struct Environment {
     LengthUnit machine_unit = LengthUnit::mm; // in which the parameters of offsets are kept
     std::array<AxisValues, plain_offset_count> work_offsets{};
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
-    std::map<core::ToolNumber, double> tool_lengths{}; // for H numbers without an entry
+    std::map<core::ToolNumber, double> tool_lengths{};   // for H numbers without an entry
+    std::map<core::ToolNumber, double> tool_diameters{}; // for D numbers without an entry
     Position start{};                        // gauge line; X, Y, Z empty where nobody knows
     std::optional<AxisValues> home{};        // G28; machine zero when nobody says
     std::optional<AxisValues> second_home{}; // G30; likewise

@@ -82,6 +82,7 @@ core::Result<void> dwell(Execution& execution);                 // G4
 core::Result<void> select_plane(Execution& execution);          // G17 G18 G19
 core::Result<void> set_units(Execution& execution);             // G20 G21
 core::Result<void> set_diameter_mode(Execution& execution);     // G7 G8
+core::Result<void> set_cutter_radius(Execution& execution);     // G40 G41 G42
 core::Result<void> set_path_mode(Execution& execution);         // G61 G61.1 G64
 core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44 G49, H
 core::Result<void> select_offset(Execution& execution);         // G54 to G59.3

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/alarms.h"
+#include "gcode/before_block.h"
 #include "gcode/decimal_points.h"
 #include "gcode/execution.h"
 #include "gcode/fanuc_parameters.h"
@@ -38,6 +39,7 @@ constexpr Step steps[] = {
     select_plane,
     set_units,
     set_diameter_mode,
+    set_cutter_radius,
     set_tool_length,
     select_offset,
     set_path_mode,
@@ -48,55 +50,6 @@ constexpr Step steps[] = {
     stop,
     call,
 };
-
-/// What a block may change, kept until it has succeeded.
-struct Before {
-    ModalState modal;
-    Place next;
-    uint32_t next_block;
-    bool tape_open, said_unit, said_home;
-    Ending ending;
-    bool said_time;
-    DecimalPoints points;
-    Shared<Tables> tables;
-    // Only of blocks that call or return.
-    bool has_calls = false;
-    std::vector<Frame> frames;
-    std::vector<ModalMacro> modal_macros;
-};
-
-void keep_calls(const InterpreterState& state, Before& before) {
-    before.has_calls = true;
-    before.frames = state.frames;
-    before.modal_macros = state.modal_macros;
-}
-
-void keep(const InterpreterState& state, Before& before) {
-    before.modal = state.modal;
-    before.next = state.next;
-    before.next_block = state.next_block;
-    before.tape_open = state.tape_open;
-    before.said_unit = state.said_unit;
-    before.said_home = state.said_home;
-    before.ending = state.ending;
-    before.said_time = state.said_time;
-    before.points = state.points;
-    before.tables = state.tables;
-    before.has_calls = false;
-}
-
-void restore(InterpreterState& state, const Before& before) {
-    state.modal = before.modal;
-    state.next = before.next;
-    state.next_block = before.next_block;
-    state.tape_open = before.tape_open;
-    state.said_unit = before.said_unit;
-    state.said_home = before.said_home;
-    state.ending = before.ending;
-    state.said_time = before.said_time;
-    state.points = before.points;
-    state.tables = before.tables;
-}
 
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
@@ -126,7 +79,7 @@ struct Interpreter::Scratch {
     Block block{};
     Statement statement{};
     BlockResult result{};
-    Before before{};
+    BeforeBlock before{};
     std::vector<Undo> undos{};
     std::vector<Value> values{};
 
@@ -267,10 +220,7 @@ core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
 
 /// Gives the parameters of a block that failed their old values.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
-    if (before.has_calls) {
-        state.frames = before.frames;
-        state.modal_macros = before.modal_macros;
-    }
+    restore_calls(state, before);
     ProgramParameters parameters(state, environment);
     for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
         if (undo->is_named)
@@ -347,15 +297,35 @@ Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment
 Interpreter::~Interpreter() = default;
 
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
-    if (state.ending != Ending::running) return nullptr;
-    keep(state, scratch_->before);
-    scratch_->undos.clear();
-    const uint32_t source = state.next.source;
-    auto found = scratch_->try_next(state);
-    if (found) return *found ? &scratch_->result : nullptr;
-    scratch_->take_back(state);
-    if (found.error().file.empty()) found.error().file = scratch_->library.program(source).file;
-    return tl::unexpected(std::move(found).error());
+    while (true) {
+        Contour& contour = state.contour;
+        if (!contour.ready.empty()) {
+            scratch_->result = std::move(contour.ready.front());
+            contour.ready.pop_front();
+            return &scratch_->result;
+        }
+        if (contour.failure) return tl::unexpected(*contour.failure);
+        if (state.ending != Ending::running) return nullptr;
+        keep(state, scratch_->before);
+        scratch_->undos.clear();
+        const uint32_t source = state.next.source;
+        auto found = scratch_->try_next(state);
+        const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
+        if (found && *found && straight_out) return &scratch_->result;
+        core::Result<void> taken;
+        if (found && *found)
+            taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
+        else if (found)
+            give_up(contour);
+        if (found && taken) continue;
+        core::Error error = found ? std::move(taken).error() : std::move(found).error();
+        scratch_->take_back(state);
+        if (error.file.empty()) error.file = scratch_->library.program(source).file;
+        if (contour.is_idle()) return tl::unexpected(std::move(error));
+        // What came before is complete but for the moves that waited for this one.
+        give_up(contour);
+        contour.failure = std::move(error);
+    }
 }
 
 InterpreterState initial_state(const Environment& environment) {
@@ -368,6 +338,7 @@ InterpreterState initial_state(const Environment& environment) {
         tables.work[i].origin = environment.work_offsets[i];
     tables.lengths = environment.length_offsets;
     tables.tool_lengths = environment.tool_lengths;
+    tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
     Position start = environment.start;

@@ -9,7 +9,8 @@
 
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "gcode/canonical.h"
+#include "gcode/block_result.h"
+#include "gcode/contour.h"
 #include "gcode/environment.h"
 #include "gcode/frame.h"
 #include "gcode/parameters.h"
@@ -19,28 +20,6 @@
 #include "gcode/tables.h"
 
 namespace gcode {
-
-enum class Severity : uint8_t { note, warning };
-
-/// Something a person should know about a block that does not stop the program.
-struct Warning {
-    Severity severity;
-    core::SourceSpan where;
-    std::string message;
-};
-
-/// One block as executed.
-struct BlockResult {
-    core::BlockIndex block{};
-    uint32_t line = 0;
-    std::string_view text{};       // the line, as long as the library stays where it is
-    std::string_view file{};       // of a subprogram's file; empty for the main program
-    std::vector<uint32_t> calls{}; // lines that called it, the outermost first
-    bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
-    std::vector<CanonicalCommand> commands{};
-    std::vector<uint32_t> columns{}; // of the words that the commands come from
-    std::vector<Warning> warnings{};
-};
 
 /// Whether and how a program came to its end.
 enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
@@ -79,6 +58,7 @@ struct InterpreterState {
     LocalParameters said{}; // Fanuc: the words that were said last, by the numbers of arguments
     Shared<Parameters> parameters;
     Shared<Tables> tables;
+    Contour contour; // blocks on their way through cutter radius compensation
     LoopWatch watch;
 
     bool operator==(const InterpreterState&) const = default;

@@ -69,7 +69,8 @@ struct ModalState {
     PathMode path = PathMode::continuous;
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
     Side compensation = Side::none;
-    double compensation_radius = 0.0; // mm
+    double compensation_radius = 0.0; // mm; below zero it is on the other side
+    bool leaves_contour = false;      // since G40 no straight move was made
     bool diameter_mode = false;       // G7: X words are diameters
     bool surface_speed = false;       // G96
     double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit

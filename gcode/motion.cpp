@@ -103,11 +103,13 @@ core::Result<void> move_to_machine_place(Execution& execution) {
 
 void Execution::traverse(const Position& end) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightTraverse{end});
 }
 
 void Execution::feed(const Position& end, double rate) {
     modal().position = end;
+    modal().leaves_contour = false;
     emit(StraightFeed{end, rate});
 }
 

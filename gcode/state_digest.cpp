@@ -45,12 +45,13 @@ void add(Digest& digest, const CannedCycle& cycle) {
 
 void add_modes(Digest& digest, const ModalState& modal) {
     for (const int mode :
-         {int(modal.unit), int(modal.unit_said), modal.motion.value_or(-1), int(modal.plane),
-          int(modal.distance), int(modal.arc_distance), int(modal.feed_mode), int(modal.retract),
-          int(modal.path), int(modal.compensation), int(modal.diameter_mode),
-          int(modal.surface_speed), int(modal.feed_override), int(modal.speed_override),
-          int(modal.adaptive_feed), int(modal.feed_hold), int(modal.spindle), int(modal.mist),
-          int(modal.flood)})
+         {int(modal.unit),          int(modal.unit_said),      modal.motion.value_or(-1),
+          int(modal.plane),         int(modal.distance),       int(modal.arc_distance),
+          int(modal.feed_mode),     int(modal.retract),        int(modal.path),
+          int(modal.compensation),  int(modal.leaves_contour), int(modal.diameter_mode),
+          int(modal.surface_speed), int(modal.feed_override),  int(modal.speed_override),
+          int(modal.adaptive_feed), int(modal.feed_hold),      int(modal.spindle),
+          int(modal.mist),          int(modal.flood)})
         digest.add(number_of(mode));
     for (const double value :
          {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,
@@ -131,6 +132,11 @@ uint64_t digest_of(const InterpreterState& state) {
         digest.add(number_of(2 * macro.rounds + int(macro.each_block)));
     }
     add_all(digest, state.said);
+    digest.add(uint64_t{state.contour.path.has_value()});
+    if (state.contour.path) {
+        digest.add(state.contour.path->tool.u);
+        digest.add(state.contour.path->tool.v);
+    }
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
     return digest.value();

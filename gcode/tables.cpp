@@ -19,4 +19,14 @@ std::optional<double> length_under(const Tables& tables, int number) {
     return std::nullopt;
 }
 
+std::optional<double> diameter_under(const Tables& tables, int number) {
+    const auto entry = tables.lengths.find(core::OffsetNumber(number));
+    if (entry != tables.lengths.end() && entry->second.diameter != 0.0)
+        return entry->second.diameter + 2.0 * entry->second.radius_wear;
+    const auto tool = tables.tool_diameters.find(core::ToolNumber(number));
+    if (tool != tables.tool_diameters.end()) return tool->second;
+    if (entry != tables.lengths.end()) return 2.0 * entry->second.radius_wear;
+    return std::nullopt;
+}
+
 } // namespace gcode

@@ -27,7 +27,7 @@ struct Tables {
     std::vector<WorkOffset> work{plain_offset_count}; // grows when a later one is written
     AxisValues external{}; // Fanuc's work offset that is added to all others
     std::map<core::OffsetNumber, LengthOffset> lengths;
-    std::map<core::ToolNumber, double> tool_lengths; // for numbers without an entry
+    std::map<core::ToolNumber, double> tool_lengths, tool_diameters; // for numbers without one
 
     bool operator==(const Tables&) const = default;
 };
@@ -39,5 +39,8 @@ WorkOffset& writable_work_offset(Tables& tables, size_t index);
 /// The length under a number: the table's entry, else that of the tool of that number; empty when
 /// there is neither.
 std::optional<double> length_under(const Tables& tables, int number);
+
+/// The diameter under a number; likewise.
+std::optional<double> diameter_under(const Tables& tables, int number);
 
 } // namespace gcode

@@ -91,9 +91,6 @@ TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
 }
 
 TEST(Codes, RefusedOnesSayWhy) {
-    EXPECT_EQ(error_of("G41 D1"), "1:1: G41: cutter radius compensation is not supported yet");
-    EXPECT_EQ(error_of("G0 X1\n G42 D1"),
-              "2:2: G42: cutter radius compensation is not supported yet");
     for (const std::string_view text : {"G68 X0 Y0 R45", "G84 Z-1 R1 F1", "G54.1 P1", "G31 X1"})
         EXPECT_THAT(error_of(text), HasSubstr("not supported yet")) << text;
 }

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "gcode/canonical.h"
+
+namespace gcode {
+
+enum class Severity : uint8_t { note, warning };
+
+/// Something a person should know about a block that does not stop the program.
+struct Warning {
+    Severity severity;
+    core::SourceSpan where;
+    std::string message;
+};
+
+/// One block as executed.
+struct BlockResult {
+    core::BlockIndex block{};
+    uint32_t line = 0;
+    std::string_view text{};       // the line, as long as the library stays where it is
+    std::string_view file{};       // of a subprogram's file; empty for the main program
+    std::vector<uint32_t> calls{}; // lines that called it, the outermost first
+    bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
+    std::vector<CanonicalCommand> commands{};
+    std::vector<uint32_t> columns{}; // of the words that the commands come from
+    std::vector<Warning> warnings{};
+};
+
+} // namespace gcode

@@ -1,0 +1,163 @@
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/plain_trace.h"
+#include "tests/support/program_generator.h"
+#include "tests/support/reference_differences.h"
+#include "tests/support/reference_interpreter.h"
+#include "tests/support/run_difference.h"
+#include "tests/support/scoped_folder.h"
+
+namespace test_support {
+namespace {
+
+const std::filesystem::path shared = FEELER_SOURCE_DIR "/../shared/programs/linuxcnc";
+
+/// What the two interpreters are held against each other for.
+struct Held {
+    const char* feature;
+    bool generated; // random programs agree
+    bool spoilt;    // nearly valid ones are refused alike
+};
+
+/// A feature is switched on when it has come, and stays on.
+constexpr Held held[] = {
+    {"straight", true, false},       {"rotary_axes", true, false},
+    {"secondary_axes", true, false}, {"centre_arcs", true, false},
+    {"radius_arcs", true, false},    {"odd_arcs", true, false},
+    {"feed_modes", false, false},    {"compensation", false, false},
+    {"splines", false, false},       {"polar", false, false},
+    {"threads", false, false},       {"probes", false, false},
+    {"work_offsets", true, true},    {"rotated_offsets", true, false},
+    {"axis_offsets", false, false},  {"tool_offsets", false, false},
+    {"tool_table", false, false},    {"home", false, false},
+    {"drilling", false, false},      {"drilling_in_all_planes", false, false},
+    {"boring", false, false},        {"tapping", false, false},
+    {"odd_cycles", false, false},    {"turned_threads", false, false},
+    {"tools", false, false},         {"spindle", false, false},
+    {"coolant", true, false},        {"stops", true, false},
+    {"path_modes", false, false},    {"overrides", false, false},
+    {"outputs", false, false},       {"messages", true, false},
+    {"crowded_lines", false, false}, {"saved_modes", false, false},
+    {"expressions", false, false},   {"parameters", true, false},
+    {"positions", false, false},     {"predefined_names", false, false},
+    {"formats", true, true},         {"branches", true, false},
+    {"loops", true, false},          {"subprograms", true, false},
+    {"recursion", true, false},      {"nested_calls", true, false},
+};
+
+std::vector<std::string> switched_on(bool Held::*kind) {
+    std::vector<std::string> names;
+    for (const Held& one : held)
+        if (one.*kind) names.emplace_back(one.feature);
+    return names;
+}
+
+/// Shared programs that are not yet read as the reference reads them.
+constexpr const char* awaited[] = {
+    "CauldronDeve__buildbotics.gcode",
+    "CauldronDeve__slant_test.nc",
+    "CauldronDeve__vcarve.ngc",
+    "CauldronDeve__wave.gcode",
+    "LinuxCNC__3D_Chips.ngc",
+    "LinuxCNC__comp.ngc",
+    "LinuxCNC__comp311.ngc",
+    "LinuxCNC__gmoccapy_2_tools_with_cutter_radius_compensation.ngc",
+    "LinuxCNC__hole-circle.ngc",
+    "LinuxCNC__lathe_g70_71_demo.ngc",
+    "LinuxCNC__lathe_g7x_face_boring.ngc",
+    "LinuxCNC__lathe_g7x_quadrants.ngc",
+    "LinuxCNC__lathecomp.ngc",
+    "LinuxCNC__m70m72-demo.ngc",
+    "LinuxCNC__nurbs-xy.ngc",
+    "dillonhuff__linuxcnc_sample.ngc",
+};
+
+bool is_awaited(const std::string& name) {
+    return std::find(std::begin(awaited), std::end(awaited), name) != std::end(awaited);
+}
+
+/// How a missing judge is taken.
+bool skips(const std::string& what) {
+    if (std::getenv("FEELER_REQUIRE_SHARED")) ADD_FAILURE() << what << " is missing";
+    return true;
+}
+
+std::vector<std::string> generated(const std::string& feature, int count) {
+    std::vector<std::string> programs;
+    for (int seed = 1; seed <= count; ++seed)
+        programs.push_back(generated_program(feature, static_cast<uint32_t>(seed)));
+    return programs;
+}
+
+/// What a comparison of all programs comes to.
+struct Tally {
+    size_t commands = 0, accepted = 0, refused = 0;
+};
+
+Tally expect_equal(const std::vector<std::string>& programs) {
+    const std::vector<PlainRun> reference = run_reference(programs);
+    Tally tally;
+    for (size_t i = 0; i < programs.size(); ++i) {
+        EXPECT_EQ(reference[i].problem, "");
+        const RunComparison comparison =
+            compare_runs(reference[i], run_feeler(programs[i]), reference_differences().refusals);
+        EXPECT_TRUE(comparison.differences.empty())
+            << report_of(comparison, programs[i]) << "of program\n"
+            << programs[i];
+        tally.commands += comparison.total;
+        ++(reference[i].refused ? tally.refused : tally.accepted);
+    }
+    return tally;
+}
+
+class Reference : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!reference_is_installed() && skips("rs274")) GTEST_SKIP() << "rs274 is missing";
+    }
+};
+
+class Generated : public Reference, public testing::WithParamInterface<std::string> {};
+
+TEST_P(Generated, ProgramsAreReadAsTheReferenceReadsThem) {
+    const Tally tally = expect_equal(generated(GetParam(), 8));
+    EXPECT_GE(tally.accepted, 4u);
+    EXPECT_GT(tally.commands, 100u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reference, Generated, testing::ValuesIn(switched_on(&Held::generated)),
+                         [](const auto& feature) { return feature.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Generated);
+
+class Spoilt : public Reference, public testing::WithParamInterface<std::string> {};
+
+TEST_P(Spoilt, ProgramsAreRefusedWhereTheReferenceRefusesThem) {
+    std::vector<std::string> programs = generated(GetParam(), 40);
+    for (size_t i = 0; i < programs.size(); ++i)
+        programs[i] = spoilt_program(programs[i], static_cast<uint32_t>(i));
+    const Tally tally = expect_equal(programs);
+    EXPECT_GE(tally.accepted, 2u);
+    EXPECT_GE(tally.refused, 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reference, Spoilt, testing::ValuesIn(switched_on(&Held::spoilt)),
+                         [](const auto& feature) { return feature.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Spoilt);
+
+TEST_F(Reference, ReadsTheSharedProgramsAsWeDo) {
+    if (!std::filesystem::exists(shared) && skips(shared)) GTEST_SKIP() << shared << " is missing";
+    std::vector<std::string> programs;
+    for (const auto& entry : std::filesystem::directory_iterator(shared)) {
+        const std::string name = entry.path().filename();
+        if (!is_awaited(name) && !reference_differences().programs.contains(name))
+            programs.push_back(bytes_of(entry.path()));
+    }
+    const Tally tally = expect_equal(programs);
+    EXPECT_GT(tally.commands, 1000u);
+}
+
+} // namespace
+} // namespace test_support
