@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/alarms.h"
+#include "gcode/before_block.h"
 #include "gcode/decimal_points.h"
 #include "gcode/execution.h"
 #include "gcode/fanuc_parameters.h"
@@ -53,58 +54,6 @@ constexpr Step steps[] = {
     call,
 };
 
-/// What a block may change, kept until it has succeeded.
-struct Before {
-    ModalState modal;
-    Place next;
-    uint32_t next_block;
-    bool tape_open, said_unit, said_home;
-    Ending ending;
-    bool said_time;
-    DecimalPoints points;
-    Shared<Tables> tables;
-    // Only of blocks that call or return.
-    bool has_calls = false;
-    std::vector<Frame> frames;
-    std::vector<ModalMacro> modal_macros;
-    Shared<KlartextState> klartext;
-};
-
-void keep_calls(const InterpreterState& state, Before& before) {
-    before.has_calls = true;
-    before.frames = state.frames;
-    before.modal_macros = state.modal_macros;
-}
-
-void keep(const InterpreterState& state, Before& before) {
-    before.modal = state.modal;
-    before.next = state.next;
-    before.next_block = state.next_block;
-    before.tape_open = state.tape_open;
-    before.said_unit = state.said_unit;
-    before.said_home = state.said_home;
-    before.ending = state.ending;
-    before.said_time = state.said_time;
-    before.points = state.points;
-    before.tables = state.tables;
-    before.has_calls = false;
-    before.klartext = state.klartext;
-}
-
-void restore(InterpreterState& state, const Before& before) {
-    state.modal = before.modal;
-    state.next = before.next;
-    state.next_block = before.next_block;
-    state.tape_open = before.tape_open;
-    state.said_unit = before.said_unit;
-    state.said_home = before.said_home;
-    state.ending = before.ending;
-    state.said_time = before.said_time;
-    state.points = before.points;
-    state.tables = before.tables;
-    state.klartext = before.klartext;
-}
-
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
     return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub;
@@ -134,7 +83,7 @@ struct Interpreter::Scratch {
     Statement statement{};
     BlockResult result{};
     std::string line_text{};
-    Before before{};
+    BeforeBlock before{};
     std::vector<Undo> undos{};
     std::vector<Value> values{};
 
@@ -283,10 +232,7 @@ core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
 
 /// Gives the parameters of a block that failed their old values.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
-    if (before.has_calls) {
-        state.frames = before.frames;
-        state.modal_macros = before.modal_macros;
-    }
+    restore_calls(state, before);
     ProgramParameters parameters(state, environment);
     for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
         if (undo->is_named)

@@ -1,0 +1,46 @@
+#include "gcode/before_block.h"
+
+namespace gcode {
+
+void keep_calls(const InterpreterState& state, BeforeBlock& before) {
+    before.has_calls = true;
+    before.frames = state.frames;
+    before.modal_macros = state.modal_macros;
+}
+
+void keep(const InterpreterState& state, BeforeBlock& before) {
+    before.modal = state.modal;
+    before.next = state.next;
+    before.next_block = state.next_block;
+    before.tape_open = state.tape_open;
+    before.said_unit = state.said_unit;
+    before.said_home = state.said_home;
+    before.ending = state.ending;
+    before.said_time = state.said_time;
+    before.points = state.points;
+    before.tables = state.tables;
+    before.klartext = state.klartext;
+    before.has_calls = false;
+}
+
+void restore(InterpreterState& state, const BeforeBlock& before) {
+    state.modal = before.modal;
+    state.next = before.next;
+    state.next_block = before.next_block;
+    state.tape_open = before.tape_open;
+    state.said_unit = before.said_unit;
+    state.said_home = before.said_home;
+    state.ending = before.ending;
+    state.said_time = before.said_time;
+    state.points = before.points;
+    state.tables = before.tables;
+    state.klartext = before.klartext;
+}
+
+void restore_calls(InterpreterState& state, const BeforeBlock& before) {
+    if (!before.has_calls) return;
+    state.frames = before.frames;
+    state.modal_macros = before.modal_macros;
+}
+
+} // namespace gcode
