@@ -31,7 +31,8 @@ constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
 constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .name = "linuxcnc",
                               .supported = true,
-                              .unit = LengthUnit::inch,
+                              .unit = LengthUnit::mm,
+                              .unit_is_machines = true,
                               .retract = RetractMode::r_level,
                               .arc = linuxcnc_arc,
                               .peck_clearance = 0.254,
@@ -88,6 +89,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
                            .supported = true,
                            .unit = LengthUnit::mm,
+                           .unit_is_machines = false,
                            .retract = RetractMode::initial_level,
                            .arc = fanuc_arc,
                            .peck_clearance = 1.0,
@@ -160,7 +162,7 @@ constexpr Dialect grbl = [] {
     Dialect entry = linuxcnc;
     entry.id = DialectId::grbl;
     entry.name = "grbl";
-    entry.unit = LengthUnit::mm;
+    entry.unit_is_machines = false;
     entry.arc = grbl_arc;
     entry.local_offset_is_axis_offset = false;
     entry.work_offsets_turn = false;

@@ -33,8 +33,9 @@ struct Dialect {
     DialectId id;
     std::string_view name;
     bool supported;
-    LengthUnit unit;     // until G20 or G21
-    RetractMode retract; // until G98 or G99
+    LengthUnit unit;       // until G20 or G21
+    bool unit_is_machines; // in place of that, the unit the machine is set up in
+    RetractMode retract;   // until G98 or G99
     ArcTolerance arc;
     double peck_clearance; // mm left between a rapid back into the hole and its bottom
     bool dwell_without_point_is_milliseconds; // P500 is half a second, P0.5 as well

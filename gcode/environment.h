@@ -24,7 +24,7 @@ struct Limits {
 struct Environment {
     DialectId dialect = DialectId::linuxcnc;
     bool block_delete = false;                // true: blocks with `/` are left out
-    LengthUnit machine_unit = LengthUnit::mm; // in which the parameters of offsets are kept
+    LengthUnit machine_unit = LengthUnit::mm; // in which LinuxCNC keeps offsets and starts
     std::array<AxisValues, plain_offset_count> work_offsets{};
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
     std::map<core::ToolNumber, double> tool_lengths{};   // for H numbers without an entry

@@ -370,7 +370,8 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
 InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;
     ModalState& modal = state.modal;
-    modal.unit = dialect(environment.dialect).unit;
+    const Dialect& rules = dialect(environment.dialect);
+    modal.unit = rules.unit_is_machines ? environment.machine_unit : rules.unit;
     modal.retract = dialect(environment.dialect).retract;
     Tables& tables = state.tables.write();
     for (size_t i = 0; i < plain_offset_count; ++i)

@@ -48,8 +48,7 @@ TEST(Calls, TheMotionOfTheBlockComesBeforeTheCall) {
 }
 
 TEST(Calls, OldProgramNumbersBeginWithAColon) {
-    EXPECT_EQ(rapids_of(run_text(":1\nG21\nM98 P100\nG0 X9\nM30\n:100\nG0 X6\nM99\n")),
-              "6 9 ");
+    EXPECT_EQ(rapids_of(run_text(":1\nG21\nM98 P100\nG0 X9\nM30\n:100\nG0 X6\nM99\n")), "6 9 ");
 }
 
 TEST(Calls, SubprogramsShareTheLocalVariables) {

@@ -152,7 +152,10 @@ TEST(Interpreter, SaysOnceThatUnitsWereAssumed) {
     const std::string warnings = warnings_of("G17\nG0 X1\nX2\nM30\n");
     EXPECT_THAT(warnings, HasSubstr("units not said (G20 or G21) before X1, taken as millimetres"));
     EXPECT_THAT(warnings, Not(HasSubstr("before X2")));
-    EXPECT_THAT(warnings_of("G0 X1\n", DialectId::linuxcnc), HasSubstr("taken as inches"));
+    EXPECT_THAT(warnings_of("G0 X1\n", DialectId::linuxcnc), HasSubstr("taken as millimetres"));
+    Environment inches = known_environment(DialectId::linuxcnc);
+    inches.machine_unit = LengthUnit::inch;
+    EXPECT_THAT(warnings_of(run_text("G0 X1\n", inches).run), HasSubstr("taken as inches"));
     EXPECT_EQ(warnings_of("G21 G0 X1\nM30\n"), "");
 }
 

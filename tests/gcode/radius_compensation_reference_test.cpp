@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "gcode/radius_compensation.h"
+#include "tests/support/scoped_folder.h"
 
 namespace gcode {
 namespace {
@@ -89,8 +90,9 @@ Sample draw_sample(Draw& draw) {
 
 /// What canon.py prints for a program; `status` is 0 if it ran to its end.
 std::vector<std::string> reference_lines(const std::string& program, int& status) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "radius_compensation.ngc";
-    const auto listing = std::filesystem::path(testing::TempDir()) / "radius_compensation.txt";
+    const test_support::ScopedFolder folder;
+    const std::filesystem::path path = folder.path() / "contours.ngc";
+    const std::filesystem::path listing = folder.path() / "contours.txt";
     std::ofstream(path) << "G21 G17 G90 F100\n" << program << "G0 X0 Y0\nM2\n";
     status =
         std::system(fmt::format("/usr/bin/python3 '{}' '{}' > '{}' 2> '{}.err'", canon.string(),
