@@ -23,7 +23,10 @@ TEST(Units, FeedAndUnitsInOneBlockGoByTheDialect) {
 }
 
 TEST(Units, StartAsTheDialectHasThem) {
-    EXPECT_EQ(trace("G0 X1", DialectId::linuxcnc), "straight_traverse x=25.4 y=0 z=0\n");
+    EXPECT_EQ(trace("G0 X1", DialectId::linuxcnc), "straight_traverse x=1 y=0 z=0\n");
+    Environment inches = known_environment(DialectId::linuxcnc);
+    inches.machine_unit = LengthUnit::inch;
+    EXPECT_EQ(commands_of(run_text("G0 X1", inches).run), "straight_traverse x=25.4 y=0 z=0\n");
     EXPECT_EQ(trace("G0 X1", DialectId::grbl), "straight_traverse x=1 y=0 z=0\n");
 }
 
