@@ -108,8 +108,7 @@ TEST(Trace, EndsAtTheFirstErrorWithWhatCameBeforeIt) {
 
 TEST(Trace, RefusesADialectThatThisVersionDoesNotSpeak) {
     const ScopedFolder folder;
-    const Ran ran =
-        feeler({"trace", folder.write("p.nc", small_program), "--dialect", "siemens"});
+    const Ran ran = feeler({"trace", folder.write("p.nc", small_program), "--dialect", "siemens"});
     EXPECT_EQ(ran.status, 2);
     EXPECT_EQ(ran.out, "");
     EXPECT_NE(ran.err.find("siemens"), std::string::npos);
