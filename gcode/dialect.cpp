@@ -83,7 +83,11 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .system_parameters = SystemParameters::rs274,
                               .first_alarm = 0,
                               .local_count = 30,
-                              .deepest_calls = 10};
+                              .deepest_calls = 10,
+                              .motion_code_moves = true,
+                              .same_offset_stays = true,
+                              .offset_writes_miss_axis_offset = true,
+                              .surface_speed_needs_s = true};
 
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
@@ -140,7 +144,11 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .system_parameters = SystemParameters::fanuc,
                            .first_alarm = 3000,
                            .local_count = 33,
-                           .deepest_calls = 15};
+                           .deepest_calls = 15,
+                           .motion_code_moves = false,
+                           .same_offset_stays = false,
+                           .offset_writes_miss_axis_offset = false,
+                           .surface_speed_needs_s = false};
 
 constexpr Dialect haas = [] {
     Dialect entry = fanuc;
@@ -164,6 +172,7 @@ constexpr Dialect grbl = [] {
     entry.name = "grbl";
     entry.unit_is_machines = false;
     entry.arc = grbl_arc;
+    entry.motion_code_moves = false;
     entry.local_offset_is_axis_offset = false;
     entry.work_offsets_turn = false;
     entry.feed_before_units = false;

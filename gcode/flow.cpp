@@ -142,6 +142,10 @@ core::Result<void> Flowing::give_back() {
     parameters.set_named("_value", value.value_or(0.0));
     parameters.set_named("_value_returned", value ? 1.0 : 0.0);
     const ModalState before = step_.state.modal;
+    if (frame().restores && *frame().saved)
+        for (const std::string& loss : losses_of_restoring(before, **frame().saved))
+            step_.result.warnings.push_back(
+                {Severity::warning, step_.block.flow.span, "M73: " + loss});
     leave(step_.state);
     announce_modes(step_.result, step_.block.flow.span.column, before, step_.state.modal);
     return {};

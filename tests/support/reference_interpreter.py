@@ -282,6 +282,7 @@ class Plain:
         elif name in ('SET_MOTION_OUTPUT_VALUE', 'SET_AUX_OUTPUT_VALUE'):
             self.event('set_output', *numbers(text), 1, int('MOTION' in name))
         elif name == 'ORIENT_SPINDLE':
+            self.state['spindle'] = ('stopped',)  # the interpreter leaves that to the machine
             self.event('orient_spindle', *numbers(text)[1:])
 
 
