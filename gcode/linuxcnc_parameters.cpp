@@ -160,7 +160,7 @@ constexpr Named named_values[] = {
     {"_selected_tool",
      [](const InterpreterState& s) {
          const auto& tool = s.modal.selected_tool;
-         return tool ? static_cast<double>(value_of(*tool)) : -1.0;
+         return tool ? static_cast<double>(value_of(*tool)) : 0.0;
      }},
     {"_line", [](const InterpreterState& s) { return static_cast<double>(s.next.line) - 1.0; }},
     {"_call_level",

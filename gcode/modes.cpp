@@ -179,6 +179,14 @@ core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry) return {};
     const bool inch = entry->code->tenths == tenths(20);
+    const bool changes = inch != (execution.modal().unit == LengthUnit::inch);
+    const bool has_offset = execution.modal().offsets.tool != AxisValues{};
+    if (changes && has_offset && execution.dialect.system_parameters == SystemParameters::rs274)
+        execution.warn(entry->word->span,
+                       fmt::format("{} while a tool length offset is on: LinuxCNC goes on with its "
+                                   "number in the new units, so the next G43, G49 or G28 leads to "
+                                   "another place than here; say G49 before",
+                                   written(*entry->word)));
     execution.modal().unit = inch ? LengthUnit::inch : LengthUnit::mm;
     execution.modal().unit_said = true;
     return {};

@@ -286,7 +286,9 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)
         return refuse("G93 gives no feed rate here, where the motion starts is unknown");
-    if (inverse) return *modal.feed * *path_length;
+    const bool has_slowest = execution.dialect.system_parameters == SystemParameters::rs274;
+    const double slowest = has_slowest ? to_mm(0.1, modal.unit) : 0.0; // a minute
+    if (inverse) return std::max(slowest, *modal.feed * *path_length);
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
         return refuse("G95 gives no feed rate here, the spindle does not turn");
     return *modal.feed * modal.speed;
