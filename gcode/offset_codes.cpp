@@ -294,8 +294,7 @@ core::Result<void> set_axis_offset(Execution& execution) {
         offsets.axis = modal.suspended_axis = zero_position;
         break;
     case tenths(92, 2):
-        modal.suspended_axis = offsets.axis;
-        offsets.axis = zero_position;
+        offsets.axis = zero_position; // what G92 said stays for G92.3
         break;
     case tenths(92, 3):
         offsets.axis = modal.suspended_axis;

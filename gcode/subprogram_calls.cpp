@@ -132,6 +132,7 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
         announce_modes(execution.result, entry.word->span.column, before, state.modal);
     } else {
         state.ending = Ending::main_return;
+        if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
     }
     return {};
 }

@@ -174,11 +174,14 @@ def rs_calls(path, folder, seconds):
     return calls, ('refused', line, message), prints
 
 
-def line_of_refusal(path, line, text):
+def line_of_refusal(path, line, text, message):
     """The module counts a line too many where a line could not be read, and names the call where the
     line is in a subprogram; rs274 gives the text of the line."""
     with open(path, encoding='latin-1') as program:
         lines = [''] + [each.strip() for each in program]
+    sought = re.search(r'seeking o-word: .* from line: (\d+)', message)
+    if sought:
+        return int(sought[1])
     if line < len(lines) and lines[line] == text.strip():
         return line
     if 0 < line <= len(lines) and lines[line - 1] == text.strip():
@@ -383,10 +386,10 @@ def answer(gcode, path, rows, fresh, seconds, write):
             line = line_of_module_refusal(gcode, path, ending[1], rows, folder, seconds)
             ending = ('refused', line, ending[2])
     if ending[0] == rs_ending[0] == 'refused' and not six_axes:
-        ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1]), ending[2])
+        ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1], rs_ending[2]), ending[2])
     elif rs_ending[2] == 'Cannot do g1 with zero feed rate' and ending[0] == 'accepted':
         # The module begins with a feed rate of its own.
-        ending = ('refused', line_of_refusal(path, 0, rs_ending[1]), rs_ending[2])
+        ending = ('refused', line_of_refusal(path, 0, rs_ending[1], ''), rs_ending[2])
         rs_ending = ending
     plain = Plain(write)
     if six_axes:
