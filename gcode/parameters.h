@@ -32,6 +32,9 @@ public:
     }
     void set_numbered(int number, Value value);
 
+    /// How many numbered ones there is room for.
+    size_t numbered_count() const { return numbered_.size(); }
+
     /// `#<_name>`
     const NamedValues& named() const { return named_; }
     void set_named(std::string_view name, Value value); // an empty value takes it away
