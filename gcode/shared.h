@@ -8,6 +8,16 @@ namespace gcode {
 template <typename T>
 class Shared {
 public:
+    Shared() = default;
+    ~Shared() = default;
+    Shared(const Shared&) = default;
+    Shared(Shared&&) = default;
+    Shared& operator=(Shared&&) = default;
+    Shared& operator=(const Shared& other) {
+        if (value_ != other.value_) value_ = other.value_; // spares counting where nothing changes
+        return *this;
+    }
+
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
