@@ -42,7 +42,8 @@ public:
     /// Follows from the values, in no time.
     uint64_t digest() const { return digest_; }
 
-    bool operator==(const Parameters&) const = default;
+    /// One that was never set equals one that was set and taken away again.
+    bool operator==(const Parameters& other) const;
 
 private:
     std::vector<Value> numbered_; // grows as needed
