@@ -241,7 +241,9 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
     if (dialect.language == Language::klartext) return run_klartext(execution);
-    return take_steps(execution);
+    if (auto taken = take_steps(execution); !taken) return taken;
+    look_for_regrets(execution, before.modal);
+    return {};
 }
 
 core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
