@@ -8,6 +8,7 @@
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
 #include "gcode/program_transforms.h"
+#include "gcode/spline.h"
 
 namespace gcode {
 
@@ -53,6 +54,14 @@ struct CannedCycle {
     bool operator==(const CannedCycle&) const = default;
 };
 
+/// What the blocks of splines leave behind for one another.
+struct SplineState {
+    NurbsGathering gathering{}; // since G5.2
+    SplinePoint next_tangent{}; // I and J of a G5 that has none
+
+    bool operator==(const SplineState&) const = default;
+};
+
 /// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
 ///
 /// Lengths are stored in mm whatever G20/G21 says. What the program has not yet defined is empty,
@@ -93,6 +102,9 @@ struct ModalState {
     Offsets offsets;
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
+
+    double cycle_dwell = 0.0; // s, P of the last canned cycle
+    SplineState spline;
 
     bool operator==(const ModalState&) const = default;
 };

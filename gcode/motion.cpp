@@ -49,6 +49,7 @@ bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     if (statement.taker_of_axis_words()) return false;
     if (statement.has_axis_word()) return true;
+    if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
     const bool arc = !modal.cycle && is_arc(modal.motion);
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
@@ -79,7 +80,11 @@ core::Result<void> set_motion_mode(Execution& execution) {
         modal.cycle.reset();
         return {};
     }
-    if (!modal.cycle) modal.cycle = CannedCycle{};
+    const int code = cycle->code->tenths;
+    if (!modal.cycle)
+        modal.cycle = CannedCycle{};
+    else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
+        modal.cycle = CannedCycle{.initial_level = modal.cycle->initial_level};
     modal.cycle->code = cycle->code->tenths;
     return {};
 }
