@@ -19,8 +19,6 @@ constexpr DialectSet klartext = bit(DialectId::heidenhain);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
-constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
-constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_jump =
     "jumps are not supported yet: write the blocks in the order they are run";
 constexpr std::string_view no_other_change =
@@ -49,12 +47,12 @@ constexpr Code codes[] = {
     {'G', tenths(2), motion, "XYZIJKRP", every, {}},
     {'G', tenths(3), motion, "XYZIJKRP", every, {}},
     {'G', tenths(4), action, "PXU", every, {}},
-    {'G', tenths(5), motion, "XYZIJPQ", linuxcnc, no_spline},
+    {'G', tenths(5), motion, "XYZIJPQ", linuxcnc, {}},
     {'G', tenths(5), other, "PR", fanuc, {}},
-    {'G', tenths(5, 1), motion, "XYZIJ", linuxcnc, no_spline},
+    {'G', tenths(5, 1), motion, "XYZIJ", linuxcnc, {}},
     {'G', tenths(5, 1), other, "XYZPQRL", fanuc, {}},
-    {'G', tenths(5, 2), motion, "XYZPL", linuxcnc, no_spline},
-    {'G', tenths(5, 3), motion, "", linuxcnc, no_spline},
+    {'G', tenths(5, 2), motion, "XYZPL", linuxcnc, {}},
+    {'G', tenths(5, 3), motion, "XYZ", linuxcnc, {}},
     {'G', tenths(7), diameter, "", linuxcnc, {}},
     {'G', tenths(8), diameter, "", linuxcnc, {}},
     {'G', tenths(8), other, "P", fanuc, {}},
@@ -128,14 +126,21 @@ constexpr Code codes[] = {
     {'G', tenths(68), rotation, "XYZRIJK", fanuc, {}},
     {'G', tenths(68, 2), rotation, "XYZIJKPQR", fanuc, {}},
     {'G', tenths(69), rotation, "", fanuc, {}},
+    {'G', tenths(70), motion, "XYZQDEP", linuxcnc, {}},
     {'G', tenths(70), action, "XYZIJL", haas, {}},
+    {'G', tenths(71), motion, "XYZQDIR", linuxcnc, {}},
     {'G', tenths(71), action, "XYZIJKL", haas, {}},
+    {'G', tenths(71, 1), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(71, 2), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(72), motion, "XYZQDIR", linuxcnc, {}},
     {'G', tenths(72), action, "XYZIJL", haas, {}},
+    {'G', tenths(72, 1), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(72, 2), motion, "XYZQDIR", linuxcnc, {}},
     {'G', tenths(73), cycle, "XYZRQL", linuxcnc, {}},
     {'G', tenths(73), cycle, "XYZRQLPK", fanuc, {}},
     {'G', tenths(74), cycle, "XYZRLP", linuxcnc, {}},
     {'G', tenths(74), cycle, "XYZRQLPKJ", fanuc, {}},
-    {'G', tenths(76), cycle, "XYZRQLPIJK", linuxcnc, no_cycle},
+    {'G', tenths(76), cycle, "XYZRQLPIJKHE", linuxcnc, {}},
     {'G', tenths(76), cycle, "XYZRQLPIJK", fanuc, {}},
     {'G', tenths(77), cycle, "XYZRQLPIJ", haas, {}},
     {'G', tenths(80), cycle, "", every, {}},
