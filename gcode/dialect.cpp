@@ -39,6 +39,8 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .dwell_without_point_is_milliseconds = false,
                               .dwell_takes_x_and_u = false,
                               .bare_length_offset_is_tool = true,
+                              .cycles_are_rs274 = true,
+                              .motion_codes_move = true,
                               .cycles_are_motions = true,
                               .axis_words_serve_one_code = true,
                               .unused_words_are_errors = true,
@@ -97,6 +99,8 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .dwell_without_point_is_milliseconds = true,
                            .dwell_takes_x_and_u = true,
                            .bare_length_offset_is_tool = false,
+                           .cycles_are_rs274 = false,
+                           .motion_codes_move = false,
                            .cycles_are_motions = false,
                            .axis_words_serve_one_code = false,
                            .unused_words_are_errors = false,
@@ -172,6 +176,7 @@ constexpr Dialect grbl = [] {
     entry.feed_before_units = false;
     entry.tool_entries_by_axes = false;
     entry.has_active_comments = false;
+    entry.motion_codes_move = false;
     entry.has_o_words = false;
     entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;

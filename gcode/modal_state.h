@@ -8,6 +8,7 @@
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
 #include "gcode/program_transforms.h"
+#include "gcode/spline.h"
 
 namespace gcode {
 
@@ -51,6 +52,14 @@ struct CannedCycle {
     bool incremental = false;            // whether R and the bottom count from there
 
     bool operator==(const CannedCycle&) const = default;
+};
+
+/// What the blocks of splines leave behind for one another.
+struct SplineState {
+    NurbsGathering gathering{}; // since G5.2
+    SplinePoint next_tangent{}; // I and J of a G5 that has none
+
+    bool operator==(const SplineState&) const = default;
 };
 
 /// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
@@ -99,6 +108,8 @@ struct ModalState {
         return length_sign != 0.0 && tool && length_number
                && core::value_of(*length_number) == core::value_of(*tool);
     }
+    double cycle_dwell = 0.0; // s, P of the last canned cycle
+    SplineState spline;
 
     bool operator==(const ModalState&) const = default;
 };

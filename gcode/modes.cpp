@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/rs274_cycles.h"
 
 namespace gcode {
 
@@ -154,7 +155,10 @@ core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry) return {};
     const bool inch = entry->code->tenths == tenths(20);
-    execution.modal().unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    const LengthUnit unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    if (execution.modal().cycle && execution.dialect.cycles_are_rs274)
+        keep_numbers(*execution.modal().cycle, execution.modal().unit, unit);
+    execution.modal().unit = unit;
     execution.modal().unit_said = true;
     return {};
 }

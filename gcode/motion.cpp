@@ -5,6 +5,7 @@
 
 #include "gcode/execution.h"
 #include "gcode/frame_codes.h"
+#include "gcode/motion_codes.h"
 
 namespace gcode {
 namespace {
@@ -49,9 +50,29 @@ bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     if (statement.taker_of_axis_words()) return false;
     if (statement.has_axis_word()) return true;
+    if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
     const bool arc = !modal.cycle && is_arc(modal.motion);
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
+}
+
+/// Whether a motion code is for its block only: G5, G5.1, G5.3, G70 to G72.
+bool acts_once(int code) {
+    return code == tenths(5) || code == tenths(5, 1) || code == tenths(5, 3)
+           || (code >= tenths(70) && code < tenths(73));
+}
+
+/// Begins with a motion code, or goes on with none.
+void set_motion(ModalState& modal, std::optional<MotionCode> motion) {
+    if (modal.motion == tenths(5, 2) && motion != modal.motion) modal.spline.gathering = {};
+    modal.motion = motion;
+}
+
+/// Another cycle begins with words of its own, but counts from the same level.
+void forget_words(CannedCycle& cycle) {
+    CannedCycle fresh;
+    fresh.initial_level = cycle.initial_level;
+    cycle = fresh;
 }
 
 /// G0 to G3 and the cycles become modal, even when another code takes the axis words.
@@ -69,17 +90,21 @@ core::Result<void> set_motion_mode(Execution& execution) {
                                       "blocks",
                                       written(*taker->word), written(*mover->word)),
                           mover->word->span);
-    if (motion) {
-        modal.motion = motion->code->tenths;
+    if (motion && !acts_once(motion->code->tenths)) {
+        set_motion(modal, motion->code->tenths);
         modal.cycle.reset();
     }
     if (!cycle) return {};
-    if (execution.dialect.cycles_are_motions && !motion) modal.motion.reset();
+    if (execution.dialect.cycles_are_motions && !motion) set_motion(modal, {});
     if (cycle->code->tenths == tenths(80)) {
         modal.cycle.reset();
         return {};
     }
-    if (!modal.cycle) modal.cycle = CannedCycle{};
+    const int code = cycle->code->tenths;
+    if (!modal.cycle)
+        modal.cycle = CannedCycle{};
+    else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
+        forget_words(*modal.cycle);
     modal.cycle->code = cycle->code->tenths;
     return {};
 }
@@ -110,12 +135,22 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     return move_straight(execution, modal.motion == tenths(0));
 }
 
+core::Result<void> act_once(Execution& execution, int code) {
+    if (code >= tenths(70)) return turn_contour(execution);
+    return code == tenths(5, 3) ? finish_spline(execution) : follow_spline(execution);
+}
+
 core::Result<void> move_as_modes_say(Execution& execution) {
     const ModalState& modal = execution.modal();
+    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
+    if (motion && acts_once(motion->code->tenths)) return act_once(execution, motion->code->tenths);
+    const bool threads = modal.cycle && modal.cycle->code == tenths(76);
+    if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
     if (is_arc(modal.motion)) return move_along_arc(execution);
+    if (modal.motion == tenths(5, 2)) return gather_control_point(execution);
     return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
