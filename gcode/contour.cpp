@@ -151,19 +151,8 @@ core::Result<void> take_commands(Contour& contour, const BlockResult& block,
     return {};
 }
 
-} // namespace
-
-bool Contour::operator==(const Contour& other) const {
-    const auto place = [](const Contour& contour) {
-        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
-    };
-    return place(*this) == place(other) && pending.size() == other.pending.size()
-           && ready.size() == other.ready.size()
-           && failure.has_value() == other.failure.has_value();
-}
-
-core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
-                              const ModalState& after) {
+core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
+                                     const ModalState& before, const ModalState& after) {
     const bool on = after.compensation != Side::none && after.compensation_radius != 0.0;
     const bool changed = before.compensation != after.compensation
                          || before.compensation_radius != after.compensation_radius;
@@ -184,7 +173,41 @@ core::Result<void> take_block(Contour& contour, const BlockResult& block, const 
     return {};
 }
 
+core::Result<void> take_all(Contour& contour, const std::vector<ExecutedBlock>& blocks) {
+    for (const ExecutedBlock& block : blocks)
+        if (auto taken = take_with_corners(contour, block.result, block.before, block.after);
+            !taken)
+            return taken;
+    return {};
+}
+
+} // namespace
+
+bool Contour::operator==(const Contour& other) const {
+    const auto place = [](const Contour& contour) {
+        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
+    };
+    return corners == other.corners && place(*this) == place(other)
+           && pending.size() == other.pending.size() && ready.size() == other.ready.size()
+           && failure.has_value() == other.failure.has_value();
+}
+
+core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
+                              const ModalState& after) {
+    if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
+    FEELER_TRY(const std::vector<ExecutedBlock> ready,
+               take_for_corners(contour.corners, {block, before, after}));
+    return take_all(contour, ready);
+}
+
+core::Result<void> end_contour(Contour& contour) {
+    auto ended = end_corners(contour.corners);
+    give_up(contour);
+    return ended;
+}
+
 void give_up(Contour& contour) {
+    (void)take_all(contour, give_up_corners(contour.corners));
     if (contour.path) {
         for (const CompensatedMove& move : contour.path->waiting) place_move(contour, move);
         contour.path.reset();

@@ -50,6 +50,12 @@ double axis_value(const Execution& execution, size_t axis, const Word& word);
 /// Where the axis words lead, axis by axis, in program coordinates.
 core::Result<Position> target_of(const Execution& execution);
 
+/// Lets a straight move whose direction `,A` gives, degrees from the plane's first axis, end on its
+/// line.
+///
+/// Errors: missing_value, invalid_value, syntax or unsupported where no single end follows.
+core::Result<void> place_by_angle(const Execution& execution, Position& target);
+
 /// The length of a straight way as feed rates count it: of X, Y and Z; of U, V and W where these
 /// stand; else of the rotary axes, in degrees. Empty where an end is not known.
 std::optional<double> way_between(const Position& from, const Position& to);
@@ -91,6 +97,7 @@ core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
 core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
 core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
+core::Result<void> ask_for_corner(Execution& execution);        // ,R ,C
 core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
 core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
 

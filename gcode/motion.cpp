@@ -222,6 +222,8 @@ core::Result<Position> target_of(const Execution& execution) {
         else if (target[axis])
             *target[axis] += value;
     }
+    if (auto placed = place_by_angle(execution, target); !placed)
+        return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;

@@ -48,6 +48,7 @@ using CompensatedMoves = std::vector<CompensatedMove>;
 struct RadiusCompensation {
     ContourSide side = ContourSide::left;
     double radius = 0.0;   // mm, positive
+    bool extends_corners = false; // Fanuc: straight on at outside corners, else round
     FlatPoint programmed;  // where the program is
     FlatPoint tool;        // where the tool's centre would be if nothing followed
     FlatPoint reached;     // where the moves that are final have brought it

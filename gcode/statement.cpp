@@ -115,6 +115,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
                            bool words_are_arguments) {
     statement.words.fill(nullptr);
     statement.polar_radius = statement.polar_angle = nullptr;
+    statement.corner = statement.angle = nullptr;
     statement.code_count = 0;
     statement.groups = 0;
     statement.unknown_m_codes.clear();
@@ -133,10 +134,13 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
         } else {
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("{}: corners between moves are not supported yet", written(word)),
-                word.span);
+            const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
+            if (place)
+                return core::fail(ErrorCode::syntax,
+                                  fmt::format("{} and {} in one block: a motion ends in one corner",
+                                              written(*place), written(word)),
+                                  word.span);
+            place = &word;
         }
     }
     return {};

@@ -24,6 +24,8 @@ struct Statement {
     std::array<const Word*, 26> words{};         // by letter, without G and M
     const Word* polar_radius = nullptr;          // @
     const Word* polar_angle = nullptr;           // ^
+    const Word* corner = nullptr;                // ,R or ,C
+    const Word* angle = nullptr;                 // ,A
     std::array<CodeWord, most_codes> code_words; // in the order written
     size_t code_count = 0;
     uint32_t groups = 0;                        // a bit for each modal group that is there
