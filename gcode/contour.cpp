@@ -130,6 +130,7 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
     const ContourSide side =
         after.compensation == Side::left ? ContourSide::left : ContourSide::right;
     contour.path = begin_compensation(side, after.compensation_radius, *at);
+    contour.path->extends_corners = contour.style == ContourStyle::fanuc;
     return {};
 }
 
@@ -156,9 +157,10 @@ core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
     const bool on = after.compensation != Side::none && after.compensation_radius != 0.0;
     const bool changed = before.compensation != after.compensation
                          || before.compensation_radius != after.compensation_radius;
-    if (contour.path && (!on || changed))
+    const bool pauses = std::exchange(contour.pauses, false);
+    if (contour.path && (!on || changed || pauses))
         if (auto ended = end_path(contour); !ended) return ended;
-    if (on && !contour.path)
+    if (on && !contour.path && !pauses)
         if (auto begun = begin_path(contour, before, after, block); !begun) return begun;
     if (contour.pending.size() >= most_pending)
         return core::fail(core::ErrorCode::invalid_value,

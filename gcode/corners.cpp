@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -246,6 +247,8 @@ core::Result<void> ask_for_corner(Execution& execution) {
             fmt::format("{}: a corner is written in the block of a G1, G2 or G3", written(*word)),
             word->span);
     if (size == 0.0) return {};
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
     execution.state.contour.corners.asked =
         CornerWord{.kind = word->letter == 'r' ? CornerKind::rounding : CornerKind::chamfer,
                    .size = size,

@@ -77,10 +77,10 @@ struct Dialect {
     Language language;
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
-    bool tool_entries_by_axes;             // G10 L1, L10 and L11 take P and axis words
-    bool arc_after_contour_is_error;       // a circle right behind G40
-    bool contour_breaks_are_errors;        // G28, G53 and the like between G41 and G40
-    ContourCodes contour_codes;            // what is like G28 and G53 there
+    bool tool_entries_by_axes;       // G10 L1, L10 and L11 take P and axis words
+    bool arc_after_contour_is_error; // a circle right behind G40
+    bool contour_breaks_are_errors;  // G28, G53 and the like between G41 and G40
+    ContourCodes contour_codes;      // what is like G28 and G53 there
     ContourStyle contour_style;
     bool radius_number_stays;              // G41 without D takes the D said last, D0 is none
     bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)

@@ -118,6 +118,17 @@ core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81
 core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
 core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
 
+/// The diameter in the control's table that a block's D word means, mm; 0 with a warning where
+/// nothing is known of it.
+core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
+
+/// G12, G13: the tool goes down in the middle, out by a half circle, round, and back to the middle,
+/// where it stays. With K and Q more circles follow, each Q larger. Where on the circle the control
+/// begins is not published and changes nothing of what is cut.
+///
+/// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
+core::Result<void> mill_circular_pocket(Execution& execution);
+
 /// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
 /// work offset; L3, L50, L52: warned of and passed over.
 ///
