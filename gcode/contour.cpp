@@ -95,6 +95,22 @@ core::Result<void> end_path(Contour& contour) {
     return {};
 }
 
+/// Fanuc controls look a few blocks ahead. Where too many of them do not move in the plane, the
+/// tool ends beside the end of the move before them, and cuts into an inside corner.
+void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
+    constexpr size_t harmless = 1;
+    const RadiusCompensation& path = *contour.path;
+    const bool stays = !move.arc && move.end == path.programmed;
+    if (!path.extends_corners || path.waiting.empty() || stays) return;
+    const size_t before = path.waiting.front().id / commands_of_a_block;
+    if (number <= before + 1 + harmless) return;
+    contour.pending.back().result.warnings.push_back(
+        {Severity::warning, move.where,
+         fmt::format("{} blocks without a move in the plane stand before this one: a control that "
+                     "looks no farther ahead than that cuts into an inside corner here",
+                     number - before - 1)});
+}
+
 /// One motion of the block that was pushed last.
 core::Result<void> take_motion(Contour& contour, size_t index) {
     PendingBlock& block = contour.pending.back();
@@ -112,6 +128,7 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
                      .where = where};
     if (const auto* arc = std::get_if<ArcFeed>(&command))
         move.arc = FlatArc{{arc->centre[0], arc->centre[1]}, arc->turns};
+    warn_of_blocks_between(contour, number, move);
     FEELER_TRY(const CompensatedMoves moves, add_move(*contour.path, move));
     block.slots[index].is_waiting = true;
     for (const CompensatedMove& done : moves) place_move(contour, done);

@@ -106,6 +106,20 @@ TEST(FanucContour, IsLeftForAReferencePointAndTakenUpAgain) {
     EXPECT_THAT(warnings_of(radius_2 + text), HasSubstr("the tool leaves the contour"));
 }
 
+TEST(FanucContour, StopsWhereAMoveWouldRunBackwards) {
+    // A groove of 3 is too narrow for the radius 2.
+    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nX20.\nY3.\nX10.\nM30\n"), HasSubstr("PS0041"));
+    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nX20.\nY5.\nX10.\nM30\n"), Not(HasSubstr("error")));
+}
+
+TEST(FanucContour, WarnsOfBlocksWithoutAMoveInThePlane) {
+    const auto warned = [](const std::string& between) {
+        return warnings_of(radius_2 + "G1 G41 D1 X10. F9\nX20.\n" + between + "Y20.\nM30\n");
+    };
+    EXPECT_THAT(warned("M8\n"), Not(HasSubstr("blocks without a move")));
+    EXPECT_THAT(warned("M8\nZ-1.\n"), HasSubstr("2 blocks without a move in the plane"));
+}
+
 TEST(FanucContour, RefusesAnotherPlaneAndASkip) {
     EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG18 X20.\n"), HasSubstr("G18 is not possible"));
     EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG31 X20.\n"), HasSubstr("G31 is not possible"));
