@@ -120,6 +120,16 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
                                        written(*entry.word)));
         return 0.0;
     }
+    // D31 for tool 1 is a habit of many shops: only the number of another tool is a mistake.
+    const ModalState& modal = execution.modal();
+    const bool is_another = modal.tool && number != value_of(*modal.tool)
+                            && execution.environment.tool_diameters.count(core::ToolNumber(number));
+    if (is_another)
+        execution.result.warnings.push_back(
+            {Severity::warning, entry.word->span,
+             fmt::format("{}: D{} is not the offset of the tool in the spindle, T{}",
+                         written(*entry.word), number, value_of(*modal.tool)),
+             "offset-not-tool", fmt::format("Write D{}.", value_of(*modal.tool))});
     if (const auto diameter = diameter_under(*execution.state.tables, number)) return *diameter;
     execution.warn(entry.word->span,
                    fmt::format("{}: nothing is known about the diameter D{}, taken as 0: the tool "

@@ -43,7 +43,8 @@ void note_points(const Block& block, InterpreterState& state, BlockResult& resul
                          "are taken as whole units; a control set to count its smallest steps "
                          "makes them a thousandth or less",
                          written(word), word.has_point ? "a" : "no",
-                         word.has_point ? "none" : "one")});
+                         word.has_point ? "none" : "one"),
+             "missing-decimal-point", "Write every length with a decimal point."});
         return;
     }
 }

@@ -70,6 +70,11 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 void change_offsets(Execution& execution, const Offsets& offsets);
 void change_offsets(ModalState& modal, const Offsets& offsets);
 
+/// Carries out a block of codes and words, each kind in its turn.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+core::Result<void> take_steps(Execution& execution);
+
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
 core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95

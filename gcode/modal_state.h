@@ -95,6 +95,12 @@ struct ModalState {
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
 
+    /// Whether the length offset that is on is that of the tool in the spindle.
+    bool length_is_tools() const {
+        return length_sign != 0.0 && tool && length_number
+               && core::value_of(*length_number) == core::value_of(*tool);
+    }
+
     bool operator==(const ModalState&) const = default;
 };
 

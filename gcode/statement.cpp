@@ -88,7 +88,7 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
                           fmt::format("{}: there are too many codes in this block", written(word)),
                           word.span);
     statement.code_words[statement.code_count++] = {code, &word};
-    statement.groups |= 1u << static_cast<unsigned>(code->group);
+    statement.groups |= uint64_t{1} << static_cast<unsigned>(code->group);
     return {};
 }
 
@@ -125,6 +125,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
     statement.corner = statement.angle = nullptr;
     statement.code_count = 0;
     statement.groups = 0;
+    statement.letters = 0;
     statement.unknown_m_codes.clear();
     statement.arguments.clear();
     for (const Word& word : block.words) {
@@ -140,6 +141,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             statement.polar_angle = &word;
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
+            statement.letters |= letter_bit(word.letter);
         } else {
             const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
             if (place)
@@ -148,6 +150,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
                                               written(*place), written(word)),
                                   word.span);
             place = &word;
+            if (word.letter != 'a') statement.letters |= corner_bit;
         }
     }
     return {};

@@ -10,6 +10,7 @@ namespace {
 using core::ErrorCode;
 
 constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
+constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
 constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 
 /// The code of the motion or cycle that a block without one goes on with.
@@ -89,6 +90,7 @@ core::Result<void> check_words(Execution& execution) {
         execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
                                                "builder; it is passed over",
                                                written(*word)));
+    if (!(execution.statement.letters & bits_that_need_a_code)) return {};
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))
             if (auto checked = check_word(execution, *word); !checked) return checked;
