@@ -26,9 +26,11 @@ constexpr std::string_view no_other_change =
 constexpr std::string_view no_pallet =
     "pallets are not supported yet: check the program of each pallet on its own";
 constexpr std::string_view no_pocket =
-    "pocket cycles are not supported yet: write their moves out with G1, G2 and G3";
+    "the way the control takes inside the pocket is not published, so it cannot be checked: write "
+    "the passes out with G1, G2 and G3";
 constexpr std::string_view no_engraving =
-    "engraving is not supported yet: write the letters out with G1, G2 and G3";
+    "the strokes of the control's letters are not published, so they cannot be checked: write the "
+    "letters out with G1, G2 and G3";
 
 constexpr std::string_view no_five_axes = "motion of rotary axes is not supported yet";
 
@@ -59,8 +61,8 @@ constexpr Code codes[] = {
     {'G', tenths(9), exact_stop, "", fanuc, {}},
     {'G', tenths(10), action, "XYZPLRQIJH", every, {}},
     {'G', tenths(11), action, "", fanuc, {}},
-    {'G', tenths(12), action, "XYZIJKQDL", haas, no_pocket},
-    {'G', tenths(13), action, "XYZIJKQDL", haas, no_pocket},
+    {'G', tenths(12), action, "XYZIJKQDL", haas, {}},
+    {'G', tenths(13), action, "XYZIJKQDL", haas, {}},
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, {}},
     {'G', tenths(17), ModalGroup::plane, "", every | klartext, {}},

@@ -70,6 +70,9 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .tool_entries_by_axes = true,
                               .arc_after_contour_is_error = true,
                               .contour_breaks_are_errors = true,
+                              .contour_codes = ContourCodes::rs274,
+                              .contour_style = ContourStyle::rs274,
+                              .radius_number_stays = false,
                               .has_active_comments = true,
                               .has_o_words = true,
                               .has_fanuc_flow = false,
@@ -83,6 +86,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .repeats_in_program_number = false,
                               .calls_stand_alone = true,
                               .decimal_points_matter = false,
+                              .assumed_feed = 0.0,
                               .system_parameters = SystemParameters::rs274,
                               .first_alarm = 0,
                               .local_count = 30,
@@ -130,6 +134,9 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .tool_entries_by_axes = false,
                            .arc_after_contour_is_error = true,
                            .contour_breaks_are_errors = false,
+                           .contour_codes = ContourCodes::fanuc,
+                           .contour_style = ContourStyle::fanuc,
+                           .radius_number_stays = true,
                            .has_active_comments = false,
                            .has_o_words = false,
                            .has_fanuc_flow = true,
@@ -143,6 +150,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .repeats_in_program_number = true,
                            .calls_stand_alone = false,
                            .decimal_points_matter = true,
+                           .assumed_feed = 0.0,
                            .system_parameters = SystemParameters::fanuc,
                            .first_alarm = 3000,
                            .local_count = 33,
@@ -152,6 +160,7 @@ constexpr Dialect haas = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::haas;
     entry.name = "haas";
+    entry.contour_style = ContourStyle::rs274;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.diameters_in_tool_entries = true;
@@ -164,10 +173,14 @@ constexpr Dialect haas = [] {
     return entry;
 }();
 
+// Grbl 0.8: defaults.h, DEFAULT_FEEDRATE.
+constexpr double grbl_feed = 250.0;
+
 constexpr Dialect grbl = [] {
     Dialect entry = linuxcnc;
     entry.id = DialectId::grbl;
     entry.name = "grbl";
+    entry.assumed_feed = grbl_feed;
     entry.length_needs_g43 = false;
     entry.unit_is_machines = false;
     entry.arc = grbl_arc;
@@ -194,6 +207,8 @@ constexpr Dialect heidenhain = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::heidenhain;
     entry.name = "heidenhain";
+    entry.contour_style = ContourStyle::rs274;
+    entry.radius_number_stays = false;
     entry.length_needs_g43 = false;
     entry.arc = heidenhain_arc;
     entry.machine_move_is_rapid = false;

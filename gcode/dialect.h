@@ -28,6 +28,15 @@ struct ArcTolerance {
 /// Whose numbers the parameters have in which a control shows its state.
 enum class SystemParameters : uint8_t { rs274, fanuc, haas };
 
+/// Which codes take the tool away from the contour between G41 and G40.
+enum class ContourCodes : uint8_t { rs274, fanuc };
+
+/// How the tool comes to a contour and passes its outside corners.
+enum class ContourStyle : uint8_t {
+    rs274, // beside the end of the entry; round corners
+    fanuc, // beside the start of the move after the entry; straight on at corners
+};
+
 /// How the controls of one kind differ. Everything the interpreter asks about a dialect is here.
 struct Dialect {
     DialectId id;
@@ -71,9 +80,12 @@ struct Dialect {
     Language language;
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
-    bool tool_entries_by_axes;             // G10 L1, L10 and L11 take P and axis words
-    bool arc_after_contour_is_error;       // a circle right behind G40
-    bool contour_breaks_are_errors;        // G28, G53 and the like between G41 and G40
+    bool tool_entries_by_axes;       // G10 L1, L10 and L11 take P and axis words
+    bool arc_after_contour_is_error; // a circle right behind G40
+    bool contour_breaks_are_errors;  // G28, G53 and the like between G41 and G40
+    ContourCodes contour_codes;      // what is like G28 and G53 there
+    ContourStyle contour_style;
+    bool radius_number_stays;              // G41 without D takes the D said last, D0 is none
     bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
     bool has_o_words;                      // o<name> sub, if, while ...
     bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
@@ -87,6 +99,7 @@ struct Dialect {
     bool repeats_in_program_number; // M98 P31000 calls O1000 three times
     bool calls_stand_alone;         // M98 and M99 have no other words beside them
     bool decimal_points_matter;     // X5 may mean 5 of the smallest steps
+    double assumed_feed;            // mm/min of a feed that no F came before; 0 refuses
     SystemParameters system_parameters;
     int first_alarm; // #3000=1 is the alarm after this
     int local_count; // #1 to this are of each level of calls

@@ -318,7 +318,7 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         if (found && *found)
             taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
         else if (found)
-            give_up(contour);
+            taken = end_contour(contour);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch_->take_back(state);

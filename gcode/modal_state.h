@@ -98,6 +98,7 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
     std::optional<core::OffsetNumber> length_number;
+    int radius_number = 0;    // the D said last, where it stays
     double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
     Offsets offsets;
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates

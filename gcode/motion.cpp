@@ -33,7 +33,21 @@ bool moves_by_radius_and_angle(const Execution& execution) {
                || execution.statement.word(axis_letters[axes.second]));
 }
 
+/// Where a control goes on with a feed of its own, the first feed without F takes that.
+void assume_feed(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const double assumed = execution.dialect.assumed_feed;
+    if (modal.feed || assumed == 0.0 || modal.feed_mode != FeedMode::per_minute) return;
+    const Word& mover = moving_word(execution);
+    execution.warn(mover.span,
+                   fmt::format("{}: no F word came before this feed: Grbl 1.1 stops here (error "
+                               "22), older ones take {:g} mm/min, which is taken here too",
+                               written(mover), assumed));
+    modal.feed = assumed;
+}
+
 core::Result<void> move_straight(Execution& execution, bool rapid) {
+    if (!rapid) assume_feed(execution);
     FEELER_TRY(const Position end, target_of(execution));
     if (rapid) {
         execution.traverse(end);
@@ -149,7 +163,10 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    if (is_arc(modal.motion)) return move_along_arc(execution);
+    if (is_arc(modal.motion)) {
+        assume_feed(execution);
+        return move_along_arc(execution);
+    }
     if (modal.motion == tenths(5, 2)) return gather_control_point(execution);
     return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
@@ -257,6 +274,8 @@ core::Result<Position> target_of(const Execution& execution) {
         else if (target[axis])
             *target[axis] += value;
     }
+    if (auto placed = place_by_angle(execution, target); !placed)
+        return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;

@@ -113,6 +113,7 @@ void add(Digest& digest, const ModalState& modal) {
     add_id(digest, modal.selected_tool);
     add_id(digest, modal.tool);
     add_id(digest, modal.length_number);
+    digest.add(number_of(modal.radius_number));
     add(digest, modal.offsets);
     add(digest, modal.transforms);
     add(digest, modal.spline);

@@ -26,6 +26,7 @@ constexpr uint32_t letter_bits(std::string_view letters) {
 }
 
 constexpr uint32_t axis_letter_bits = letter_bits(axis_letters);
+constexpr uint32_t corner_bit = 1u << 26; // ,R or ,C
 
 /// A block with its words looked up. Refers to the block's words.
 struct Statement {
@@ -34,6 +35,8 @@ struct Statement {
     std::array<const Word*, 26> words{};         // by letter, without G and M
     const Word* polar_radius = nullptr;          // @
     const Word* polar_angle = nullptr;           // ^
+    const Word* corner = nullptr;                // ,R or ,C
+    const Word* angle = nullptr;                 // ,A
     std::array<CodeWord, most_codes> code_words; // in the order written
     size_t code_count = 0;
     uint64_t groups = 0;                        // a bit for each modal group that is there

@@ -56,6 +56,7 @@ constexpr Step steps[] = {
     {set_frame, groups({mirror, scaling, rotation, polar, other})},
     {act, groups({action})},
     {move},
+    {ask_for_corner, 0, corner_bit},
     {stop, groups({stopping})},
     {call},
 };

@@ -69,7 +69,9 @@ core::Result<void> check_word(Execution& execution, const Word& word) {
     const bool exponent = word.letter == 'E'; // of a number, most likely
     const std::string message =
         fmt::format("{}: nothing in this block uses it{}", written(word),
-                    exponent ? "; an exponent such as 1E3 is written out" : "");
+                    exponent ? "; an exponent such as 1E3 is written out, and the extruder of a "
+                               "3D printer is none of a milling machine's"
+                             : "");
     if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);
