@@ -16,6 +16,7 @@
 #include "gcode/klartext_state.h"
 #include "gcode/parameters.h"
 #include "gcode/program_library.h"
+#include "gcode/rules.h"
 #include "gcode/shared.h"
 #include "gcode/source.h"
 #include "gcode/tables.h"
@@ -62,6 +63,7 @@ struct InterpreterState {
     Contour contour; // blocks on their way through cutter radius compensation
     Shared<KlartextState> klartext;
     LoopWatch watch;
+    RuleWatch rules;
 
     bool operator==(const InterpreterState&) const = default;
 };

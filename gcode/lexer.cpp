@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "gcode/short_number.h"
+
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
-
-constexpr std::array powers_of_ten = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 /// The characters of a number without its blanks, and where it ends.
 struct Digits {
@@ -43,37 +42,6 @@ Digits collect_digits(std::string_view line, size_t begin) {
         found.text[found.count++] = c;
     }
     return found;
-}
-
-/// Digits that make a whole number below 2^53 and a power of ten below 10^16: both are exact, so
-/// their quotient is rounded once, as the general way rounds it.
-bool read_short_number(std::string_view line, size_t& at, Number& number) {
-    size_t next = at;
-    const bool negative = next < line.size() && line[next] == '-';
-    if (next < line.size() && (line[next] == '-' || line[next] == '+')) ++next;
-    uint64_t digits = 0;
-    int count = 0, behind_point = 0;
-    bool point = false;
-    for (; next < line.size(); ++next) {
-        const char c = line[next];
-        if (is_digit(c)) {
-            digits = digits * 10 + static_cast<uint64_t>(c - '0');
-            ++count;
-            behind_point += point;
-        } else if (c == '.' && !point) {
-            point = true;
-        } else {
-            break;
-        }
-        if (count > 15) return false;
-    }
-    if (count == 0 || (next < line.size() && (is_blank(line[next]) || line[next] == '.')))
-        return false;
-    const double size =
-        static_cast<double>(digits) / powers_of_ten[static_cast<size_t>(behind_point)];
-    number = {negative ? -size : size, point};
-    at = next;
-    return true;
 }
 
 /// Klartext: only behind the sign may blanks stand.

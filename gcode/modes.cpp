@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/rs274_cycles.h"
 
 namespace gcode {
 
@@ -179,7 +180,10 @@ core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry) return {};
     const bool inch = entry->code->tenths == tenths(20);
-    const bool changes = inch != (execution.modal().unit == LengthUnit::inch);
+    const LengthUnit unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    if (execution.modal().cycle && execution.dialect.cycles_are_rs274)
+        keep_numbers(*execution.modal().cycle, execution.modal().unit, unit);
+    const bool changes = unit != execution.modal().unit;
     const bool has_offset = execution.modal().offsets.tool != AxisValues{};
     if (changes && has_offset && execution.dialect.system_parameters == SystemParameters::rs274)
         execution.warn(entry->word->span,
@@ -187,7 +191,7 @@ core::Result<void> set_units(Execution& execution) {
                                    "number in the new units, so the next G43, G49 or G28 leads to "
                                    "another place than here; say G49 before",
                                    written(*entry->word)));
-    execution.modal().unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    execution.modal().unit = unit;
     execution.modal().unit_said = true;
     return {};
 }

@@ -9,6 +9,7 @@
 #include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
 #include "gcode/messages.h"
+#include "gcode/plain_words.h"
 
 namespace gcode {
 namespace {
@@ -263,6 +264,8 @@ core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialec
     block.line = line;
     block.text = text;
     if (dialect.language == Language::klartext) return parse_klartext(text, line, dialect, block);
+    if (read_plain_words(text, line, dialect, block)) return {};
+    block.words.clear();
     return LineParser(text, line, dialect, block).parse();
 }
 

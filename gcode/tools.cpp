@@ -62,6 +62,13 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
                                           written(word), *number));
     use_offset(execution, OffsetNumber(*number),
                offset_under(execution, *number, sign * length.value_or(0.0)));
+    const auto& tool = execution.modal().tool;
+    if (tool && *number != 0 && *number != value_of(*tool))
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("{}: H{} is not the offset of the tool in the spindle, T{}", written(word),
+                         *number, value_of(*tool)),
+             "offset-not-tool", fmt::format("Write H{}.", value_of(*tool))});
     return {};
 }
 

@@ -115,7 +115,8 @@ class Canon:
         return (-1,) + (0.0,) * 12 + (0,)
 
     def next_line(self, state):
-        self.line = state.sequence_number
+        if state.sequence_number > 0:  # G70 to G72 say -1 from their first move on
+            self.line = state.sequence_number
 
     def change_tool(self, index):
         self.loaded = index
