@@ -90,7 +90,10 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .system_parameters = SystemParameters::rs274,
                               .first_alarm = 0,
                               .local_count = 30,
-                              .deepest_calls = 10};
+                              .deepest_calls = 10,
+                              .same_offset_stays = true,
+                              .offset_writes_miss_axis_offset = true,
+                              .surface_speed_needs_s = true};
 
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
@@ -154,7 +157,10 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .system_parameters = SystemParameters::fanuc,
                            .first_alarm = 3000,
                            .local_count = 33,
-                           .deepest_calls = 15};
+                           .deepest_calls = 15,
+                           .same_offset_stays = false,
+                           .offset_writes_miss_axis_offset = false,
+                           .surface_speed_needs_s = false};
 
 constexpr Dialect haas = [] {
     Dialect entry = fanuc;

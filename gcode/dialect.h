@@ -104,6 +104,9 @@ struct Dialect {
     int first_alarm; // #3000=1 is the alarm after this
     int local_count; // #1 to this are of each level of calls
     size_t deepest_calls;
+    bool same_offset_stays;              // G54 while G54 is on does not look into the table again
+    bool offset_writes_miss_axis_offset; // G10 counts the place anew as if there were no G92
+    bool surface_speed_needs_s;          // G96 has its S in the same block
 };
 
 const Dialect& dialect(DialectId id);

@@ -89,6 +89,7 @@ struct ModalState {
     Position position;                       // tool tip, program coordinates
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // kept by G92.2 for G92.3
+    bool axis_offset_on = false;             // G92 or G52 holds, be it zero
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
     double speed = 0.0;         // rev/min, or m/min under G96

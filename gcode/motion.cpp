@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -59,9 +60,31 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     return {};
 }
 
+/// A motion code without a place to go to, where that is a move to where the machine stands.
+bool stands_alone(const Execution& execution) {
+    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
+    return execution.dialect.motion_codes_move && motion
+           && (is_straight(motion->code->tenths) || is_arc(motion->code->tenths));
+}
+
+/// G2 alone, of which nobody knows where it leads.
+core::Result<void> refuse_lone_arc(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const CodeWord* motion = statement.of(ModalGroup::motion);
+    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->tenths)) return {};
+    for (const char letter : {'I', 'J', 'K', 'R'})
+        if (statement.word(letter)) return {};
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} has no centre: say I, J or K, or the radius as R; if no arc "
+                                  "is meant here, leave the code out",
+                                  written(*motion->word)),
+                      motion->word->span);
+}
+
 /// Whether the block has words that make the active motion move.
 bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
+    if (!statement.has_axis_word() && stands_alone(execution)) return true;
     if (statement.taker_of_axis_words()) return false;
     if (statement.has_axis_word()) return true;
     if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
@@ -89,6 +112,12 @@ void forget_words(CannedCycle& cycle) {
     cycle = fresh;
 }
 
+/// Codes that other ones may not share a block with, even without axis words.
+bool wants_axes_alone(const CodeWord& taker) {
+    constexpr int codes[] = {tenths(10), tenths(28), tenths(30), tenths(52), tenths(92)};
+    return std::find(std::begin(codes), std::end(codes), taker.code->tenths) != std::end(codes);
+}
+
 /// G0 to G3 and the cycles become modal, even when another code takes the axis words.
 core::Result<void> set_motion_mode(Execution& execution) {
     const Statement& statement = execution.statement;
@@ -97,7 +126,8 @@ core::Result<void> set_motion_mode(Execution& execution) {
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
     const CodeWord* motion = statement.of(ModalGroup::motion);
     const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
-    const bool homes = taker && taker->code->tenths != tenths(4) && statement.has_axis_word();
+    const bool homes = taker && taker->code->tenths != tenths(4)
+                       && (statement.has_axis_word() || wants_axes_alone(*taker));
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
         return core::fail(ErrorCode::syntax,
                           fmt::format("{} and {} both want the axis words of this block: write two "
@@ -310,7 +340,9 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)
         return refuse("G93 gives no feed rate here, where the motion starts is unknown");
-    if (inverse) return *modal.feed * *path_length;
+    const bool has_slowest = execution.dialect.system_parameters == SystemParameters::rs274;
+    const double slowest = has_slowest ? to_mm(0.1, modal.unit) : 0.0; // a minute
+    if (inverse) return std::max(slowest, *modal.feed * *path_length);
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
         return refuse("G95 gives no feed rate here, the spindle does not turn");
     return *modal.feed * modal.speed;
@@ -318,6 +350,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 
 core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
+    if (auto checked = refuse_lone_arc(execution); !checked) return checked;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
     if (!has_motion_words(execution) && !cycle_words) return {};
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);

@@ -107,6 +107,7 @@ void add(Digest& digest, const ModalState& modal) {
     for (const Position* place :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *place);
+    digest.add(uint64_t{modal.axis_offset_on});
     digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
