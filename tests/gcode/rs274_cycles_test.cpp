@@ -91,13 +91,15 @@ TEST(Rs274Cycle, WarnsOfTapsThatLeaveTheirHoleInOtherPlanes) {
 
 TEST(Rs274Cycle, RefusesAxesOfNoUseAndCutterCompensation) {
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2 A5"), DialectId::linuxcnc),
-              "3:18: A5: a cycle moves X, Y and Z only: move A in a block before it");
-    EXPECT_EQ(error_of(cycle("G81"), DialectId::linuxcnc).substr(0, 24),
-              "3:5: G81 has no axis wor");
-    EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2", "G41.1 D3"), DialectId::linuxcnc),
-              "3:5: G81: no cycle while cutter radius compensation is on: write G40 before");
+              "3:19: A5: a cycle moves X, Y and Z only: move A in a block before it");
+    EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2\nG81"), DialectId::linuxcnc).substr(0, 24),
+              "4:1: G81 has no axis wor");
+    const std::string compensated =
+        "G21 F100\nG0 X50 Y50 Z10\nG41.1 D3\nG1 X10 Y10\nX0\nG81 X1 Z-3 R2\n";
+    EXPECT_EQ(error_of(compensated, DialectId::linuxcnc),
+              "6:1: G81: no cycle while cutter radius compensation is on: write G40 before");
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2 K2"), DialectId::linuxcnc),
-              "3:18: K2: nothing in this block uses it");
+              "3:19: K2: nothing in this block uses it");
 }
 
 } // namespace
