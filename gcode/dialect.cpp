@@ -39,6 +39,8 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .dwell_without_point_is_milliseconds = false,
                               .dwell_takes_x_and_u = false,
                               .bare_length_offset_is_tool = true,
+                              .cycles_are_rs274 = true,
+                              .motion_codes_move = true,
                               .cycles_are_motions = true,
                               .axis_words_serve_one_code = true,
                               .unused_words_are_errors = true,
@@ -88,7 +90,10 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .system_parameters = SystemParameters::rs274,
                               .first_alarm = 0,
                               .local_count = 30,
-                              .deepest_calls = 10};
+                              .deepest_calls = 10,
+                              .same_offset_stays = true,
+                              .offset_writes_miss_axis_offset = true,
+                              .surface_speed_needs_s = true};
 
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
@@ -101,6 +106,8 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .dwell_without_point_is_milliseconds = true,
                            .dwell_takes_x_and_u = true,
                            .bare_length_offset_is_tool = false,
+                           .cycles_are_rs274 = false,
+                           .motion_codes_move = false,
                            .cycles_are_motions = false,
                            .axis_words_serve_one_code = false,
                            .unused_words_are_errors = false,
@@ -150,7 +157,10 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .system_parameters = SystemParameters::fanuc,
                            .first_alarm = 3000,
                            .local_count = 33,
-                           .deepest_calls = 15};
+                           .deepest_calls = 15,
+                           .same_offset_stays = false,
+                           .offset_writes_miss_axis_offset = false,
+                           .surface_speed_needs_s = false};
 
 constexpr Dialect haas = [] {
     Dialect entry = fanuc;
@@ -185,6 +195,7 @@ constexpr Dialect grbl = [] {
     entry.feed_before_units = false;
     entry.tool_entries_by_axes = false;
     entry.has_active_comments = false;
+    entry.motion_codes_move = false;
     entry.has_o_words = false;
     entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;

@@ -146,6 +146,12 @@ core::Result<void> select_tool(Execution& execution) {
     const Word* word = execution.statement.word('T');
     if (!word) return {};
     FEELER_TRY(const int number, whole_number(*word));
+    const auto& table = execution.state.tables->lengths;
+    if (execution.dialect.tool_entries_by_axes && number != 0 && !table.empty()
+        && !length_under(*execution.state.tables, number))
+        execution.warn(word->span, fmt::format("{}: this tool is not in the tool table: a control "
+                                               "with this table stops here",
+                                               written(*word)));
     execution.modal().selected_tool = ToolNumber(number);
     execution.emit(SelectTool{ToolNumber(number)});
     return {};
