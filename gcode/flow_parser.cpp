@@ -91,11 +91,7 @@ private:
         Number plain;
         FEELER_TRY(flow().label, parse_value(lexer_, dialect_.expressions, block_.pool, plain));
         if (flow().label) return {};
-        if (plain.value != std::floor(plain.value))
-            return core::fail(
-                ErrorCode::syntax,
-                fmt::format("'O{}': the number of an O word is whole", label_of(plain.value)),
-                lexer_.span_from(begin_));
+        is_broken_ = plain.value != std::floor(plain.value);
         set_label(label_of(plain.value));
         return {};
     }
@@ -108,6 +104,9 @@ private:
                               "as sub, call, if or while",
                               lexer_.span_from(begin_));
         }
+        if (is_broken_)
+            return refuse(fmt::format("'{}': the number of an O word is whole",
+                                      lexer_.line.substr(begin_, lexer_.at - begin_)));
         const std::string letters = lexer_.letters();
         for (const Keyword& keyword : o_keywords) {
             const bool fits = only_head_ ? std::string_view(letters).starts_with(keyword.spelling)
@@ -186,6 +185,7 @@ private:
     const Dialect& dialect_;
     Block& block_;
     const bool only_head_;
+    bool is_broken_ = false; // the label has a fraction
     size_t begin_ = 0;
 };
 
