@@ -17,8 +17,14 @@ TurningPoint point_of(const Position& position) { return {*position[0], *positio
 
 core::Result<void> check_turning(const Execution& execution) {
     const Word& mover = moving_word(execution);
+    // Mach3 and others say their units with these codes.
+    const std::string_view instead = execution.statement.word('Q') ? ""
+                                     : mover.value == 70.0 ? "; where it means inches, write G20"
+                                     : mover.value == 71.0
+                                         ? "; where it means millimetres, write G21"
+                                         : "";
     const auto refuse = [&](std::string_view why) {
-        return core::fail(ErrorCode::syntax, fmt::format("{}: {}", written(mover), why),
+        return core::fail(ErrorCode::syntax, fmt::format("{}: {}{}", written(mover), why, instead),
                           mover.span);
     };
     const ModalState& modal = execution.modal();

@@ -31,8 +31,10 @@ bool is_among(std::span<const int> codes, int code) {
 
 bool changes_plane(const Execution& execution, const CodeWord& entry) {
     constexpr int planes[] = {170, 180, 190, 171, 181, 191};
+    const Contour& contour = execution.state.contour; // of the mode the new plane is there already
+    const Plane plane = contour.path ? contour.plane : execution.modal().plane;
     return entry.code->group == ModalGroup::plane
-           && planes[static_cast<size_t>(execution.modal().plane)] != entry.code->tenths;
+           && planes[static_cast<size_t>(plane)] != entry.code->tenths;
 }
 
 bool breaks_contour(const Execution& execution, const CodeWord& entry) {

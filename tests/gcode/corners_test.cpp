@@ -49,10 +49,12 @@ TEST(Corners, RoundBetweenALineAndAnArcTouchingBoth) {
 }
 
 TEST(Corners, RoundBetweenTwoArcsTouchingBoth) {
-    // Half circles of 10 about (10, 0) and (30, 0) meet in a point at (20, 0), both from above.
-    // Outside of both by 2: 12 from either centre, at (20, sqrt(44)).
-    EXPECT_EQ(path_of("G2 X20. I10. F100 ,R2.\nG2 X40. I10.\nM30\n"),
-              "18333,5528(10000,0,-1) 21667,5528(20000,6633,1) 40000,0(30000,0,-1) ");
+    // Down round (10, 0), then to the left turn round (20, 10): 12 from the first centre, 8 from
+    // the second.
+    EXPECT_EQ(path_of("G2 X20. I10. F100 ,R2.\nG3 X30. Y10. J10.\nM30\n"),
+              "19830,1837(10000,0,-1) 22245,255(21796,2204,1) 30000,10000(20000,10000,1) ");
+    EXPECT_THAT(error_of("G2 X20. I10. F100 ,R2.\nG2 X40. I10.\nM30\n"), // back again
+                HasSubstr("nothing of this size"));
 }
 
 TEST(Corners, ChamferAnArcByTheWayAsTheCrowFlies) {

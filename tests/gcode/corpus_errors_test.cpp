@@ -26,6 +26,8 @@ const std::vector<Expected> errors = {
      "I and J were meant as coordinates here as well, and do not even fit as these"},
     {"fanuc-like/dillonhuff__mazak_sample.EIA", 2, "G53.5: there is no such code",
      "a program for a turning and milling centre of Mazak, with codes of its own"},
+    {"grbl-hobby/Michael-F-Br___fresa.gcode", 99, "the byte 0x01",
+     "a stray control byte: Grbl passes over it, the others stop"},
     {"grbl-hobby/Michael-F-Br___gcodeLexer_samples.ngc", 8, "is not closed",
      "samples for a highlighter, with broken lines on purpose; not a program"},
     {"grbl-hobby/Michael-F-Br___program_3.gcode", 3,

@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cstdlib>
 #include <map>
 
@@ -49,6 +50,7 @@ TEST_P(Corpus, RunsOrSaysWhereAndWhyNot) {
         // The message names the word, or what stands where one should.
         const std::string_view line = program->line(error.where.line);
         const char at = line.at(error.where.column - 1);
+        if (std::iscntrl(static_cast<unsigned char>(at))) continue; // named by its number
         EXPECT_NE(error.message.find_first_of({at, static_cast<char>(std::toupper(at))}),
                   std::string::npos)
             << path << ": " << error.message;
@@ -58,7 +60,7 @@ TEST_P(Corpus, RunsOrSaysWhereAndWhyNot) {
     RecordProperty("finished", static_cast<int>(finished));
     const std::map<std::string, size_t> least = {{"fanuc-like", 16},
                                                  {"linuxcnc", 10},
-                                                 {"grbl-hobby", 12},
+                                                 {"grbl-hobby", 20},
                                                  {"siemens", 0},
                                                  {"heidenhain", 9}};
     EXPECT_GE(finished, least.at(GetParam()));

@@ -155,8 +155,10 @@ TEST(Turning, KeepsTheValuesThatTheSubprogramSets) {
 }
 
 TEST(Turning, SaysWhatIsWrongWithThePlaceOfIt) {
-    EXPECT_EQ(error(shaft + "G71 X18 Z4\nM2\n"),
-              "9:1: G71: Q is missing, the number of the subprogram with the contour");
+    EXPECT_EQ(
+        error(shaft + "G71 X18 Z4\nM2\n"),
+        "9:1: G71: Q is missing, the number of the subprogram with the contour; where it means "
+        "millimetres, write G21");
     EXPECT_EQ(error(shaft + "G17 G71 Q100 X18 Z4\nM2\n"),
               "9:5: G71: turning cycles work in the ZX plane: say G18 before");
     EXPECT_EQ(error(shaft + "G71 Q200 X18 Z4\nM2\n").substr(0, 4), "9:5:");
