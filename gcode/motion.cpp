@@ -325,6 +325,21 @@ std::optional<double> way_between(const Position& from, const Position& to) {
     return 0.0;
 }
 
+namespace {
+
+/// How fast the spindle turns, rev/min. Under G96 that hangs on the distance from its axis: that of
+/// where the motion begins is taken for the whole of it.
+double turns_a_minute(const ModalState& modal) {
+    if (!modal.surface_speed) return modal.speed;
+    const double speed = modal.speed * (modal.unit == LengthUnit::inch ? 304.8 : 1000.0); // mm/min
+    constexpr double least_radius = 0.01; // mm; at the axis itself no speed is fast enough
+    const double radius = std::max(std::abs(modal.position[0].value_or(0.0)), least_radius);
+    const double turns = speed / (2.0 * std::numbers::pi * radius);
+    return modal.fastest_speed > 0.0 ? std::min(turns, modal.fastest_speed) : turns;
+}
+
+} // namespace
+
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length) {
     const ModalState& modal = execution.modal();
     const Word& mover = moving_word(execution);
@@ -345,7 +360,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     if (inverse) return std::max(slowest, *modal.feed * *path_length);
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
         return refuse("G95 gives no feed rate here, the spindle does not turn");
-    return *modal.feed * modal.speed;
+    return *modal.feed * turns_a_minute(modal);
 }
 
 core::Result<void> move(Execution& execution) {
