@@ -34,7 +34,7 @@ std::vector<std::string> rules_of(std::string_view text, DialectId dialect = Dia
     return rules;
 }
 
-constexpr std::string_view head = "G21 G90 G54\n";
+constexpr std::string_view head = "G21 G90 G54 G0\n";
 
 std::string program(std::string_view body) {
     return std::string(head) + std::string(body) + "M30\n";
