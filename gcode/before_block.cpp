@@ -20,6 +20,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.points = state.points;
     before.tables = state.tables;
     before.klartext = state.klartext;
+    before.siemens = state.siemens;
     before.has_calls = false;
 }
 
@@ -35,6 +36,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.points = before.points;
     state.tables = before.tables;
     state.klartext = before.klartext;
+    state.siemens = before.siemens;
 }
 
 void restore_calls(InterpreterState& state, const BeforeBlock& before) {

@@ -15,6 +15,7 @@ struct BeforeBlock {
     DecimalPoints points;
     Shared<Tables> tables;
     Shared<KlartextState> klartext;
+    Shared<SiemensState> siemens;
     // Only of blocks that call or return.
     bool has_calls = false;
     std::vector<Frame> frames;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/alarms.h"
+#include "gcode/assignments.h"
 #include "gcode/before_block.h"
 #include "gcode/decimal_points.h"
 #include "gcode/execution.h"
@@ -13,6 +14,7 @@
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
 #include "gcode/program_parameters.h"
+#include "gcode/siemens.h"
 
 namespace gcode {
 namespace {
@@ -56,7 +58,8 @@ constexpr Step steps[] = {
 
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
-    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub;
+    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
+           || kind == FlowKind::call_program || kind >= FlowKind::for_loop;
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -68,14 +71,6 @@ bool is_deleted(std::string_view line) {
 } // namespace
 
 struct Interpreter::Scratch {
-    /// A parameter that a block has set, and what it was before.
-    struct Undo {
-        bool is_named;
-        double number;
-        std::string name;
-        Value value;
-    };
-
     ProgramLibrary& library;
     const Environment& environment;
     const Dialect& dialect;
@@ -84,7 +79,7 @@ struct Interpreter::Scratch {
     BlockResult result{};
     std::string line_text{};
     BeforeBlock before{};
-    std::vector<Undo> undos{};
+    std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
 
     core::Result<bool> read_line(InterpreterState& state);
@@ -92,8 +87,6 @@ struct Interpreter::Scratch {
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
-    core::Result<void> work_out_words(const ProgramParameters& parameters);
-    core::Result<void> assign(InterpreterState& state, ProgramParameters& parameters);
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
@@ -143,8 +136,14 @@ void Interpreter::Scratch::remember_words(InterpreterState& state) const {
         if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
 }
 
-/// What the end of a text means: the end of the run, unless a subprogram should have gone back.
+/// What the end of a text means: the end of the run, unless a subprogram should have gone back or
+/// does so by itself, so that there is more to read.
 core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
+    if (state.ending == Ending::running && state.frames.size() > 1 && dialect.text_end_returns) {
+        keep_calls(state, before);
+        leave(state);
+        return true;
+    }
     if (state.ending == Ending::running && state.frames.size() > 1)
         return core::fail(ErrorCode::syntax,
                           fmt::format("the subprogram {} ends here without {}: the control stops "
@@ -171,75 +170,11 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, Place pla
     result.warnings.clear();
 }
 
-core::Result<void> Interpreter::Scratch::work_out_words(const ProgramParameters& parameters) {
-    size_t kept = 0;
-    for (size_t i = 0; i < block.words.size(); ++i) {
-        Word& word = block.words[i];
-        if (word.expression) {
-            FEELER_TRY(const Value value, evaluate(block.pool, word.expression, block.line,
-                                                   parameters, dialect.arithmetic));
-            if (!value) continue; // Fanuc: a vacant variable, as if the word were not there
-            word.value = *value;
-        }
-        if (kept != i) block.words[kept] = word;
-        ++kept;
-    }
-    block.words.resize(kept);
-    return {};
-}
-
-/// All right-hand sides are worked out before the first parameter is set.
-core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
-                                                ProgramParameters& parameters) {
-    undos.clear();
-    values.clear();
-    std::vector<double> numbers;
-    for (const Assignment& entry : block.assignments) {
-        Value value = entry.plain;
-        if (entry.value) {
-            FEELER_TRY(value, evaluate(block.pool, entry.value, block.line, parameters,
-                                       dialect.arithmetic));
-        }
-        values.push_back(value);
-        Value number = 0.0;
-        if (!entry.is_named) {
-            FEELER_TRY(number, evaluate(block.pool, entry.number, block.line, parameters,
-                                        dialect.arithmetic));
-        }
-        numbers.push_back(number.value_or(0.0));
-    }
-    for (size_t i = 0; i < block.assignments.size(); ++i) {
-        const Assignment& entry = block.assignments[i];
-        if (entry.is_named) {
-            const std::string& name = block.pool.names[entry.name];
-            const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
-                                                     : core::Result<Value>(Value{});
-            undos.push_back({true, 0.0, name, *old});
-            if (auto set = parameters.set_named(name, values[i], entry.span); !set) return set;
-        } else {
-            FEELER_TRY(const Value old, parameters.numbered(numbers[i], entry.span));
-            undos.push_back({false, numbers[i], {}, old});
-            if (auto set = parameters.set_numbered(numbers[i], values[i], entry.span); !set)
-                return set;
-            if (auto heard = heed_alarm(block, dialect, numbers[i], values[i], entry.span, result);
-                !heard)
-                return heard;
-        }
-    }
-    (void)state;
-    return {};
-}
-
 /// Gives the parameters of a block that failed their old values.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);
-    for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
-        if (undo->is_named)
-            parameters.restore_named(undo->name, undo->value);
-        else
-            (void)parameters.set_numbered(undo->number, undo->value, {});
-    }
+    take_back_assignments(undos, parameters);
     undos.clear();
     restore(state, before);
 }
@@ -254,10 +189,10 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
             FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
             if (!holds) return {};
         }
-        if (auto done = work_out_words(parameters); !done) return done;
-        if (auto done = assign(state, parameters); !done) return done;
+        const Assigning assigning{block, dialect, parameters, undos, values, result};
+        if (auto done = work_out_block(assigning); !done) return done;
         if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
-        if (dialect.system_parameters != SystemParameters::rs274) note_clock(block, state, result);
+        if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);
         if (changes_level(block.flow.kind)) keep_calls(state, before);
         if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
             return run_flow({library, environment, dialect, block, state, result});
@@ -273,10 +208,12 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         !looked_up)
         return looked_up;
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
-        || !state.modal_macros.empty())
+        || !state.modal_macros.empty()
+        || (dialect.language == Language::siemens && changes_levels_in_siemens(statement, state)))
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
     if (dialect.language == Language::klartext) return run_klartext(execution);
+    if (dialect.language == Language::siemens) return run_siemens(execution);
     for (const Step step : steps)
         if (auto done = step(execution); !done) return done;
     return {};
@@ -286,8 +223,12 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     if (!dialect.supported)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("the dialect {} is not supported yet", dialect.name));
-    FEELER_TRY(const bool found, read_line(state));
-    if (!found) return end_of_text(state);
+    FEELER_TRY(bool found, read_line(state));
+    while (!found) {
+        FEELER_TRY(const bool goes_on, end_of_text(state));
+        if (!goes_on) return false;
+        FEELER_TRY(found, read_line(state));
+    }
     const Place place{state.next.source, block.line};
     begin_result(state, place);
     if (state.next_block >= environment.limits.blocks)
@@ -298,7 +239,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                           {.line = block.line, .column = 1});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    if (dialect.system_parameters != SystemParameters::rs274) remember_words(state);
+    if (remembers_words(dialect.system_parameters)) remember_words(state);
     if (auto watched = watch_for_endless_loop(state, place); !watched)
         return tl::unexpected(std::move(watched).error());
     return true;

@@ -17,6 +17,7 @@
 #include "gcode/parameters.h"
 #include "gcode/program_library.h"
 #include "gcode/shared.h"
+#include "gcode/siemens_state.h"
 #include "gcode/source.h"
 #include "gcode/tables.h"
 
@@ -61,6 +62,7 @@ struct InterpreterState {
     Shared<Tables> tables;
     Contour contour; // blocks on their way through cutter radius compensation
     Shared<KlartextState> klartext;
+    Shared<SiemensState> siemens;
     LoopWatch watch;
 
     bool operator==(const InterpreterState&) const = default;

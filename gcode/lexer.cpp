@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -47,7 +48,7 @@ Digits collect_digits(std::string_view line, size_t begin) {
 
 /// Digits that make a whole number below 2^53 and a power of ten below 10^16: both are exact, so
 /// their quotient is rounded once, as the general way rounds it.
-bool read_short_number(std::string_view line, size_t& at, Number& number) {
+bool read_short_number(std::string_view line, size_t& at, Number& number, bool blanks_end) {
     size_t next = at;
     const bool negative = next < line.size() && line[next] == '-';
     if (next < line.size() && (line[next] == '-' || line[next] == '+')) ++next;
@@ -67,7 +68,8 @@ bool read_short_number(std::string_view line, size_t& at, Number& number) {
         }
         if (count > 15) return false;
     }
-    if (count == 0 || (next < line.size() && (is_blank(line[next]) || line[next] == '.')))
+    const bool at_end = next >= line.size();
+    if (count == 0 || (!at_end && ((is_blank(line[next]) && !blanks_end) || line[next] == '.')))
         return false;
     const double size =
         static_cast<double>(digits) / powers_of_ten[static_cast<size_t>(behind_point)];
@@ -76,8 +78,8 @@ bool read_short_number(std::string_view line, size_t& at, Number& number) {
     return true;
 }
 
-/// Klartext: only behind the sign may blanks stand.
-Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
+/// Klartext and Siemens: only behind the sign may blanks stand.
+Digits collect_digits_without_blanks(std::string_view line, size_t begin, bool comma) {
     Digits found;
     size_t at = begin;
     if (at < line.size() && (line[at] == '-' || line[at] == '+')) {
@@ -85,7 +87,7 @@ Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
         for (++at; at < line.size() && is_blank(line[at]);) ++at;
     }
     for (; at < line.size(); ++at) {
-        const bool point = (line[at] == '.' || line[at] == ',') && !found.has_point;
+        const bool point = (line[at] == '.' || (comma && line[at] == ',')) && !found.has_point;
         if (!point && !is_digit(line[at])) break;
         found.has_point |= point;
         found.digits += !point;
@@ -96,6 +98,22 @@ Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
     }
     found.end = at;
     return found;
+}
+
+/// Siemens: `EX` and a whole number behind a number are a power of ten.
+bool take_exponent(std::string_view line, size_t& at, Number& number) {
+    if (at + 2 >= line.size() || upper(line[at]) != 'E' || upper(line[at + 1]) != 'X') return true;
+    size_t next = at + 2;
+    const bool negative = line[next] == '-';
+    if (negative || line[next] == '+') ++next;
+    int exponent = 0;
+    const size_t digits = next;
+    for (; next < line.size() && is_digit(line[next]) && exponent < 1000; ++next)
+        exponent = exponent * 10 + (line[next] - '0');
+    if (next == digits || exponent > 300) return false;
+    number.value *= std::pow(10.0, negative ? -exponent : exponent);
+    at = next;
+    return true;
 }
 
 } // namespace
@@ -124,10 +142,17 @@ bool Lexer::is_at_number() {
 
 core::Result<Number> Lexer::number() {
     peek();
-    if (Number number; !blanks_end_numbers && read_short_number(line, at, number)) return number;
     const size_t begin = at;
-    const Digits found = blanks_end_numbers ? collect_digits_without_blanks(line, begin)
-                                            : collect_digits(line, begin);
+    if (Number number; !comma_is_point && read_short_number(line, at, number, blanks_end_numbers)) {
+        if (!has_exponents || take_exponent(line, at, number)) return number;
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("the exponent of '{}' is no whole number up to 300", written_from(begin)),
+            span_from(begin));
+    }
+    const Digits found = blanks_end_numbers
+                             ? collect_digits_without_blanks(line, begin, comma_is_point)
+                             : collect_digits(line, begin);
     if (found.digits == 0)
         return core::fail(ErrorCode::syntax, "a number is missing here", span(begin, begin + 1));
     at = found.end;

@@ -93,6 +93,8 @@ struct ModalState {
     Offsets offsets;
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
+    // Siemens: in which the last motion of the plane ended; 0, 0 when that is not known.
+    std::array<double, 2> direction{};
 
     bool operator==(const ModalState&) const = default;
 };

@@ -8,6 +8,17 @@ namespace gcode {
 template <typename T>
 class Shared {
 public:
+    Shared() = default;
+    Shared(const Shared&) = default;
+    Shared(Shared&&) = default;
+    ~Shared() = default;
+    // A copy of what is shared already costs no counting.
+    Shared& operator=(const Shared& other) {
+        if (value_ != other.value_) value_ = other.value_;
+        return *this;
+    }
+    Shared& operator=(Shared&&) = default;
+
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
