@@ -199,17 +199,17 @@ core::Result<void> machine(Hole& hole) {
     }
 }
 
-struct Place {
+struct HolePlace {
     double first, second;
 };
 
 /// The holes of HOLES1 (SPCA, SPCO, STA1, FDIS, DBH, NUM) in the order that begins at the end of
 /// the row nearer to the tool, or of HOLES2 (CPA, CPO, RAD, STA1, INDA, NUM).
-std::vector<Place> places_of(const Execution& execution, bool row, const std::vector<double>& given,
-                             int count) {
+std::vector<HolePlace> places_of(const Execution& execution, bool row,
+                                 const std::vector<double>& given, int count) {
     const auto mm = [&](double value) { return to_mm(value, execution.modal().unit); };
     constexpr double radians = std::numbers::pi / 180.0;
-    std::vector<Place> places;
+    std::vector<HolePlace> places;
     for (int i = 0; i < count; ++i) {
         const double step = given[4] == 0.0 ? 360.0 / count : given[4];
         const double angle = (row ? given[2] : given[3] + i * step) * radians;
@@ -220,7 +220,7 @@ std::vector<Place> places_of(const Execution& execution, bool row, const std::ve
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const auto &x = execution.modal().position[axes.first],
                &y = execution.modal().position[axes.second];
-    const auto far = [&](const Place& place) {
+    const auto far = [&](const HolePlace& place) {
         return std::hypot(place.first - *x, place.second - *y);
     };
     if (row && x && y && far(places.back()) < far(places.front()))
@@ -265,7 +265,7 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                                              "its places are gone to and nothing is drilled",
                                              use.keyword->name));
     const PlaneAxes axes = axes_of(execution.modal().plane);
-    for (const Place& place : places_of(execution, row, given, static_cast<int>(count))) {
+    for (const HolePlace& place : places_of(execution, row, given, static_cast<int>(count))) {
         Position over = execution.modal().position;
         over[axes.first] = place.first;
         over[axes.second] = place.second;

@@ -245,7 +245,7 @@ core::Result<void> SiemensFlowing::run() {
     }
 }
 
-core::Result<void> give_back(const FlowStep& step) {
+core::Result<void> return_from(const FlowStep& step) {
     if (step.state.frames.size() > 1)
         leave(step.state);
     else
@@ -295,7 +295,7 @@ core::Result<void> run_siemens_flow(const FlowStep& step) {
     case call_program:
         return call_siemens_program(step);
     case FlowKind::give_back:
-        return give_back(step);
+        return return_from(step);
     default:
         return SiemensFlowing(step).run();
     }

@@ -13,8 +13,8 @@ using core::ErrorCode;
 using Point = std::array<double, 2>;
 
 // Motions that keywords begin and that stay on, as G codes do.
-constexpr MotionCode by_point = 9010; // CIP
-constexpr MotionCode tangent = 9020;  // CT
+constexpr MotionCode by_point = 9010;   // CIP
+constexpr MotionCode by_tangent = 9020; // CT
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
@@ -307,12 +307,12 @@ core::Result<void> move_by_mode(Execution& execution) {
     const Statement& statement = execution.statement;
     const MotionCode motion = modal.motion.value_or(tenths(1));
     const bool arc =
-        motion == tenths(2) || motion == tenths(3) || motion == by_point || motion == tangent;
+        motion == tenths(2) || motion == tenths(3) || motion == by_point || motion == by_tangent;
     if (arc)
         if (auto checked = check_scaled_arc(execution); !checked) return checked;
     if (statement.polar_radius || statement.polar_angle) return move_polar(execution);
     if (motion == by_point) return move_by_point(execution);
-    if (motion == tangent) return move_tangentially(execution);
+    if (motion == by_tangent) return move_tangentially(execution);
     if (motion == tenths(331) || motion == tenths(332)) return tap(execution);
     if (motion == tenths(33)) return cut_thread(execution);
     if (motion == tenths(63)) {
@@ -340,7 +340,7 @@ core::Result<void> move_in_siemens(Execution& execution) {
     const CodeWord* code = statement.of(ModalGroup::motion);
     if (code) modal.motion = code->code->tenths;
     if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
-    if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = tangent;
+    if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
     if (has_frame_words(execution) || statement.taker_of_axis_words()) return {};
     const bool circles = modal.motion == tenths(2) || modal.motion == tenths(3);
     const bool moves =
