@@ -54,6 +54,7 @@ constexpr Step steps[] = {
     move,
     stop,
     call,
+    leave_iso,
 };
 
 /// Whether a flow statement goes to another level of calls.
@@ -81,7 +82,10 @@ struct Interpreter::Scratch {
     BeforeBlock before{};
     std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
+    std::unique_ptr<Environment> iso_environment{}; // Siemens, behind G291
+    std::unique_ptr<Scratch> iso{};
 
+    Scratch& speaking(const InterpreterState& state);
     core::Result<bool> read_line(InterpreterState& state);
     core::Result<bool> end_of_text(InterpreterState& state);
     bool begins_another_program(const InterpreterState& state) const;
@@ -93,6 +97,17 @@ struct Interpreter::Scratch {
     core::SourceSpan place_of(core::SourceSpan where) const;
     void place_in_lines();
 };
+
+/// Who reads the program's language where it stands: a control may have two.
+Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
+    if (dialect.language != Language::siemens || !state.siemens->is_iso) return *this;
+    if (!iso) {
+        iso_environment = std::make_unique<Environment>(environment);
+        iso_environment->dialect = DialectId::siemens_iso;
+        iso.reset(new Scratch{library, *iso_environment, gcode::dialect(DialectId::siemens_iso)});
+    }
+    return *iso;
+}
 
 /// Reads the next line that says something; false at the end of the text.
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
@@ -271,36 +286,36 @@ Interpreter::~Interpreter() = default;
 
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
     while (true) {
+        Scratch& scratch = scratch_->speaking(state);
         Contour& contour = state.contour;
         if (!contour.ready.empty()) {
-            scratch_->result = std::move(contour.ready.front());
+            scratch.result = std::move(contour.ready.front());
             contour.ready.pop_front();
-            return &scratch_->result;
+            return &scratch.result;
         }
         if (contour.failure) return tl::unexpected(*contour.failure);
         if (state.ending != Ending::running) return nullptr;
-        keep(state, scratch_->before);
-        scratch_->undos.clear();
+        keep(state, scratch.before);
+        scratch.undos.clear();
         const uint32_t source = state.next.source;
-        auto found = scratch_->try_next(state);
+        auto found = scratch.try_next(state);
         if (found)
-            scratch_->place_in_lines();
+            scratch.place_in_lines();
         else
-            found.error().where = scratch_->place_of(found.error().where);
+            found.error().where = scratch.place_of(found.error().where);
         const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
-        if (found && *found && straight_out) return &scratch_->result;
+        if (found && *found && straight_out) return &scratch.result;
         core::Result<void> taken;
-        if (found && *found && scratch_->library.program(source).windows)
-            keep_text(scratch_->result);
+        if (found && *found && scratch.library.program(source).windows) keep_text(scratch.result);
         if (found && *found)
-            taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
+            taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
         else if (found)
             give_up(contour);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
-        scratch_->take_back(state);
-        error.where = scratch_->place_of(error.where);
-        if (error.file.empty()) error.file = scratch_->library.program(source).file;
+        scratch.take_back(state);
+        error.where = scratch.place_of(error.where);
+        if (error.file.empty()) error.file = scratch.library.program(source).file;
         if (contour.is_idle()) return tl::unexpected(std::move(error));
         // What came before is complete but for the moves that waited for this one.
         give_up(contour);

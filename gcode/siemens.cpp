@@ -240,6 +240,20 @@ core::Result<void> run_siemens(Execution& execution) {
     return {};
 }
 
+core::Result<void> leave_iso(Execution& execution) {
+    if (!execution.statement.of(ModalGroup::other)) return {};
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->letter != 'G' || entry.code->tenths != tenths(290)) continue;
+        if (!execution.state.siemens->is_iso)
+            return core::fail(ErrorCode::unsupported,
+                              "G290: the program was said to be of the ISO language as a whole; "
+                              "name the dialect siemens, in which G291 begins that language",
+                              entry.word->span);
+        execution.state.siemens.write().is_iso = false;
+    }
+    return {};
+}
+
 std::optional<Value> siemens_variable(const InterpreterState& state, std::string_view name) {
     const ModalState& modal = state.modal;
     if (name == "$p_toolno" || name == "$p_tool")

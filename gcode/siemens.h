@@ -9,6 +9,11 @@ namespace gcode {
 /// Carries out a block of native Siemens that is no flow statement.
 core::Result<void> run_siemens(Execution& execution);
 
+/// G290 behind G291: the program goes on in native Siemens.
+///
+/// Errors: unsupported where the program began in the ISO language.
+core::Result<void> leave_iso(Execution& execution);
+
 /// Whether the state may change its levels of calls in this block.
 bool changes_levels_in_siemens(const Statement& statement, const InterpreterState& state);
 

@@ -57,10 +57,13 @@ core::Result<Block> head_of(const FlowStep& step, Place begin) {
     const Program& program = step.library.program(begin.source);
     Block block;
     for (size_t line = begin.line; program.has_line(line).value_or(false); ++line) {
-        if (auto parsed =
-                parse_line(program.line(line), static_cast<uint32_t>(line), step.dialect, block);
-            !parsed)
-            return Block{}; // which is said when it is run
+        auto parsed =
+            parse_line(program.line(line), static_cast<uint32_t>(line), step.dialect, block);
+        if (!parsed) {
+            core::Error error = std::move(parsed).error();
+            error.file = program.file;
+            return tl::unexpected(std::move(error));
+        }
         if (!block.is_empty()) return block;
     }
     return Block{};

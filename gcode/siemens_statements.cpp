@@ -94,14 +94,6 @@ private:
             begin_);
     }
 
-    core::Result<void> alone(FlowKind kind) {
-        const std::string name = reader_.lexer.written_from(begin_);
-        if (auto begun = flow(kind); !begun) return begun;
-        if (reader_.next() == '\0') return {};
-        return reader_.refuse(fmt::format("nothing can stand behind '{}' in its block", name),
-                              reader_.lexer.at);
-    }
-
     core::Result<void> rest() {
         reader_.lexer.at = reader_.lexer.line.size();
         block_.flow.kind = declaration;
@@ -152,10 +144,10 @@ private:
             return jump(*way, holds);
         }
         block_.siemens.arguments.push_back(holds);
-        return alone_behind(if_branch);
+        return alone(if_branch);
     }
 
-    core::Result<void> alone_behind(FlowKind kind) {
+    core::Result<void> alone(FlowKind kind) {
         if (auto begun = flow(kind); !begun) return begun;
         if (reader_.next() == '\0') return {};
         return reader_.refuse(fmt::format("nothing can stand behind '{}' in its block",
@@ -166,7 +158,7 @@ private:
     core::Result<void> condition(FlowKind kind) {
         FEELER_TRY(const SiemensArgument holds, truth(kind == while_loop ? "WHILE" : "UNTIL"));
         block_.siemens.arguments.push_back(holds);
-        return alone_behind(kind);
+        return alone(kind);
     }
 
     /// `FOR I = 1 TO 10`: the variable's first value is an assignment of the block.
