@@ -253,7 +253,7 @@ private:
             return {};
         }
         if (const SiemensKeyword* keyword = siemens_keyword(name)) return use(*keyword, begin);
-        FEELER_TRY(const bool is_statement, read_siemens_statement(reader_, name));
+        FEELER_TRY(const bool is_statement, read_siemens_statement(reader_, name, begin));
         if (is_statement) return {};
         if (reader_.is_at_equals()) {
             Assignment entry{.name = static_cast<uint32_t>(block_.pool.names.size()),

@@ -42,7 +42,8 @@ struct SiemensReader {
 
 /// Whether a name begins a statement that has the block for itself: IF, FOR, DEF, PROC, GOTOF ...;
 /// read then.
-core::Result<bool> read_siemens_statement(SiemensReader& reader, const std::string& name);
+core::Result<bool> read_siemens_statement(SiemensReader& reader, const std::string& name,
+                                          size_t begin);
 
 /// Reads the call of a program by its name, which is read: its arguments and how often.
 core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, size_t begin);

@@ -355,8 +355,9 @@ private:
 
 } // namespace
 
-core::Result<bool> read_siemens_statement(SiemensReader& reader, const std::string& name) {
-    return Statements(reader, reader.lexer.at - name.size()).read(name);
+core::Result<bool> read_siemens_statement(SiemensReader& reader, const std::string& name,
+                                          size_t begin) {
+    return Statements(reader, begin).read(name);
 }
 
 core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, size_t begin) {

@@ -101,7 +101,7 @@ TEST(SiemensCall, VariablesAreOfTheirProgram) {
 
 TEST(SiemensCall, FindsFilesOfTheSearchPathInAnyCase) {
     const test_support::ScopedFolder folder;
-    folder.write("Hole_1.spf", "X5\n"); // whose end returns
+    folder.write("Hole_1.spf", "G0 X5\n"); // whose end returns
     folder.write("whole.MPF", "X6\nM30\n");
     Environment environment = known_environment(DialectId::siemens);
     environment.search_path = {folder.path().string()};

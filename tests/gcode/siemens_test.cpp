@@ -50,7 +50,7 @@ TEST(SiemensWords, NamesWhatItCannotRead) {
     EXPECT_THAT(siemens_error("G1 X=FOO F1\n"), HasSubstr("1:6: 'foo': there is no variable"));
     EXPECT_THAT(siemens_error("G1 X=FOO(1)\n"), HasSubstr("1:6: 'FOO': there is no such function"));
     EXPECT_THAT(siemens_error("FOO=1\n"), HasSubstr("'foo': there is no variable"));
-    EXPECT_THAT(siemens_error("(comment)\n"), HasSubstr("comments begin with ';'"));
+    EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments begin with ';'"));
     EXPECT_THAT(siemens_error("G1 A3=1 F1\n"), HasSubstr("1:4: 'A3=': tool orientation"));
     EXPECT_THAT(siemens_error("G0 X10 R5\n"), HasSubstr("1:8: 'R5' stands alone"));
     EXPECT_THAT(siemens_error("G1 X1 F1 E5\n"), HasSubstr("1:10: 'E'"));
@@ -102,7 +102,7 @@ TEST(SiemensArc, ReadsCentresRadiiAndTurns) {
     EXPECT_EQ(siemens("G1 X0 Y0 F100\nG2 X10 Y10 CR=10\nG3 X0 Y0 CR=-10\n"),
               "straight_feed x=0 y=0 z=0 feed=100\n"
               "arc_feed x=10 y=10 z=0 plane=XY centre=10,0 turns=-1 feed=100\n"
-              "arc_feed x=0 y=0 z=0 plane=XY centre=10,0 turns=1 feed=100\n");
+              "arc_feed x=0 y=0 z=0 plane=XY centre=0,10 turns=1 feed=100\n");
     EXPECT_EQ(siemens("G1 X10 F100\nG3 X10 Y0 Z-4 I=AC(5) J0 TURN=2\n"),
               "straight_feed x=10 y=0 z=0 feed=100\n"
               "arc_feed x=10 y=0 z=-4 plane=XY centre=5,0 turns=3 feed=100\n");
@@ -257,6 +257,10 @@ TEST(SiemensRecognition, SeesNativePrograms) {
 TEST(SiemensIso, G291BeginsFanucsLanguageAndG290EndsIt) {
     EXPECT_EQ(siemens("G0 X1\nG291\n#1=5\nG0 X#1\nG81 Z-2 R1 F100\nG80\nG290\nR1=7\nG0 X=R1\n"),
               "straight_traverse x=1 y=0 z=0\n"
+              "straight_traverse x=5 y=0 z=0\n"
+              "straight_traverse x=5 y=0 z=0\n"
+              "straight_traverse x=5 y=0 z=1\n"
+              "straight_feed x=5 y=0 z=-2 feed=100\n"
               "straight_traverse x=5 y=0 z=0\n"
               "straight_traverse x=7 y=0 z=0\n");
     EXPECT_EQ(trace("O1\nG90 G0 X#1 Y5.\nM30\n", DialectId::siemens_iso),
