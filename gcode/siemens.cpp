@@ -36,6 +36,11 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
     const Word* seconds = execution.statement.word('F');
     const Word* turns = execution.statement.word('S');
     const Word* word = seconds ? seconds : turns;
+    if (execution.statement.has_axis_word())
+        return core::fail(ErrorCode::syntax,
+                          "G4 needs a block of its own: the axis words of this one would not be "
+                          "gone to",
+                          entry->word->span);
     if (!word)
         return core::fail(ErrorCode::missing_value,
                           "G4 has no time: it needs F in seconds, or S in turns of the spindle",

@@ -21,11 +21,14 @@ public:
         return has(index) ? *values_[index] : absent;
     }
     double length(size_t index) const { return to_mm(plain(index), unit_); }
-    size_t size() const { return values_.size(); }
+    int whole(size_t index, double absent) const {
+        return static_cast<int>(std::clamp(plain(index, absent), -1e6, 1e6));
+    }
 
     /// A digit of a value that tells how others are meant, from the right.
     int digit(size_t index, int place) const {
-        return static_cast<int>(std::fmod(plain(index) / std::pow(10.0, place), 10.0));
+        return static_cast<int>(
+            std::fmod(std::floor(std::abs(plain(index)) / std::pow(10.0, place)), 10.0));
     }
 
 private:
@@ -126,7 +129,7 @@ core::Result<void> read_tapping(SiemensDrilling& cycle, const SiemensKeywordUse&
                                 const Values& values) {
     cycle.dwell_below = values.plain(5);
     const bool rigid = cycle.number == 84;
-    cycle.direction_after = static_cast<int>(values.plain(rigid ? 6 : 7, 5.0));
+    cycle.direction_after = values.whole(rigid ? 6 : 7, 5.0);
     FEELER_TRY(cycle.pitch,
                rigid ? pitch_of(use, values, 7, 8, 13) : pitch_of(use, values, 9, 10, 12));
     if (!rigid) return {};
@@ -159,15 +162,15 @@ core::Result<void> read_special(SiemensDrilling& cycle, const SiemensKeywordUse&
         return {};
     case 86:
         cycle.dwell_below = values.plain(5);
-        cycle.direction = static_cast<int>(values.plain(6, 3.0));
+        cycle.direction = values.whole(6, 3.0);
         cycle.aside = {values.length(7), values.length(8), values.length(9)};
         return {};
     case 87:
-        cycle.direction = static_cast<int>(values.plain(5, 3.0));
+        cycle.direction = values.whole(5, 3.0);
         return {};
     case 88:
         cycle.dwell_below = values.plain(5);
-        cycle.direction = static_cast<int>(values.plain(6, 3.0));
+        cycle.direction = values.whole(6, 3.0);
         return {};
     default:
         return {};

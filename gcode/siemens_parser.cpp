@@ -28,10 +28,27 @@ public:
             if (auto done = item(c); !done) return done;
         }
         if (lexer_.peek() == ';') block_.comments.push_back(lexer_.line_comment());
-        return {};
+        return check_flow();
     }
 
 private:
+    /// A jump, loop or declaration shares its block with its number and label only.
+    core::Result<void> check_flow() const {
+        if (block_.flow.kind == FlowKind::none) return {};
+        const auto numbers = [](const Word& some) { return some.letter == 'N'; };
+        const size_t own = block_.flow.kind == FlowKind::for_loop ? 1 : 0;
+        if (std::all_of(block_.words.begin(), block_.words.end(), numbers)
+            && block_.assignments.size() == own && block_.siemens.keywords.empty()
+            && block_.siemens.tool_name.kind == SiemensArgument::Kind::nothing)
+            return {};
+        const core::SourceSpan span = block_.flow.span;
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("'{}' needs a block of its own: write the other words before "
+                                      "or behind it",
+                                      lexer_.line.substr(span.column - 1, span.length)),
+                          span);
+    }
+
     core::Result<void> item(char c) {
         if (c == '/') return block_delete();
         if (c == '%') return header();
@@ -120,7 +137,12 @@ private:
             return value(letter, begin, false);
         }
         if (letter == 'S' || letter == 'M' || letter == 'H' || letter == 'T') {
-            ++lexer_.at; // of another spindle, which is not that of the tool
+            ++lexer_.at;
+            static constexpr SiemensKeyword other_spindle{
+                "a word with the number of a spindle", SiemensAction::warning,
+                "it is not of the first spindle, which is the tool's, and is passed over"};
+            block_.siemens.keywords.push_back({&other_spindle, lexer_.span_from(begin)});
+            block_.command.kind = CommandKind::siemens;
             if (auto skipped = reader_.argument(); !skipped)
                 return tl::unexpected(std::move(skipped).error());
             return {};

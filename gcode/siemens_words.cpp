@@ -13,25 +13,37 @@ using core::ErrorCode;
 
 constexpr std::string_view letters_of_lengths = "XYZIJKF";
 
-/// Words that nothing in the block uses. H words go to the machine's logic.
+/// Whether a word other than those of axes, modes and tools has a use in its block.
+bool is_used(const Execution& execution, const Word& word) {
+    const auto* motion = execution.statement.of(ModalGroup::motion);
+    const int code = motion ? motion->code->tenths : execution.modal().motion.value_or(tenths(1));
+    const bool by_point = use_of(execution, SiemensAction::arc_by_point) || code > tenths(900);
+    const bool straight = code == tenths(0) || code == tenths(1);
+    switch (word.letter) {
+    case 'Q':
+        return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn);
+    case 'i':
+    case 'j':
+    case 'k':
+        return by_point;
+    case 'I':
+    case 'J':
+    case 'K':
+    case 'R':
+    case 'P':
+    case 'E':
+        return !straight || by_point;
+    default:
+        return word.letter != 'H'; // which goes to the machine's logic
+    }
+}
+
 void warn_of_unused(Execution& execution) {
-    const auto& modal = execution.modal();
-    const Statement& statement = execution.statement;
-    const bool arcs = statement.of(ModalGroup::motion) || !modal.motion || *modal.motion != 0;
-    for (const char letter : {'I', 'J', 'K', 'R', 'P', 'E'}) {
-        const Word* word = statement.word(letter);
-        if (!word) continue;
-        const auto* motion = statement.of(ModalGroup::motion);
-        const int code = motion ? motion->code->tenths : modal.motion.value_or(0);
-        if (!arcs || code == tenths(0) || code == tenths(1)) {
-            const bool uses = use_of(execution, SiemensAction::arc_by_point)
-                              || use_of(execution, SiemensAction::tangent_arc);
-            if (uses) continue;
-            const auto& span = word->span;
-            execution.warn(span,
-                           fmt::format("{}: nothing in this block uses it",
-                                       execution.block.text.substr(span.column - 1, span.length)));
-        }
+    for (const Word& word : execution.block.words) {
+        if (is_used(execution, word)) continue;
+        const std::string_view written =
+            execution.block.text.substr(word.span.column - 1, word.span.length);
+        execution.warn(word.span, fmt::format("{}: nothing in this block uses it", written));
     }
 }
 

@@ -67,6 +67,20 @@ TEST(SiemensWords, WarnsOfUnknownMCodesOnly) {
     EXPECT_THAT(warnings_of("G710\nTRAORI\nM30\n", DialectId::siemens), HasSubstr("TRAORI: taken"));
 }
 
+TEST(SiemensWords, PassOverNothingInSilence) {
+    const auto warned = [](const std::string& text) {
+        return warnings_of("G710\nG0 X0\n" + text + "\nM30\n", DialectId::siemens);
+    };
+    EXPECT_THAT(warned("X1 I5"), HasSubstr("I5: nothing in this block uses it"));
+    EXPECT_THAT(warned("X1 CR=5"), HasSubstr("CR=5: nothing in this block uses it"));
+    EXPECT_THAT(warned("X1 RPL=5"), HasSubstr("RPL=5: nothing"));
+    EXPECT_THAT(warned("X1 I1=5"), HasSubstr("I1=5: nothing"));
+    EXPECT_THAT(warned("M2=3 S2=100"), HasSubstr("not of the first spindle"));
+    EXPECT_THAT(siemens_error("G4 F1 X10\n"), HasSubstr("1:1: G4 needs a block of its own"));
+    EXPECT_THAT(siemens_error("GOTOF OUT G0 X10\nOUT:\n"),
+                HasSubstr("1:1: 'GOTOF OUT' needs a block of its own"));
+}
+
 TEST(SiemensExpression, FollowsTheControlsPriorities) {
     const auto value = [](const std::string& text) { return siemens("G0 X=" + text + "\n"); };
     EXPECT_EQ(value("2+3*4"), "straight_traverse x=14 y=0 z=0\n");
