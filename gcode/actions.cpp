@@ -10,6 +10,9 @@ core::Result<void> act(Execution& execution) {
     switch (entry->code->tenths) {
     case tenths(10):
         return write_offset(execution);
+    case tenths(12):
+    case tenths(13):
+        return mill_circular_pocket(execution);
     case tenths(27):
         return check_home(execution);
     case tenths(29):

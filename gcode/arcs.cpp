@@ -54,6 +54,15 @@ struct CentreWords {
     const Word* second;
 };
 
+bool fits_as_coordinates(const Execution& execution, const SeenArc& arc, const CentreWords& words) {
+    if (!words.first || !words.second) return false;
+    const double centre[2] = {length_of(execution, *words.first),
+                              length_of(execution, *words.second)};
+    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    return to_start > reach_tolerance && std::abs(to_start - to_end) < reach_tolerance;
+}
+
 core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
                                        const CentreWords& words, double* centre) {
     const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
@@ -70,7 +79,11 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
                 + (words.first ? length_of(execution, *words.first) : 0.0);
     centre[1] = origin(words.second, arc.start[1])
                 + (words.second ? length_of(execution, *words.second) : 0.0);
-    return check_radii(execution, arc, centre);
+    auto checked = check_radii(execution, arc, centre);
+    if (!checked && !absolute && fits_as_coordinates(execution, arc, words))
+        checked.error().message += "; it would fit if the centre's words were coordinates, as "
+                                   "under G90.1, rather than distances from the start";
+    return checked;
 }
 
 /// The centre lies on the line that halves the chord, on the side that R's sign and the turn say.
@@ -156,12 +169,63 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
     return clockwise ? -turns : turns;
 }
 
+constexpr double chord_tolerance = 0.001; // mm
+
+double& along(Position& place, size_t axis) { return *place[axis]; }
+
+/// An arc with R whose axes G51 scales unequally: on the machine it is an arc with the larger of
+/// the scales, between the scaled ends. Here it is written as chords, since the frame makes
+/// ellipses of arcs.
+///
+/// Source: Fanuc 0i and 30i user's manuals, "Scaling of circular interpolation".
+core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& axes,
+                                         const Word& radius) {
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(SeenArc arc, flat_arc(execution, axes, end));
+    const core::Vec3& factors = execution.modal().transforms.scaling->factors;
+    const double scale[2] = {factors[static_cast<int>(axes.first)],
+                             factors[static_cast<int>(axes.second)]};
+    for (int i = 0; i < 2; ++i) {
+        arc.start[i] *= scale[i];
+        arc.end[i] *= scale[i];
+    }
+    if (scale[0] * scale[1] < 0.0) arc.clockwise = !arc.clockwise;
+    const double larger = std::max(std::abs(scale[0]), std::abs(scale[1]));
+    const double size = larger * length_of(execution, radius);
+    double centre[2];
+    if (auto found = centre_from_radius(arc, radius, size, centre); !found) return found;
+    const double angle = arc_angle(arc.start, arc.end, centre, arc.clockwise ? -1 : 1);
+    FEELER_TRY(const double rate, feed_rate(execution, std::abs(size * angle)));
+    execution.warn(arc.where, fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}; the "
+                                          "control makes an arc of radius {:.6g} mm of it",
+                                          arc.code, axis_letters[axes.first], scale[0],
+                                          axis_letters[axes.second], scale[1], std::abs(size)));
+    const double step = 2.0 * std::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
+    const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(angle) / step)));
+    const double from = std::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
+    const Position start = execution.modal().position;
+    for (int chord = 1; chord < chords; ++chord) {
+        const double share = double(chord) / chords, at = from + share * angle;
+        Position place = end;
+        along(place, axes.first) = (centre[0] + std::abs(size) * std::cos(at)) / scale[0];
+        along(place, axes.second) = (centre[1] + std::abs(size) * std::sin(at)) / scale[1];
+        if (const size_t axis = axes.normal; start[axis] && end[axis])
+            along(place, axis) = *start[axis] + share * (*end[axis] - *start[axis]);
+        execution.feed(place, rate);
+    }
+    execution.feed(end, rate);
+    return {};
+}
+
 } // namespace
 
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
-    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) {
+        const Word* radius = execution.statement.word('R');
+        return radius ? move_along_scaled_arc(execution, axes, *radius) : checked;
+    }
     if (modal.leaves_contour && execution.dialect.arc_after_contour_is_error)
         return core::fail(ErrorCode::syntax,
                           "the first move behind G40 must be straight: an arc would not start "

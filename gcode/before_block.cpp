@@ -18,6 +18,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.ending = state.ending;
     before.said_time = state.said_time;
     before.points = state.points;
+    before.rules = state.rules;
     before.tables = state.tables;
     before.klartext = state.klartext;
     before.siemens = state.siemens;
@@ -34,6 +35,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.ending = before.ending;
     state.said_time = before.said_time;
     state.points = before.points;
+    state.rules = before.rules;
     state.tables = before.tables;
     state.klartext = before.klartext;
     state.siemens = before.siemens;

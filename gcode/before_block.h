@@ -13,6 +13,7 @@ struct BeforeBlock {
     Ending ending;
     bool said_time;
     DecimalPoints points;
+    RuleWatch rules;
     Shared<Tables> tables;
     Shared<KlartextState> klartext;
     Shared<SiemensState> siemens;

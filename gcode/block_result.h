@@ -19,6 +19,8 @@ struct Warning {
     Severity severity;
     core::SourceSpan where;
     std::string message;
+    std::string_view rule = "program"; // the stable name of what it is about
+    std::string cure{};                // what would make it go away; may be empty
 };
 
 /// One block as executed.

@@ -22,8 +22,6 @@ constexpr DialectSet both_siemens = siemens | bit(DialectId::siemens_iso);
 constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
-constexpr std::string_view no_cycle = "this canned cycle is not supported yet";
-constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_jump =
     "jumps are not supported yet: write the blocks in the order they are run";
 constexpr std::string_view no_other_change =
@@ -31,9 +29,11 @@ constexpr std::string_view no_other_change =
 constexpr std::string_view no_pallet =
     "pallets are not supported yet: check the program of each pallet on its own";
 constexpr std::string_view no_pocket =
-    "pocket cycles are not supported yet: write their moves out with G1, G2 and G3";
+    "the way the control takes inside the pocket is not published, so it cannot be checked: write "
+    "the passes out with G1, G2 and G3";
 constexpr std::string_view no_engraving =
-    "engraving is not supported yet: write the letters out with G1, G2 and G3";
+    "the strokes of the control's letters are not published, so they cannot be checked: write the "
+    "letters out with G1, G2 and G3";
 
 constexpr std::string_view no_slanted_axis = "grinding with a slanted axis is not supported";
 constexpr std::string_view no_changing_pitch = "threads whose pitch changes are not supported yet";
@@ -63,13 +63,13 @@ constexpr Code codes[] = {
     {'G', tenths(2), motion, "XYZIJKRP", every | siemens, {}},
     {'G', tenths(3), motion, "XYZIJKRP", every | siemens, {}},
     {'G', tenths(4), action, "PXU", every | siemens, {}},
-    {'G', tenths(5), motion, "XYZIJPQ", linuxcnc, no_spline},
+    {'G', tenths(5), motion, "XYZIJPQ", linuxcnc, {}},
     {'G', tenths(5), other, "PR", fanuc, {}},
     {'G', tenths(5), other, "", siemens, no_slanted_axis},
-    {'G', tenths(5, 1), motion, "XYZIJ", linuxcnc, no_spline},
+    {'G', tenths(5, 1), motion, "XYZIJ", linuxcnc, {}},
     {'G', tenths(5, 1), other, "XYZPQRL", fanuc, {}},
-    {'G', tenths(5, 2), motion, "XYZPL", linuxcnc, no_spline},
-    {'G', tenths(5, 3), motion, "", linuxcnc, no_spline},
+    {'G', tenths(5, 2), motion, "XYZPL", linuxcnc, {}},
+    {'G', tenths(5, 3), motion, "XYZ", linuxcnc, {}},
     {'G', tenths(7), diameter, "", linuxcnc, {}},
     {'G', tenths(7), motion, "", siemens, no_slanted_axis},
     {'G', tenths(8), diameter, "", linuxcnc, {}},
@@ -78,8 +78,8 @@ constexpr Code codes[] = {
     {'G', tenths(9), exact_stop, "", siemens, {}},
     {'G', tenths(10), action, "XYZPLRQIJH", every, {}},
     {'G', tenths(11), action, "", fanuc, {}},
-    {'G', tenths(12), action, "XYZIJKQDL", haas, no_pocket},
-    {'G', tenths(13), action, "XYZIJKQDL", haas, no_pocket},
+    {'G', tenths(12), action, "XYZIJKQDL", haas, {}},
+    {'G', tenths(13), action, "XYZIJKQDL", haas, {}},
     {'G', tenths(15), polar, "", fanuc, {}},
     {'G', tenths(16), polar, "", fanuc, {}},
     {'G', tenths(17), ModalGroup::plane, "", every | klartext | siemens, {}},
@@ -154,32 +154,46 @@ constexpr Code codes[] = {
     {'G', tenths(68), rotation, "XYZRIJK", fanuc, {}},
     {'G', tenths(68, 2), rotation, "XYZIJKPQR", fanuc, {}},
     {'G', tenths(69), rotation, "", fanuc, {}},
+    {'G', tenths(70), motion, "XYZQDEP", linuxcnc, {}},
     {'G', tenths(70), action, "XYZIJL", haas, {}},
     {'G', tenths(70), units, "", siemens, {}},
+    {'G', tenths(71), motion, "XYZQDIR", linuxcnc, {}},
     {'G', tenths(71), action, "XYZIJKL", haas, {}},
     {'G', tenths(71), units, "", siemens, {}},
+    {'G', tenths(71, 1), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(71, 2), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(72), motion, "XYZQDIR", linuxcnc, {}},
     {'G', tenths(72), action, "XYZIJL", haas, {}},
-    {'G', tenths(73), cycle, "XYZRQLPK", mills, {}},
-    {'G', tenths(74), cycle, "XYZRQLPK", linuxcnc, no_cycle},
+    {'G', tenths(72, 1), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(72, 2), motion, "XYZQDIR", linuxcnc, {}},
+    {'G', tenths(73), cycle, "XYZRQL", linuxcnc, {}},
+    {'G', tenths(73), cycle, "XYZRQLPK", fanuc, {}},
+    {'G', tenths(74), cycle, "XYZRLP", linuxcnc, {}},
     {'G', tenths(74), cycle, "XYZRQLPKJ", fanuc, {}},
     {'G', tenths(74), action, "XYZ", siemens, {}},
     {'G', tenths(75), action, "XYZ", siemens, {}},
-    {'G', tenths(76), cycle, "XYZRQLPIJK", linuxcnc, no_cycle},
+    {'G', tenths(76), cycle, "XYZRQLPIJKHE", linuxcnc, {}},
     {'G', tenths(76), cycle, "XYZRQLPIJK", fanuc, {}},
     {'G', tenths(77), cycle, "XYZRQLPIJ", haas, {}},
     {'G', tenths(80), cycle, "", every, {}},
-    {'G', tenths(81), cycle, "XYZRLK", mills, {}},
-    {'G', tenths(82), cycle, "XYZRLPK", mills, {}},
-    {'G', tenths(83), cycle, "XYZRLQPK", mills, {}},
-    {'G', tenths(84), cycle, "XYZRLPQK", linuxcnc, no_cycle},
+    {'G', tenths(81), cycle, "XYZRL", linuxcnc, {}},
+    {'G', tenths(81), cycle, "XYZRLK", fanuc, {}},
+    {'G', tenths(82), cycle, "XYZRLP", linuxcnc, {}},
+    {'G', tenths(82), cycle, "XYZRLPK", fanuc, {}},
+    {'G', tenths(83), cycle, "XYZRLQ", linuxcnc, {}},
+    {'G', tenths(83), cycle, "XYZRLQPK", fanuc, {}},
+    {'G', tenths(84), cycle, "XYZRLP", linuxcnc, {}},
     {'G', tenths(84), cycle, "XYZRLPQKJ", fanuc, {}},
-    {'G', tenths(85), cycle, "XYZRLK", mills, {}},
-    {'G', tenths(86), cycle, "XYZRLPK", mills, {}},
-    {'G', tenths(87), cycle, "XYZRLPIJKQ", linuxcnc, no_cycle},
+    {'G', tenths(85), cycle, "XYZRL", linuxcnc, {}},
+    {'G', tenths(85), cycle, "XYZRLK", fanuc, {}},
+    {'G', tenths(86), cycle, "XYZRLP", linuxcnc, {}},
+    {'G', tenths(86), cycle, "XYZRLPK", fanuc, {}},
+    {'G', tenths(87), cycle, "XYZRLIJK", linuxcnc, {}},
     {'G', tenths(87), cycle, "XYZRLPIJKQ", fanuc, {}},
-    {'G', tenths(88), cycle, "XYZRLPK", linuxcnc, no_cycle},
+    {'G', tenths(88), cycle, "XYZRLP", linuxcnc, {}},
     {'G', tenths(88), cycle, "XYZRLPK", fanuc, {}},
-    {'G', tenths(89), cycle, "XYZRLPK", mills, {}},
+    {'G', tenths(89), cycle, "XYZRLP", linuxcnc, {}},
+    {'G', tenths(89), cycle, "XYZRLPK", fanuc, {}},
     {'G', tenths(90), distance, "", every | siemens, {}},
     {'G', tenths(90, 1), arc_distance, "", linuxcnc, {}},
     {'G', tenths(91), distance, "", every | siemens, {}},

@@ -95,6 +95,22 @@ core::Result<void> end_path(Contour& contour) {
     return {};
 }
 
+/// Fanuc controls look a few blocks ahead. Where too many of them do not move in the plane, the
+/// tool ends beside the end of the move before them, and cuts into an inside corner.
+void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
+    constexpr size_t harmless = 1;
+    const RadiusCompensation& path = *contour.path;
+    const bool stays = !move.arc && move.end == path.programmed;
+    if (!path.extends_corners || path.waiting.empty() || stays) return;
+    const size_t before = path.waiting.front().id / commands_of_a_block;
+    if (number <= before + 1 + harmless) return;
+    contour.pending.back().result.warnings.push_back(
+        {Severity::warning, move.where,
+         fmt::format("{} blocks without a move in the plane stand before this one: a control that "
+                     "looks no farther ahead than that cuts into an inside corner here",
+                     number - before - 1)});
+}
+
 /// One motion of the block that was pushed last.
 core::Result<void> take_motion(Contour& contour, size_t index) {
     PendingBlock& block = contour.pending.back();
@@ -112,6 +128,7 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
                      .where = where};
     if (const auto* arc = std::get_if<ArcFeed>(&command))
         move.arc = FlatArc{{arc->centre[0], arc->centre[1]}, arc->turns};
+    warn_of_blocks_between(contour, number, move);
     FEELER_TRY(const CompensatedMoves moves, add_move(*contour.path, move));
     block.slots[index].is_waiting = true;
     for (const CompensatedMove& done : moves) place_move(contour, done);
@@ -130,6 +147,7 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
     const ContourSide side =
         after.compensation == Side::left ? ContourSide::left : ContourSide::right;
     contour.path = begin_compensation(side, after.compensation_radius, *at);
+    contour.path->extends_corners = contour.style == ContourStyle::fanuc;
     return {};
 }
 
@@ -151,25 +169,15 @@ core::Result<void> take_commands(Contour& contour, const BlockResult& block,
     return {};
 }
 
-} // namespace
-
-bool Contour::operator==(const Contour& other) const {
-    const auto place = [](const Contour& contour) {
-        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
-    };
-    return place(*this) == place(other) && pending.size() == other.pending.size()
-           && ready.size() == other.ready.size()
-           && failure.has_value() == other.failure.has_value();
-}
-
-core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
-                              const ModalState& after) {
+core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
+                                     const ModalState& before, const ModalState& after) {
     const bool on = after.compensation != Side::none && after.compensation_radius != 0.0;
     const bool changed = before.compensation != after.compensation
                          || before.compensation_radius != after.compensation_radius;
-    if (contour.path && (!on || changed))
+    const bool pauses = std::exchange(contour.pauses, false);
+    if (contour.path && (!on || changed || pauses))
         if (auto ended = end_path(contour); !ended) return ended;
-    if (on && !contour.path)
+    if (on && !contour.path && !pauses)
         if (auto begun = begin_path(contour, before, after, block); !begun) return begun;
     if (contour.pending.size() >= most_pending)
         return core::fail(core::ErrorCode::invalid_value,
@@ -184,7 +192,41 @@ core::Result<void> take_block(Contour& contour, const BlockResult& block, const 
     return {};
 }
 
+core::Result<void> take_all(Contour& contour, const std::vector<ExecutedBlock>& blocks) {
+    for (const ExecutedBlock& block : blocks)
+        if (auto taken = take_with_corners(contour, block.result, block.before, block.after);
+            !taken)
+            return taken;
+    return {};
+}
+
+} // namespace
+
+bool Contour::operator==(const Contour& other) const {
+    const auto place = [](const Contour& contour) {
+        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
+    };
+    return corners == other.corners && place(*this) == place(other)
+           && pending.size() == other.pending.size() && ready.size() == other.ready.size()
+           && failure.has_value() == other.failure.has_value();
+}
+
+core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
+                              const ModalState& after) {
+    if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
+    FEELER_TRY(const std::vector<ExecutedBlock> ready,
+               take_for_corners(contour.corners, {block, before, after}));
+    return take_all(contour, ready);
+}
+
+core::Result<void> end_contour(Contour& contour) {
+    auto ended = end_corners(contour.corners);
+    give_up(contour);
+    return ended;
+}
+
 void give_up(Contour& contour) {
+    (void)take_all(contour, give_up_corners(contour.corners));
     if (contour.path) {
         for (const CompensatedMove& move : contour.path->waiting) place_move(contour, move);
         contour.path.reset();

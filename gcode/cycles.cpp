@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/rs274_cycles.h"
+
 namespace gcode {
 namespace {
 
@@ -32,7 +34,9 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
 /// I, J or K of a cycle that shifts the tool; K may be how often the cycle is repeated.
 const Word* shift_word(const Execution& execution, int code, size_t axis) {
     if (hole_pattern(execution)) return nullptr;
-    const bool shifts = code == tenths(76) || works_from_the_back(execution.dialect, code);
+    const bool bores_back = execution.dialect.cycles_are_rs274 && code == tenths(87);
+    const bool shifts =
+        code == tenths(76) || bores_back || works_from_the_back(execution.dialect, code);
     if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
     return execution.statement.word("IJK"[axis]);
 }
@@ -67,6 +71,9 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
         if (const Word* word = shift_word(execution, cycle.code, i))
             cycle.shift[i] = length_of(execution, *word);
     if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
+    if (execution.dialect.cycles_are_rs274)
+        if (auto checked = check_rs274_cycle(execution, cycle); !checked)
+            return tl::unexpected(std::move(checked).error());
     return cycle;
 }
 
@@ -144,11 +151,12 @@ void peck(Drilling& hole, bool out_of_the_hole) {
     const double stretch = stretch_along(hole.execution, hole.normal);
     const double back = hole.execution.dialect.peck_clearance / stretch;
     const double step = *hole.cycle.peck / stretch;
+    const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
     for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
         hole.feed(depth);
         const bool too_low = hole.clear && *hole.clear < hole.r;
-        if (out_of_the_hole) hole.traverse(too_low ? hole.r : hole.clear);
-        hole.traverse(std::min(depth + back, hole.r));
+        if (out_of_the_hole) hole.traverse(too_low || !stays_low ? hole.r : hole.clear);
+        hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
     }
     hole.feed(hole.bottom);
 }
@@ -164,17 +172,18 @@ void bore_with_stop(Drilling& hole) {
 
 /// G85 and G89 come out as they went in; on some controls up to R only.
 void feed_out(Drilling& hole) {
-    if (hole.execution.dialect.boring_feeds_to_r) {
+    const bool only_bores = hole.cycle.code == tenths(85);
+    const Dialect& rules = hole.execution.dialect;
+    if (rules.boring_feeds_to_r || (rules.cycles_are_rs274 && only_bores)) {
         hole.feed(hole.r);
         if (hole.clear != hole.r) hole.traverse(hole.clear);
-    } else if (hole.clear) {
-        hole.feed(*hole.clear);
     } else {
-        hole.traverse(hole.clear);
+        hole.feed(hole.clear);
     }
 }
 
 void drill(Drilling& hole) {
+    const bool rs274 = hole.execution.dialect.cycles_are_rs274;
     switch (hole.cycle.code) {
     case tenths(73):
     case tenths(83):
@@ -198,13 +207,17 @@ void drill(Drilling& hole) {
         return;
     case tenths(74):
     case tenths(84):
-        tap(hole);
+        rs274 ? tap_with_reversal(hole) : tap(hole);
         return;
     case tenths(76):
     case tenths(77):
-    case tenths(87):
-    case tenths(88):
         bore(hole);
+        return;
+    case tenths(87):
+        rs274 ? bore_back_to_middle(hole) : bore(hole);
+        return;
+    case tenths(88):
+        rs274 ? bore_and_stop(hole) : bore(hole);
         return;
     default: // G81
         hole.feed(hole.bottom);
@@ -218,7 +231,7 @@ core::Result<int> repeats_of(const Execution& execution) {
     const Word* word = execution.statement.word('L');
     if (!word && execution.dialect.repeats_with_k) word = execution.statement.word('K');
     if (!word) return 1;
-    return whole_number(*word, 0, 10000);
+    return whole_number(*word, execution.dialect.cycles_are_rs274 ? 1 : 0, 10000);
 }
 
 /// To the next hole, and down to R.
@@ -229,16 +242,23 @@ void approach(Drilling& hole, const Position& target) {
     Position over = execution.modal().position;
     over[hole.first] = target[hole.first];
     over[hole.second] = target[hole.second];
+    const bool only_climbs = execution.dialect.cycles_are_rs274 && over[hole.normal];
+    const double lowest = only_climbs ? std::max(*over[hole.normal], hole.r) : 0.0;
     if (climbs && hole.clear) over[hole.normal] = hole.clear;
+    if (only_climbs) over[hole.normal] = std::max(*over[hole.normal], lowest);
     execution.traverse(over);
     const bool upwards = works_from_the_back(execution.dialect, hole.cycle.code);
     if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
 }
 
-/// The same step again, for the holes of L under G91.
-void advance(Position& target, const Position& step) {
+/// The same step again, for the holes of L under G91; of polar words, about the origin.
+core::Result<Position> next_hole(const Execution& execution, Position target,
+                                 const Position& step) {
+    if (execution.statement.polar_radius || execution.statement.polar_angle)
+        return target_of(execution);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (target[axis] && step[axis]) *target[axis] += *step[axis];
+    return target;
 }
 
 Position step_between(const Position& from, const Position& to) {
@@ -257,14 +277,18 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, normal));
     FEELER_TRY(const int repeats, repeats_of(execution));
     modal.cycle = cycle;
+    modal.cycle_dwell = cycle.dwell.value_or(modal.cycle_dwell);
     execution.result.is_cycle = true;
     if (repeats == 0) return {};
     FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
 
     // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R. Elsewhere the way to the
     // hole is made at the level the axis has.
-    const bool is_low = modal.position[normal] && *modal.position[normal] < hole.r;
+    const bool rs274 = execution.dialect.cycles_are_rs274;
+    const std::optional<double> level = rs274 ? cycle.initial_level : modal.position[normal];
+    const bool is_low = level && *level < hole.r;
     if (is_low && execution.dialect.cycle_stays_above_r) hole.traverse(hole.r);
+    if (rs274) begin_exact_path(execution);
     if (const CodeWord* pattern = hole_pattern(execution)) {
         FEELER_TRY(const std::vector<Position> holes,
                    holes_of_pattern(execution, *pattern, target));
@@ -280,13 +304,16 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     for (int repeat = 0; repeat < repeats; ++repeat) {
         approach(hole, target);
         drill(hole);
-        advance(target, step);
+        if (repeat + 1 < repeats) {
+            FEELER_TRY(target, next_hole(execution, target, step));
+        }
         if (execution.result.commands.size() > most_commands)
             return core::fail(ErrorCode::invalid_value,
                               fmt::format("G{}: this block makes more than {} moves",
                                           cycle.code / 10, most_commands),
                               moving_word(execution).span);
     }
+    if (rs274) end_exact_path(execution);
     return {};
 }
 

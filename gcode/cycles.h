@@ -20,7 +20,7 @@ struct Drilling {
         end[normal] = level;
         execution.traverse(end);
     }
-    void feed(double level) {
+    void feed(std::optional<double> level) {
         Position end = execution.modal().position;
         end[normal] = level;
         execution.feed(end, rate);

@@ -43,7 +43,8 @@ void note_points(const Block& block, InterpreterState& state, BlockResult& resul
                          "are taken as whole units; a control set to count its smallest steps "
                          "makes them a thousandth or less",
                          written(word), word.has_point ? "a" : "no",
-                         word.has_point ? "none" : "one")});
+                         word.has_point ? "none" : "one"),
+             "missing-decimal-point", "Write every length with a decimal point."});
         return;
     }
 }
@@ -57,7 +58,7 @@ void count_smallest_steps(Block& block, const ModalState& modal) {
     const bool turns = has_code(block, 'G', [](double code) { return code == 68.0; });
     for (Word& word : block.words) {
         if (word.has_point || word.expression) continue;
-        if (std::string_view("XYZABCUVWIJKRQ").find(word.letter) == std::string_view::npos)
+        if (std::string_view("XYZABCUVWIJKRQrc").find(word.letter) == std::string_view::npos)
             continue;
         if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && calls)) continue;
         const bool angle =

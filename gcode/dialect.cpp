@@ -39,11 +39,14 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .dwell_without_point_is_milliseconds = false,
                               .dwell_takes_x_and_u = false,
                               .bare_length_offset_is_tool = true,
+                              .cycles_are_rs274 = true,
+                              .motion_codes_move = true,
                               .cycles_are_motions = true,
                               .axis_words_serve_one_code = true,
                               .unused_words_are_errors = true,
                               .machine_move_is_rapid = false,
                               .machine_move_needs_g90 = false,
+                              .length_needs_g43 = true,
                               .lone_h_is_length_offset = false,
                               .p_names_more_places = false,
                               .local_offset_is_axis_offset = true,
@@ -67,6 +70,9 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .tool_entries_by_axes = true,
                               .arc_after_contour_is_error = true,
                               .contour_breaks_are_errors = true,
+                              .contour_codes = ContourCodes::rs274,
+                              .contour_style = ContourStyle::rs274,
+                              .radius_number_stays = false,
                               .has_active_comments = true,
                               .has_o_words = true,
                               .has_fanuc_flow = false,
@@ -80,6 +86,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .repeats_in_program_number = false,
                               .calls_stand_alone = true,
                               .decimal_points_matter = false,
+                              .assumed_feed = 0.0,
                               .system_parameters = SystemParameters::rs274,
                               .parameter_letter = "#",
                               .has_parameter_zero = false,
@@ -90,7 +97,10 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .radius_word = "R",
                               .first_alarm = 0,
                               .local_count = 30,
-                              .deepest_calls = 10};
+                              .deepest_calls = 10,
+                              .same_offset_stays = true,
+                              .offset_writes_miss_axis_offset = true,
+                              .surface_speed_needs_s = true};
 
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
@@ -103,11 +113,14 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .dwell_without_point_is_milliseconds = true,
                            .dwell_takes_x_and_u = true,
                            .bare_length_offset_is_tool = false,
+                           .cycles_are_rs274 = false,
+                           .motion_codes_move = false,
                            .cycles_are_motions = false,
                            .axis_words_serve_one_code = false,
                            .unused_words_are_errors = false,
                            .machine_move_is_rapid = true,
                            .machine_move_needs_g90 = true,
+                           .length_needs_g43 = true,
                            .lone_h_is_length_offset = true,
                            .p_names_more_places = true,
                            .local_offset_is_axis_offset = false,
@@ -131,6 +144,9 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .tool_entries_by_axes = false,
                            .arc_after_contour_is_error = true,
                            .contour_breaks_are_errors = false,
+                           .contour_codes = ContourCodes::fanuc,
+                           .contour_style = ContourStyle::fanuc,
+                           .radius_number_stays = true,
                            .has_active_comments = false,
                            .has_o_words = false,
                            .has_fanuc_flow = true,
@@ -144,6 +160,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .repeats_in_program_number = true,
                            .calls_stand_alone = false,
                            .decimal_points_matter = true,
+                           .assumed_feed = 0.0,
                            .system_parameters = SystemParameters::fanuc,
                            .parameter_letter = "#",
                            .has_parameter_zero = false,
@@ -154,12 +171,16 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .radius_word = "R",
                            .first_alarm = 3000,
                            .local_count = 33,
-                           .deepest_calls = 15};
+                           .deepest_calls = 15,
+                           .same_offset_stays = false,
+                           .offset_writes_miss_axis_offset = false,
+                           .surface_speed_needs_s = false};
 
 constexpr Dialect haas = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::haas;
     entry.name = "haas";
+    entry.contour_style = ContourStyle::rs274;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.diameters_in_tool_entries = true;
@@ -172,10 +193,15 @@ constexpr Dialect haas = [] {
     return entry;
 }();
 
+// Grbl 0.8: defaults.h, DEFAULT_FEEDRATE.
+constexpr double grbl_feed = 250.0;
+
 constexpr Dialect grbl = [] {
     Dialect entry = linuxcnc;
     entry.id = DialectId::grbl;
     entry.name = "grbl";
+    entry.assumed_feed = grbl_feed;
+    entry.length_needs_g43 = false;
     entry.unit_is_machines = false;
     entry.arc = grbl_arc;
     entry.local_offset_is_axis_offset = false;
@@ -183,6 +209,7 @@ constexpr Dialect grbl = [] {
     entry.feed_before_units = false;
     entry.tool_entries_by_axes = false;
     entry.has_active_comments = false;
+    entry.motion_codes_move = false;
     entry.has_o_words = false;
     entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;
@@ -200,6 +227,9 @@ constexpr Dialect heidenhain = [] {
     Dialect entry = fanuc;
     entry.id = DialectId::heidenhain;
     entry.name = "heidenhain";
+    entry.contour_style = ContourStyle::rs274;
+    entry.radius_number_stays = false;
+    entry.length_needs_g43 = false;
     entry.arc = heidenhain_arc;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;

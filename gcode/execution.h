@@ -50,6 +50,12 @@ double axis_value(const Execution& execution, size_t axis, const Word& word);
 /// Where the axis words lead, axis by axis, in program coordinates.
 core::Result<Position> target_of(const Execution& execution);
 
+/// Lets a straight move whose direction `,A` gives, degrees from the plane's first axis, end on its
+/// line.
+///
+/// Errors: missing_value, invalid_value, syntax or unsupported where no single end follows.
+core::Result<void> place_by_angle(const Execution& execution, Position& target);
+
 /// The length of a straight way as feed rates count it: of X, Y and Z; of U, V and W where these
 /// stand; else of the rotary axes, in degrees. Empty where an end is not known.
 std::optional<double> way_between(const Position& from, const Position& to);
@@ -63,6 +69,11 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 /// Lets a change of offsets leave the machine where it is: program coordinates move instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
 void change_offsets(ModalState& modal, const Offsets& offsets);
+
+/// Carries out a block of codes and words, each kind in its turn.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+core::Result<void> take_steps(Execution& execution);
 
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
@@ -91,6 +102,7 @@ core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
 core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
 core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
+core::Result<void> ask_for_corner(Execution& execution);        // ,R ,C
 core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
 core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
 
@@ -110,6 +122,17 @@ core::Result<void> probe(Execution& execution);                      // G38.2 to
 core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
 core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
 core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
+
+/// The diameter in the control's table that a block's D word means, mm; 0 with a warning where
+/// nothing is known of it.
+core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
+
+/// G12, G13: the tool goes down in the middle, out by a half circle, round, and back to the middle,
+/// where it stays. With K and Q more circles follow, each Q larger. Where on the circle the control
+/// begins is not published and changes nothing of what is cut.
+///
+/// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
+core::Result<void> mill_circular_pocket(Execution& execution);
 
 /// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
 /// work offset; L3, L50, L52: warned of and passed over.

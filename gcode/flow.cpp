@@ -34,6 +34,11 @@ private:
     tl::unexpected<core::Error> refuse(std::string message) const {
         return core::fail(ErrorCode::syntax, std::move(message), step_.block.flow.span);
     }
+    tl::unexpected<core::Error> refuse_in_repeat(std::string_view word) const {
+        return refuse(fmt::format("the control refuses '{}' in a 'repeat' loop: make it a 'while' "
+                                  "or 'do' loop",
+                                  word));
+    }
     void set_line(uint32_t line) { step_.state.next = {source_, line}; }
     void go_behind(uint32_t line) { set_line(line + 1); }
     Frame& frame() { return step_.state.frames.back(); }
@@ -46,6 +51,10 @@ private:
         return condition_holds(block, parameters_, step_.dialect);
     }
 
+    core::Result<void> check_skipped(uint32_t up_to) const;
+    core::Result<Block> read_line(uint32_t line) const;
+    void warn_of_second_use() const;
+    core::Result<void> end_if_statement();
     core::Result<void> skip_sub();
     core::Result<void> call_sub();
     core::Result<void> give_back();
@@ -82,6 +91,9 @@ core::Result<const FlowMark*> Flowing::partner(std::initializer_list<FlowKind> k
                                                std::string_view wanted) const {
     const FlowMark* found = ahead ? index_.next(line_, scope_, name_, kinds)
                                   : index_.previous(line_, scope_, name_, kinds);
+    if (ahead)
+        if (auto read = check_skipped(found ? found->line : UINT32_MAX); !read)
+            return tl::unexpected(std::move(read).error());
     if (found) return found;
     return refuse(
         fmt::format("'{}' of {} is missing {} it", wanted, name_, ahead ? "behind" : "before"));
@@ -96,10 +108,57 @@ core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> ki
 
 /// The lines of a subprogram are run when it is called, not when they are come across.
 core::Result<void> Flowing::skip_sub() {
+    const FlowMark* first = index_.first(sub, name_);
+    if (first->line != line_)
+        return refuse(fmt::format("there are two subprograms {}, the other one begins in line {}: "
+                                  "the control stops here",
+                                  name_, first->line));
     const FlowMark* end = index_.next(line_, 0, name_, {end_sub});
+    if (!end)
+        if (auto read = check_skipped(UINT32_MAX); !read) return read;
+    for (const FlowMark& mark : index_.marks) {
+        const bool inside = mark.line > line_ && (!end || mark.line < end->line);
+        if (inside && (mark.kind == sub || mark.kind == program_number))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("a subprogram begins here inside of {}, which begins in "
+                                          "line {}: end that one with endsub before",
+                                          name_, line_),
+                              {.line = mark.line, .column = 1});
+    }
     if (!end) return refuse(fmt::format("the subprogram {} has no endsub", name_));
+    if (auto read = check_skipped(end->line); !read) return read;
     go_behind(end->line);
     return {};
+}
+
+/// O words are read in what is skipped as well: the first that cannot be is refused.
+core::Result<void> Flowing::check_skipped(uint32_t up_to) const {
+    for (const FlowMark& mark : index_.marks) {
+        if (mark.line <= line_ || mark.kind != none) continue;
+        if (mark.line >= up_to) return {};
+        if (auto read = read_line(mark.line); !read) return tl::unexpected(std::move(read).error());
+    }
+    return {};
+}
+
+core::Result<Block> Flowing::read_line(uint32_t line) const {
+    Block block;
+    const std::string_view text = step_.library.program(source_).line(line);
+    if (auto parsed = parse_line(text, line, step_.dialect, block); !parsed)
+        return tl::unexpected(std::move(parsed).error());
+    return block;
+}
+
+/// A label may be used by one statement of a program or subprogram.
+void Flowing::warn_of_second_use() const {
+    const FlowMark* other =
+        index_.previous(line_, scope_, name_, {if_branch, while_loop, do_loop, repeat});
+    if (!other || other->closes_do_loop) return;
+    step_.result.warnings.push_back(
+        {Severity::warning, step_.block.flow.span,
+         fmt::format("the label {} is that of line {} already: the control stops here if that "
+                     "line was run; use another one",
+                     name_, other->line)});
 }
 
 core::Result<void> Flowing::call_sub() {
@@ -143,6 +202,10 @@ core::Result<void> Flowing::give_back() {
     parameters.set_named("_value", value.value_or(0.0));
     parameters.set_named("_value_returned", value ? 1.0 : 0.0);
     const ModalState before = step_.state.modal;
+    if (frame().restores && *frame().saved)
+        for (const std::string& loss : losses_of_restoring(before, **frame().saved))
+            step_.result.warnings.push_back(
+                {Severity::warning, step_.block.flow.span, "M73: " + loss});
     leave(step_.state);
     announce_modes(step_.result, step_.block.flow.span.column, before, step_.state.modal);
     return {};
@@ -155,18 +218,30 @@ core::Result<void> Flowing::take_branch() {
     uint32_t line = line_;
     while (true) {
         const FlowMark* mark = index_.next(line, scope_, name_, {else_if, otherwise, end_if});
+        if (auto read = check_skipped(mark ? mark->line : UINT32_MAX); !read) return read;
         if (!mark) return refuse(fmt::format("'endif' of {} is missing behind it", name_));
         line = mark->line;
         if (mark->kind == else_if) {
-            Block block;
-            const std::string_view text = step_.library.program(source_).line(line);
-            if (auto parsed = parse_line(text, line, step_.dialect, block); !parsed) return parsed;
+            FEELER_TRY(const Block block, read_line(line));
             FEELER_TRY(taken, holds(block));
             if (!taken) continue;
         }
         go_behind(line);
         return {};
     }
+}
+
+/// `endif`, and `elseif` and `else` behind a branch that was run.
+core::Result<void> Flowing::end_if_statement() {
+    if (!index_.previous(line_, scope_, name_, {if_branch}))
+        return refuse(fmt::format("there is no 'if' of {} before", name_));
+    if (step_.block.flow.kind == end_if) return {};
+    // The control works the condition out even when it does not need it.
+    if (step_.block.flow.kind == else_if) {
+        FEELER_TRY(const bool unused, holds(step_.block));
+        (void)unused;
+    }
+    return go_behind_partner({end_if}, true, "endif");
 }
 
 /// The head of a loop, or the end of a do loop.
@@ -201,9 +276,7 @@ core::Result<void> Flowing::end_repeat_statement() {
 core::Result<void> Flowing::leave_loop() {
     FEELER_TRY(const FlowMark* const end,
                partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
-    if (end->kind == end_repeat)
-        if (const FlowMark* head = index_.previous(line_, scope_, name_, {repeat}))
-            frame().repeats.erase(head->line);
+    if (end->kind == end_repeat) return refuse_in_repeat("break");
     go_behind(end->line);
     return {};
 }
@@ -211,6 +284,7 @@ core::Result<void> Flowing::leave_loop() {
 core::Result<void> Flowing::continue_loop_early() {
     FEELER_TRY(const FlowMark* const end,
                partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
+    if (end->kind == end_repeat) return refuse_in_repeat("continue");
     set_line(end->line);
     return {};
 }
@@ -245,10 +319,12 @@ core::Result<void> Flowing::run() {
     case end_sub:
         return give_back();
     case if_branch:
+        warn_of_second_use();
         return take_branch();
     case else_if:
     case otherwise:
-        return go_behind_partner({end_if}, true, "endif");
+    case end_if:
+        return end_if_statement();
     case while_loop:
         return while_statement();
     case end_while: {
@@ -289,7 +365,6 @@ core::Result<void> run_flow(const FlowStep& step) {
     if (step.dialect.language == Language::siemens) return run_siemens_flow(step);
     switch (step.block.flow.kind) {
     case do_loop:
-    case end_if:
     case program_number:
         return {}; // says where something is; not worth an index of all lines
     default:
@@ -315,60 +390,6 @@ std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, 
     }
     if (const auto ahead = index.line_of_number(number, from + 1, end)) return ahead;
     return index.line_of_number(number, begin, from + 1);
-}
-
-core::Result<void> enter(InterpreterState& state, const Environment& environment, Frame frame,
-                         core::SourceSpan where) {
-    const size_t own = dialect(environment.dialect).deepest_calls;
-    const size_t deepest = environment.limits.calls ? environment.limits.calls : own;
-    if (state.frames.size() > deepest)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("calls go deeper than the {} levels this control has: does "
-                                      "a subprogram call itself without end?",
-                                      deepest),
-                          where);
-    state.next = frame.begin;
-    state.frames.push_back(std::move(frame));
-    return {};
-}
-
-void leave(InterpreterState& state) {
-    Frame& frame = state.frames.back();
-    if (frame.rounds_left > 0) {
-        --frame.rounds_left;
-        frame.repeats.clear();
-        if (frame.again) frame.locals = *frame.again;
-        state.next = frame.begin;
-        return;
-    }
-    leave_to(state, frame.called_from.line + 1);
-}
-
-void leave_to(InterpreterState& state, uint32_t line) {
-    Frame& frame = state.frames.back();
-    if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
-    // Fanuc B-64304, modal call: the local variables are not set anew for each call.
-    if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
-        state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
-    state.next = {frame.called_from.source, line};
-    state.frames.pop_back();
-}
-
-core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
-    constexpr uint64_t interval = 16; // jumps between two looks
-    const bool back = state.next.source != from.source || state.next.line <= from.line;
-    LoopWatch& watch = state.watch;
-    if (!back || ++watch.jumps % interval != 0) return {};
-    const uint64_t now = digest_of(state);
-    if (now == watch.noted && watch.next_note > 1)
-        return core::fail(ErrorCode::invalid_value,
-                          "the program never ends: it comes back here in exactly the same state, "
-                          "so it will do so again",
-                          {.line = from.line, .column = 1});
-    if (watch.jumps / interval < watch.next_note) return {};
-    watch.noted = now;
-    watch.next_note *= 2;
-    return {};
 }
 
 } // namespace gcode

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/flow_parser.h"
 #include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
 #include "gcode/parser.h"
@@ -36,6 +37,13 @@ std::string label_of(double number) { return fmt::format("{:.12g}", number); }
 namespace {
 
 bool is_program_number(char c) { return upper(c) == 'O' || c == ':'; }
+
+/// What an O word is whose line goes on with something that cannot be read.
+bool parse_head(Lexer lexer, const Dialect& dialect, Block& block) {
+    if (!dialect.has_o_words || upper(lexer.peek()) != 'O') return false;
+    block = {};
+    return parse_flow_head(lexer, dialect, block).value_or(false) && block.flow.has_label;
+}
 
 bool may_begin_flow(char c) {
     return std::string_view("OIWDEG:").find(upper(c)) != std::string_view::npos && c != '\0';
@@ -116,7 +124,13 @@ FlowIndex index_of(const Program& program, const Dialect& dialect) {
             }
             continue;
         }
-        if (!parse_line(program.line(number), line, dialect, block)) continue;
+        if (!parse_line(program.line(number), line, dialect, block)
+            && !parse_head(lexer, dialect, block)) {
+            // Refused when it is skipped.
+            if (dialect.has_o_words && upper(lexer.peek()) == 'O')
+                index.marks.push_back({FlowKind::none, {}, line, scope});
+            continue;
+        }
         if (block.flow.kind == FlowKind::none) continue;
         FlowMark mark{.kind = block.flow.kind, .line = line, .scope = scope};
         if (block.flow.has_label) mark.name = block.pool.names[block.flow.label_name];

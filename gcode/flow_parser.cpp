@@ -36,8 +36,8 @@ constexpr Keyword o_keywords[] = {{"SUB", FlowKind::sub},
 
 class FlowParser {
 public:
-    FlowParser(Lexer& lexer, const Dialect& dialect, Block& block)
-        : lexer_(lexer), dialect_(dialect), block_(block) {}
+    FlowParser(Lexer& lexer, const Dialect& dialect, Block& block, bool only_head)
+        : lexer_(lexer), dialect_(dialect), block_(block), only_head_(only_head) {}
 
     core::Result<bool> parse() {
         const char letter = upper(lexer_.peek());
@@ -90,7 +90,9 @@ private:
         }
         Number plain;
         FEELER_TRY(flow().label, parse_value(lexer_, dialect_.expressions, block_.pool, plain));
-        if (!flow().label) set_label(label_of(plain.value));
+        if (flow().label) return {};
+        is_broken_ = plain.value != std::floor(plain.value);
+        set_label(label_of(plain.value));
         return {};
     }
 
@@ -102,9 +104,15 @@ private:
                               "as sub, call, if or while",
                               lexer_.span_from(begin_));
         }
+        if (is_broken_)
+            return refuse(fmt::format("'{}': the number of an O word is whole",
+                                      lexer_.line.substr(begin_, lexer_.at - begin_)));
         const std::string letters = lexer_.letters();
         for (const Keyword& keyword : o_keywords) {
-            if (letters != keyword.spelling) continue;
+            const bool fits = only_head_ ? std::string_view(letters).starts_with(keyword.spelling)
+                                         : letters == keyword.spelling;
+            if (!fits) continue;
+            if (only_head_) return finish(keyword.kind);
             lexer_.accept_word(keyword.spelling);
             return o_arguments(keyword.kind);
         }
@@ -176,6 +184,8 @@ private:
     Lexer& lexer_;
     const Dialect& dialect_;
     Block& block_;
+    const bool only_head_;
+    bool is_broken_ = false; // the label has a fraction
     size_t begin_ = 0;
 };
 
@@ -184,7 +194,11 @@ private:
 core::Result<bool> parse_flow(Lexer& lexer, const Dialect& dialect, Block& block) {
     const char letter = upper(lexer.peek());
     if (std::string_view("OIGWDE").find(letter) == std::string_view::npos) return false;
-    return FlowParser(lexer, dialect, block).parse();
+    return FlowParser(lexer, dialect, block, false).parse();
+}
+
+core::Result<bool> parse_flow_head(Lexer& lexer, const Dialect& dialect, Block& block) {
+    return FlowParser(lexer, dialect, block, true).parse();
 }
 
 } // namespace gcode

@@ -215,9 +215,9 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
     if (std::abs(first) == std::abs(second)) return {};
     const Word& mover = moving_word(execution);
     return core::fail(ErrorCode::unsupported,
-                      fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}, and controls do "
-                                  "not agree on what becomes of an arc then: scale both alike, or "
-                                  "write the arc as lines",
+                      fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}, and the scaled "
+                                  "centre is not that of an arc between the scaled ends: scale "
+                                  "both alike, or write the arc with R",
                                   written(mover), axis_letters[axes.first], first,
                                   axis_letters[axes.second], second),
                       mover.span);

@@ -21,42 +21,6 @@ namespace {
 
 using core::ErrorCode;
 
-using Step = core::Result<void> (*)(Execution&);
-
-// NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
-constexpr Step steps[] = {
-    check_words,
-    note_assumed_units,
-    say_message,
-    set_feed_mode,
-    set_feed,
-    set_speed,
-    set_spindle_mode,
-    select_tool,
-    switch_machine,
-    change_tool,
-    turn_spindle,
-    save_or_restore_modes,
-    set_coolant,
-    set_overrides,
-    dwell,
-    select_plane,
-    set_units,
-    set_diameter_mode,
-    set_cutter_radius,
-    set_tool_length,
-    select_offset,
-    set_path_mode,
-    set_distance_mode,
-    set_retract_mode,
-    set_frame,
-    act,
-    move,
-    stop,
-    call,
-    leave_iso,
-};
-
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
     return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
@@ -113,12 +77,11 @@ Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& sta
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     while (true) {
         const Program& program = library.program(state.next.source);
-        FEELER_TRY(const bool is_there, program.has_line(state.next.line));
-        if (!is_there) return false;
+        FEELER_TRY(const auto found, program.find_line(state.next.line));
+        if (!found) return false;
         const uint32_t number = state.next.line++;
-        std::string_view text = dialect.language == Language::klartext
-                                    ? klartext_block(program, number)
-                                    : program.line(number);
+        std::string_view text =
+            dialect.language == Language::klartext ? klartext_block(program, number) : *found;
         if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
         if (program.windows) text = line_text.assign(text); // flow statements look at other lines
         if (environment.block_delete && is_deleted(text)) continue;
@@ -229,8 +192,9 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     Execution execution{library, environment, dialect, block, statement, state, result};
     if (dialect.language == Language::klartext) return run_klartext(execution);
     if (dialect.language == Language::siemens) return run_siemens(execution);
-    for (const Step step : steps)
-        if (auto done = step(execution); !done) return done;
+    if (auto taken = take_steps(execution); !taken) return taken;
+    look_for_regrets(execution, before.modal);
+    if (state.siemens->is_iso) return leave_iso(execution);
     return {};
 }
 
@@ -310,7 +274,7 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         if (found && *found)
             taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
         else if (found)
-            give_up(contour);
+            taken = end_contour(contour);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch.take_back(state);

@@ -16,6 +16,7 @@
 #include "gcode/klartext_state.h"
 #include "gcode/parameters.h"
 #include "gcode/program_library.h"
+#include "gcode/rules.h"
 #include "gcode/shared.h"
 #include "gcode/siemens_state.h"
 #include "gcode/source.h"
@@ -64,6 +65,7 @@ struct InterpreterState {
     Shared<KlartextState> klartext;
     Shared<SiemensState> siemens;
     LoopWatch watch;
+    RuleWatch rules;
 
     bool operator==(const InterpreterState&) const = default;
 };

@@ -6,13 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "gcode/short_number.h"
+
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
-
-constexpr std::array powers_of_ten = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                      1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 /// The characters of a number without its blanks, and where it ends.
 struct Digits {
@@ -44,38 +43,6 @@ Digits collect_digits(std::string_view line, size_t begin) {
         found.text[found.count++] = c;
     }
     return found;
-}
-
-/// Digits that make a whole number below 2^53 and a power of ten below 10^16: both are exact, so
-/// their quotient is rounded once, as the general way rounds it.
-bool read_short_number(std::string_view line, size_t& at, Number& number, bool blanks_end) {
-    size_t next = at;
-    const bool negative = next < line.size() && line[next] == '-';
-    if (next < line.size() && (line[next] == '-' || line[next] == '+')) ++next;
-    uint64_t digits = 0;
-    int count = 0, behind_point = 0;
-    bool point = false;
-    for (; next < line.size(); ++next) {
-        const char c = line[next];
-        if (is_digit(c)) {
-            digits = digits * 10 + static_cast<uint64_t>(c - '0');
-            ++count;
-            behind_point += point;
-        } else if (c == '.' && !point) {
-            point = true;
-        } else {
-            break;
-        }
-        if (count > 15) return false;
-    }
-    const bool at_end = next >= line.size();
-    if (count == 0 || (!at_end && ((is_blank(line[next]) && !blanks_end) || line[next] == '.')))
-        return false;
-    const double size =
-        static_cast<double>(digits) / powers_of_ten[static_cast<size_t>(behind_point)];
-    number = {negative ? -size : size, point};
-    at = next;
-    return true;
 }
 
 /// Klartext and Siemens: only behind the sign may blanks stand.
@@ -140,15 +107,19 @@ bool Lexer::is_at_number() {
     return is_digit(c) || c == '.' || c == '-' || c == '+';
 }
 
+tl::unexpected<core::Error> Lexer::bad_exponent(size_t begin) const {
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format("the exponent of '{}' is no whole number up to 300", written_from(begin)),
+        span_from(begin));
+}
+
 core::Result<Number> Lexer::number() {
     peek();
     const size_t begin = at;
-    if (Number number; !comma_is_point && read_short_number(line, at, number, blanks_end_numbers)) {
+    if (Number number; !comma_is_point && read_short_number(line, at, number)) {
         if (!has_exponents || take_exponent(line, at, number)) return number;
-        return core::fail(
-            ErrorCode::syntax,
-            fmt::format("the exponent of '{}' is no whole number up to 300", written_from(begin)),
-            span_from(begin));
+        return bad_exponent(begin);
     }
     const Digits found = blanks_end_numbers
                              ? collect_digits_without_blanks(line, begin, comma_is_point)
@@ -163,6 +134,7 @@ core::Result<Number> Lexer::number() {
     Number number{.has_point = found.has_point};
     std::from_chars(found.text.data(), found.text.data() + found.count, number.value,
                     std::chars_format::fixed);
+    if (has_exponents && !take_exponent(line, at, number)) return bad_exponent(begin);
     return number;
 }
 

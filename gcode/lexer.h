@@ -17,7 +17,9 @@ struct Number {
 
 constexpr bool is_blank(char c) {
     // Control characters that reach a line are the harmless ones of old tapes.
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == 0x1A;
+    constexpr uint64_t blanks = uint64_t{1} << ' ' | uint64_t{1} << '\t' | uint64_t{1} << '\v'
+                                | uint64_t{1} << '\f' | uint64_t{1} << 0x1A;
+    return static_cast<unsigned char>(c) <= ' ' && (blanks >> c & 1);
 }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
@@ -72,6 +74,7 @@ struct Lexer {
     ///
     /// Errors: syntax when there is none, or it has too many digits.
     core::Result<Number> number();
+    tl::unexpected<core::Error> bad_exponent(size_t begin) const;
 
     /// The comment in brackets that begins here, which ends at the bracket that matches.
     ///

@@ -110,22 +110,26 @@ core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text)
 
 /// Whether a stretch can be part of an NC program.
 core::Result<void> LineWindows::check(const Window& window) const {
-    size_t controls = 0;
-    uint64_t line = window.first_line;
-    for (size_t i = 0; i < window.starts.size(); ++i, ++line) {
-        const std::string_view text = window.line(line);
-        if (text.size() > longest_line)
+    const std::string_view text = window.text;
+    for (size_t i = 0; i < window.starts.size(); ++i) {
+        const size_t end = i + 1 < window.starts.size() ? window.starts[i + 1] : text.size();
+        if (end - window.starts[i] <= longest_line) continue;
+        const uint64_t line = window.first_line + i;
+        if (window.line(line).size() > longest_line)
             return tl::unexpected(refusal(
                 ErrorCode::syntax,
                 fmt::format("has a line {} of more than {} characters; break it into blocks", line,
                             longest_line),
                 line));
-        if (text.find('\0') != std::string_view::npos)
-            return tl::unexpected(refusal(ErrorCode::syntax,
-                                          "holds NUL bytes: it is a binary file, not an NC program",
-                                          line));
-        controls += static_cast<size_t>(std::count_if(text.begin(), text.end(), is_stray_control));
     }
+    if (const size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        const auto behind = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
+        return tl::unexpected(
+            refusal(ErrorCode::syntax, "holds NUL bytes: it is a binary file, not an NC program",
+                    window.first_line + static_cast<uint64_t>(behind - window.starts.begin()) - 1));
+    }
+    const auto controls =
+        static_cast<size_t>(std::count_if(text.begin(), text.end(), is_stray_control));
     if (looks_binary(controls, window.text.size()))
         return tl::unexpected(
             refusal(ErrorCode::syntax, "is a binary file, not an NC program", window.first_line));

@@ -51,13 +51,16 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
     const ModalState& modal = state.modal;
     const int tool = modal.tool ? value_of(*modal.tool) : 0;
     if (number == tool_number) return static_cast<double>(tool);
-    if (is_axis_of(number, first_tool_offset)) {
-        const auto axis = static_cast<size_t>(number - first_tool_offset);
-        return shown(modal.offsets.tool[axis], axis, environment.machine_unit);
-    }
     const auto entry = state.tables->lengths.find(core::OffsetNumber(tool));
     const LengthOffset known =
         entry != state.tables->lengths.end() ? entry->second : LengthOffset{};
+    // Of the tool in the spindle, whatever offset is on.
+    if (is_axis_of(number, first_tool_offset)) {
+        const auto axis = static_cast<size_t>(number - first_tool_offset);
+        const double value =
+            axis == 2 ? length_under(*state.tables, tool).value_or(0.0) : known.shift[axis];
+        return shown(tool == 0 ? 0.0 : value, axis, environment.machine_unit);
+    }
     if (number == tool_diameter)
         return from_mm(diameter_under(*state.tables, tool).value_or(0.0), environment.machine_unit);
     if (number == tool_front) return known.front_deg;
@@ -157,7 +160,7 @@ constexpr Named named_values[] = {
     {"_selected_tool",
      [](const InterpreterState& s) {
          const auto& tool = s.modal.selected_tool;
-         return tool ? static_cast<double>(value_of(*tool)) : -1.0;
+         return tool ? static_cast<double>(value_of(*tool)) : 0.0;
      }},
     {"_line", [](const InterpreterState& s) { return static_cast<double>(s.next.line) - 1.0; }},
     {"_call_level",
@@ -179,7 +182,7 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     if (is_axis_of(number, first_home)) return of_position(modal.home, number, first_home, unit);
     if (is_axis_of(number, second_home))
         return of_position(modal.second_home, number, second_home, unit);
-    if (number == g92_is_on) return truth(modal.offsets.axis != zero_position);
+    if (number == g92_is_on) return truth(modal.axis_offset_on);
     if (is_axis_of(number, first_g92))
         return of_position(modal.suspended_axis, number, first_g92, unit);
     if (number == active_offset) return static_cast<double>(modal.offsets.active + 1);

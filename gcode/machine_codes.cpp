@@ -106,6 +106,8 @@ core::Result<void> save_or_restore_modes(Execution& execution) {
                                   "M72 has no modes to restore: M70 did not save any on this level",
                                   entry.word->span);
             const ModalState before = state.modal;
+            for (const std::string& loss : losses_of_restoring(before, **frame.saved))
+                execution.warn(entry.word->span, "M72: " + loss);
             restore_modes(state, **frame.saved);
             announce_modes(execution.result, entry.word->span.column, before, state.modal);
         } else {

@@ -8,6 +8,7 @@
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
 #include "gcode/program_transforms.h"
+#include "gcode/spline.h"
 
 namespace gcode {
 
@@ -53,6 +54,14 @@ struct CannedCycle {
     bool operator==(const CannedCycle&) const = default;
 };
 
+/// What the blocks of splines leave behind for one another.
+struct SplineState {
+    NurbsGathering gathering{}; // since G5.2
+    SplinePoint next_tangent{}; // I and J of a G5 that has none
+
+    bool operator==(const SplineState&) const = default;
+};
+
 /// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
 ///
 /// Lengths are stored in mm whatever G20/G21 says. What the program has not yet defined is empty,
@@ -80,6 +89,7 @@ struct ModalState {
     Position position;                       // tool tip, program coordinates
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // kept by G92.2 for G92.3
+    bool axis_offset_on = false;             // G92 or G52 holds, be it zero
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
     double speed = 0.0;         // rev/min, or m/min under G96
@@ -89,12 +99,21 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
     std::optional<core::OffsetNumber> length_number;
+    int radius_number = 0;    // the D said last, where it stays
     double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
     Offsets offsets;
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
     // Siemens: in which the last motion of the plane ended; 0, 0 when that is not known.
     std::array<double, 2> direction{};
+
+    /// Whether the length offset that is on is that of the tool in the spindle.
+    bool length_is_tools() const {
+        return length_sign != 0.0 && tool && length_number
+               && core::value_of(*length_number) == core::value_of(*tool);
+    }
+    double cycle_dwell = 0.0; // s, P of the last canned cycle
+    SplineState spline;
 
     bool operator==(const ModalState&) const = default;
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/rs274_cycles.h"
 
 namespace gcode {
 
@@ -63,10 +64,35 @@ core::Result<void> set_speed(Execution& execution) {
     return {};
 }
 
+namespace {
+
+/// M19 R P Q: an angle, the way there and the longest time for it.
+core::Result<void> check_orientation(const Execution& execution, const CodeWord& entry) {
+    if (entry.code->tenths != tenths(19)) return {};
+    const Word* angle = execution.statement.word('R');
+    if (angle && (angle->value < 0.0 || angle->value > 360.0))
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: the angle of M19 is from 0 to 360 degrees", written(*angle)),
+            angle->span);
+    const Word* way = execution.statement.word('P');
+    if (way && way->value != 0.0 && way->value != 1.0 && way->value != 2.0
+        && execution.dialect.surface_speed_needs_s)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: M19 takes P0 for the shortest way, P1 for clockwise or "
+                                      "P2 for counterclockwise",
+                                      written(*way)),
+                          way->span);
+    return {};
+}
+
+} // namespace
+
 core::Result<void> turn_spindle(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::spindle);
     if (!entry) return {};
     ModalState& modal = execution.modal();
+    if (auto checked = check_orientation(execution, *entry); !checked) return checked;
     switch (entry->code->tenths) {
     case tenths(3):
         modal.spindle = core::SpindleDirection::clockwise;
@@ -154,7 +180,18 @@ core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry) return {};
     const bool inch = entry->code->tenths == tenths(20);
-    execution.modal().unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    const LengthUnit unit = inch ? LengthUnit::inch : LengthUnit::mm;
+    if (execution.modal().cycle && execution.dialect.cycles_are_rs274)
+        keep_numbers(*execution.modal().cycle, execution.modal().unit, unit);
+    const bool changes = unit != execution.modal().unit;
+    const bool has_offset = execution.modal().offsets.tool != AxisValues{};
+    if (changes && has_offset && execution.dialect.system_parameters == SystemParameters::rs274)
+        execution.warn(entry->word->span,
+                       fmt::format("{} while a tool length offset is on: LinuxCNC goes on with its "
+                                   "number in the new units, so the next G43, G49 or G28 leads to "
+                                   "another place than here; say G49 before",
+                                   written(*entry->word)));
+    execution.modal().unit = unit;
     execution.modal().unit_said = true;
     return {};
 }
@@ -201,6 +238,12 @@ core::Result<void> set_spindle_mode(Execution& execution) {
     if (!entry) return {};
     ModalState& modal = execution.modal();
     modal.surface_speed = entry->code->tenths == tenths(96);
+    if (modal.surface_speed && execution.dialect.surface_speed_needs_s
+        && !execution.statement.word('S'))
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs the surface speed as S in the same block", written(*entry->word)),
+            entry->word->span);
     const Word* fastest = execution.statement.word('D');
     modal.fastest_speed = modal.surface_speed && fastest ? std::abs(fastest->value) : 0.0;
     execution.column = entry->word->span.column;
@@ -212,38 +255,6 @@ core::Result<void> set_diameter_mode(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::diameter);
     if (entry) execution.modal().diameter_mode = entry->code->tenths == tenths(7);
     return {};
-}
-
-void announce_modes(BlockResult& result, uint32_t column, const ModalState& before,
-                    const ModalState& after) {
-    const auto say = [&](CanonicalCommand command) {
-        result.commands.push_back(std::move(command));
-        result.columns.push_back(column);
-    };
-    if (before.plane != after.plane) say(SelectPlane{after.plane});
-    if (before.path != after.path || before.path_tolerance != after.path_tolerance
-        || before.naive_tolerance != after.naive_tolerance)
-        say(SetPathMode{after.path, after.path_tolerance, after.naive_tolerance});
-    if (before.speed != after.speed && after.spindle != core::SpindleDirection::stopped)
-        say(Spindle{after.spindle, after.speed});
-}
-
-void restore_modes(InterpreterState& state, const ModalState& saved) {
-    ModalState& modal = state.modal;
-    modal.unit = saved.unit;
-    modal.plane = saved.plane;
-    modal.distance = saved.distance;
-    modal.arc_distance = saved.arc_distance;
-    modal.feed_mode = saved.feed_mode;
-    modal.feed = saved.feed;
-    modal.speed = saved.speed;
-    modal.retract = saved.retract;
-    modal.path = saved.path;
-    modal.path_tolerance = saved.path_tolerance;
-    modal.naive_tolerance = saved.naive_tolerance;
-    modal.diameter_mode = saved.diameter_mode;
-    modal.surface_speed = saved.surface_speed;
-    modal.fastest_speed = saved.fastest_speed;
 }
 
 } // namespace gcode

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -5,6 +6,7 @@
 
 #include "gcode/execution.h"
 #include "gcode/frame_codes.h"
+#include "gcode/motion_codes.h"
 
 namespace gcode {
 namespace {
@@ -32,7 +34,21 @@ bool moves_by_radius_and_angle(const Execution& execution) {
                || execution.statement.word(axis_letters[axes.second]));
 }
 
+/// Where a control goes on with a feed of its own, the first feed without F takes that.
+void assume_feed(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const double assumed = execution.dialect.assumed_feed;
+    if (modal.feed || assumed == 0.0 || modal.feed_mode != FeedMode::per_minute) return;
+    const Word& mover = moving_word(execution);
+    execution.warn(mover.span,
+                   fmt::format("{}: no F word came before this feed: Grbl 1.1 stops here (error "
+                               "22), older ones take {:g} mm/min, which is taken here too",
+                               written(mover), assumed));
+    modal.feed = assumed;
+}
+
 core::Result<void> move_straight(Execution& execution, bool rapid) {
+    if (!rapid) assume_feed(execution);
     FEELER_TRY(const Position end, target_of(execution));
     if (rapid) {
         execution.traverse(end);
@@ -44,14 +60,62 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     return {};
 }
 
+/// A motion code without a place to go to, where that is a move to where the machine stands.
+bool stands_alone(const Execution& execution) {
+    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
+    return execution.dialect.motion_codes_move && motion
+           && (is_straight(motion->code->tenths) || is_arc(motion->code->tenths));
+}
+
+/// G2 alone, of which nobody knows where it leads.
+core::Result<void> refuse_lone_arc(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const CodeWord* motion = statement.of(ModalGroup::motion);
+    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->tenths)) return {};
+    for (const char letter : {'I', 'J', 'K', 'R'})
+        if (statement.word(letter)) return {};
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} has no centre: say I, J or K, or the radius as R; if no arc "
+                                  "is meant here, leave the code out",
+                                  written(*motion->word)),
+                      motion->word->span);
+}
+
 /// Whether the block has words that make the active motion move.
 bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
+    if (!statement.has_axis_word() && stands_alone(execution)) return true;
     if (statement.taker_of_axis_words()) return false;
     if (statement.has_axis_word()) return true;
+    if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
     const bool arc = !modal.cycle && is_arc(modal.motion);
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
+}
+
+/// Whether a motion code is for its block only: G5, G5.1, G5.3, G70 to G72.
+bool acts_once(int code) {
+    return code == tenths(5) || code == tenths(5, 1) || code == tenths(5, 3)
+           || (code >= tenths(70) && code < tenths(73));
+}
+
+/// Begins with a motion code, or goes on with none.
+void set_motion(ModalState& modal, std::optional<MotionCode> motion) {
+    if (modal.motion == tenths(5, 2) && motion != modal.motion) modal.spline.gathering = {};
+    modal.motion = motion;
+}
+
+/// Another cycle begins with words of its own, but counts from the same level.
+void forget_words(CannedCycle& cycle) {
+    CannedCycle fresh;
+    fresh.initial_level = cycle.initial_level;
+    cycle = fresh;
+}
+
+/// Codes that other ones may not share a block with, even without axis words.
+bool wants_axes_alone(const CodeWord& taker) {
+    constexpr int codes[] = {tenths(10), tenths(28), tenths(30), tenths(52), tenths(92)};
+    return std::find(std::begin(codes), std::end(codes), taker.code->tenths) != std::end(codes);
 }
 
 /// G0 to G3 and the cycles become modal, even when another code takes the axis words.
@@ -62,24 +126,29 @@ core::Result<void> set_motion_mode(Execution& execution) {
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
     const CodeWord* motion = statement.of(ModalGroup::motion);
     const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
-    const bool homes = taker && taker->code->tenths != tenths(4) && statement.has_axis_word();
+    const bool homes = taker && taker->code->tenths != tenths(4)
+                       && (statement.has_axis_word() || wants_axes_alone(*taker));
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
         return core::fail(ErrorCode::syntax,
                           fmt::format("{} and {} both want the axis words of this block: write two "
                                       "blocks",
                                       written(*taker->word), written(*mover->word)),
                           mover->word->span);
-    if (motion) {
-        modal.motion = motion->code->tenths;
+    if (motion && !acts_once(motion->code->tenths)) {
+        set_motion(modal, motion->code->tenths);
         modal.cycle.reset();
     }
     if (!cycle) return {};
-    if (execution.dialect.cycles_are_motions && !motion) modal.motion.reset();
+    if (execution.dialect.cycles_are_motions && !motion) set_motion(modal, {});
     if (cycle->code->tenths == tenths(80)) {
         modal.cycle.reset();
         return {};
     }
-    if (!modal.cycle) modal.cycle = CannedCycle{};
+    const int code = cycle->code->tenths;
+    if (!modal.cycle)
+        modal.cycle = CannedCycle{};
+    else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
+        forget_words(*modal.cycle);
     modal.cycle->code = cycle->code->tenths;
     return {};
 }
@@ -110,12 +179,25 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     return move_straight(execution, modal.motion == tenths(0));
 }
 
+core::Result<void> act_once(Execution& execution, int code) {
+    if (code >= tenths(70)) return turn_contour(execution);
+    return code == tenths(5, 3) ? finish_spline(execution) : follow_spline(execution);
+}
+
 core::Result<void> move_as_modes_say(Execution& execution) {
     const ModalState& modal = execution.modal();
+    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
+    if (motion && acts_once(motion->code->tenths)) return act_once(execution, motion->code->tenths);
+    const bool threads = modal.cycle && modal.cycle->code == tenths(76);
+    if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return refuse_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    if (is_arc(modal.motion)) return move_along_arc(execution);
+    if (is_arc(modal.motion)) {
+        assume_feed(execution);
+        return move_along_arc(execution);
+    }
+    if (modal.motion == tenths(5, 2)) return gather_control_point(execution);
     return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
@@ -225,6 +307,8 @@ core::Result<Position> target_of(const Execution& execution) {
         else if (target[axis])
             *target[axis] += value;
     }
+    if (auto placed = place_by_angle(execution, target); !placed)
+        return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;
@@ -259,7 +343,9 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)
         return refuse("G93 gives no feed rate here, where the motion starts is unknown");
-    if (inverse) return *modal.feed * *path_length;
+    const bool has_slowest = execution.dialect.system_parameters == SystemParameters::rs274;
+    const double slowest = has_slowest ? to_mm(0.1, modal.unit) : 0.0; // a minute
+    if (inverse) return std::max(slowest, *modal.feed * *path_length);
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
         return refuse("G95 gives no feed rate here, the spindle does not turn");
     return *modal.feed * modal.speed;
@@ -267,6 +353,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 
 core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
+    if (auto checked = refuse_lone_arc(execution); !checked) return checked;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
     if (!has_motion_words(execution) && !cycle_words) return {};
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);

@@ -44,7 +44,11 @@ void write_origin(const Execution& execution, WorkOffset& offset) {
 core::Result<void> write_origin_here(const Execution& execution, WorkOffset& offset) {
     const ModalState& modal = execution.modal();
     const Position machine = machine_from_program(modal.offsets, modal.position);
-    if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
+    if (const Word* word = execution.statement.word('R'))
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: G10 L20 does not turn an offset, L2 does", written(*word)),
+            word->span);
     Offsets there = modal.offsets;
     there.work = offset;
     Position read = program_from_machine(there, machine);
@@ -133,6 +137,31 @@ void use(Execution& execution, const Offsets& offsets) {
     execution.emit(SetOffset{offsets});
 }
 
+/// After G10 LinuxCNC works out where it stands as if there were no G92 or G52. Where the offset is
+/// turned otherwise than before, it is then wrong about it.
+///
+/// Source: rs274 2.9, probed.
+void use_written_offset(Execution& execution, const CodeWord& entry) {
+    ModalState& modal = execution.modal();
+    const Offsets before = modal.offsets;
+    Offsets offsets = before;
+    offsets.work = in_effect(*execution.state.tables, offsets.active);
+    const bool turned = before.work.rotation_deg != offsets.work.rotation_deg;
+    const bool shifted = before.axis[0] != 0.0 || before.axis[1] != 0.0;
+    if (!execution.dialect.offset_writes_miss_axis_offset || !turned || !shifted)
+        return use(execution, offsets);
+    Offsets plain_before = before, plain = offsets;
+    plain_before.axis = plain.axis = zero_position;
+    modal.position =
+        program_from_machine(plain, machine_from_program(plain_before, modal.position));
+    modal.offsets = offsets;
+    execution.emit(SetOffset{offsets});
+    execution.warn(entry.word->span,
+                   "G10 turns the work offset while G92 or G52 is on: the control is wrong about "
+                   "where it stands now, and axes that the next move does not name move as well; "
+                   "say G92.1 before");
+}
+
 } // namespace
 
 void change_offsets(Execution& execution, const Offsets& offsets) {
@@ -167,7 +196,9 @@ core::Result<void> select_offset(Execution& execution) {
     if (!entry) return {};
     Offsets offsets = execution.modal().offsets;
     FEELER_TRY(offsets.active, selected_offset(execution, *entry));
-    offsets.work = in_effect(*execution.state.tables, offsets.active);
+    const bool stays =
+        execution.dialect.same_offset_stays && offsets.active == execution.modal().offsets.active;
+    if (!stays) offsets.work = in_effect(*execution.state.tables, offsets.active);
     use(execution, offsets);
     return {};
 }
@@ -180,6 +211,13 @@ core::Result<void> write_offset(Execution& execution) {
                           "G10 does not say what to write: it needs L2 "
                           "or L20",
                           entry.word->span);
+    if (kind->value == 0.0 && execution.dialect.tool_entries_by_axes) {
+        execution.warn(kind->span,
+                       "G10 L0 reads the control's tool table again, which is taken "
+                       "as unchanged",
+                       Severity::note);
+        return {};
+    }
     const bool is_tool = kind->value == 1.0 || kind->value == 10.0 || kind->value == 11.0;
     if (is_tool && execution.dialect.tool_entries_by_axes)
         return write_tool_entry(execution, static_cast<int>(kind->value));
@@ -201,13 +239,28 @@ core::Result<void> write_offset(Execution& execution) {
                           kind->span);
     if (auto checked = check_turn(execution); !checked) return checked;
     if (auto done = write_work_offset(execution, entry, *kind); !done) return done;
-    Offsets offsets = execution.modal().offsets;
-    offsets.work = in_effect(*execution.state.tables, offsets.active);
-    use(execution, offsets);
+    use_written_offset(execution, entry);
     return {};
 }
 
+namespace {
+
+/// G92 and G52 without an axis.
+core::Result<void> need_an_axis(const Execution& execution) {
+    if (execution.statement.has_axis_word() || !execution.dialect.local_offset_is_axis_offset)
+        return {};
+    const Word& word = *execution.statement.of(ModalGroup::action)->word;
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} does not say of which axis: it needs an axis word{}",
+                                  written(word),
+                                  word.value == 92.0 ? ", or G92.1 to clear all" : ""),
+                      word.span);
+}
+
+} // namespace
+
 core::Result<void> set_local_offset(Execution& execution) {
+    if (auto checked = need_an_axis(execution); !checked) return checked;
     Offsets offsets = execution.modal().offsets;
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
@@ -218,8 +271,10 @@ core::Result<void> set_local_offset(Execution& execution) {
         else
             offsets.local[axis] = value;
     }
-    if (execution.dialect.local_offset_is_axis_offset)
+    if (execution.dialect.local_offset_is_axis_offset) {
         execution.modal().suspended_axis = offsets.axis;
+        execution.modal().axis_offset_on = true;
+    }
     use(execution, offsets);
     return {};
 }
@@ -232,18 +287,20 @@ core::Result<void> set_axis_offset(Execution& execution) {
                           "G92 cannot be used in coordinates that are scaled, reflected or turned: "
                           "cancel that first with G50, G50.1 or G69",
                           execution.statement.of(ModalGroup::action)->word->span);
-    switch (execution.statement.of(ModalGroup::action)->code->tenths) {
+    const int code = execution.statement.of(ModalGroup::action)->code->tenths;
+    modal.axis_offset_on = code == tenths(92) || code == tenths(92, 3);
+    switch (code) {
     case tenths(92, 1):
         offsets.axis = modal.suspended_axis = zero_position;
         break;
     case tenths(92, 2):
-        modal.suspended_axis = offsets.axis;
-        offsets.axis = zero_position;
+        offsets.axis = zero_position; // what G92 said stays for G92.3
         break;
     case tenths(92, 3):
         offsets.axis = modal.suspended_axis;
         break;
     default:
+        if (auto checked = need_an_axis(execution); !checked) return checked;
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const Word* word = execution.statement.word(axis_letters[axis]);
             if (!word) continue;

@@ -1,5 +1,7 @@
 #include "gcode/parameters.h"
 
+#include <algorithm>
+
 #include "gcode/digest.h"
 
 namespace gcode {
@@ -39,6 +41,18 @@ void Parameters::set_named(std::string_view name, Value value) {
         found->second = *value;
     else if (value)
         named_.emplace(name, *value);
+}
+
+bool Parameters::operator==(const Parameters& other) const {
+    if (digest_ != other.digest_ || named_ != other.named_) return false;
+    const size_t common = std::min(numbered_.size(), other.numbered_.size());
+    const auto is_unset = [](const Value& value) { return !value; };
+    return std::equal(numbered_.begin(), numbered_.begin() + static_cast<std::ptrdiff_t>(common),
+                      other.numbered_.begin())
+           && std::all_of(numbered_.begin() + static_cast<std::ptrdiff_t>(common), numbered_.end(),
+                          is_unset)
+           && std::all_of(other.numbered_.begin() + static_cast<std::ptrdiff_t>(common),
+                          other.numbered_.end(), is_unset);
 }
 
 } // namespace gcode

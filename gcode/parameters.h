@@ -32,6 +32,9 @@ public:
     }
     void set_numbered(int number, Value value);
 
+    /// How many numbered ones there is room for.
+    size_t numbered_count() const { return numbered_.size(); }
+
     /// `#<_name>`
     const NamedValues& named() const { return named_; }
     void set_named(std::string_view name, Value value); // an empty value takes it away
@@ -39,7 +42,8 @@ public:
     /// Follows from the values, in no time.
     uint64_t digest() const { return digest_; }
 
-    bool operator==(const Parameters&) const = default;
+    /// One that was never set equals one that was set and taken away again.
+    bool operator==(const Parameters& other) const;
 
 private:
     std::vector<Value> numbered_; // grows as needed

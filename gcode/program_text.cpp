@@ -4,11 +4,12 @@ namespace gcode {
 
 std::vector<uint32_t> starts_of_lines(std::string_view text) {
     std::vector<uint32_t> starts;
-    bool is_start = true;
-    for (size_t at = 0; at < text.size(); ++at) {
-        if (is_start) starts.push_back(static_cast<uint32_t>(at));
-        const char c = text[at];
-        is_start = c == '\n' || (c == '\r' && !text.substr(at + 1).starts_with('\n'));
+    const bool has_returns = text.find('\r') != std::string_view::npos;
+    for (size_t at = 0; at < text.size();) {
+        starts.push_back(static_cast<uint32_t>(at));
+        const size_t end = has_returns ? text.find_first_of("\r\n", at) : text.find('\n', at);
+        if (end == std::string_view::npos) break;
+        at = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
     }
     return starts;
 }

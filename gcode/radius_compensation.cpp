@@ -134,8 +134,11 @@ core::Result<void> check_direction(const RadiusCompensation& compensation, FlatP
     return refusal(compensation.waiting_where,
                    fmt::format("the tool, of radius {:g} mm, does not fit beside this move: the "
                                "inside corners at its ends take more than its whole length; take "
-                               "a smaller tool, or make the move longer",
-                               compensation.radius));
+                               "a smaller tool, or make the move longer{}",
+                               compensation.radius,
+                               compensation.extends_corners
+                                   ? "; the control stops with an alarm (PS0041 on Fanuc)"
+                                   : ""));
 }
 
 /// Puts the move, at its end as far as that is known, in the place of what waited.
@@ -170,7 +173,21 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
                                compensation.radius, radius));
 }
 
+/// Fanuc's entry ends beside the start of the move after it, wherever that is.
+core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
+                                              const ContourMove& move) {
+    if (move.arc)
+        return refusal(move.where, "the first move under cutter radius compensation must be a "
+                                   "straight line; the control stops with an alarm (PS0034 on "
+                                   "Fanuc)");
+    const FlatPoint heading = direction(move.end - compensation.programmed);
+    wait_with(compensation, move, move.end + beside(compensation, heading), {});
+    compensation.entered = compensation.entering = true;
+    return CompensatedMoves{};
+}
+
 core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const ContourMove& move) {
+    if (compensation.extends_corners) return enter_straight(compensation, move);
     const double way = length(move.end - compensation.programmed);
     if (way <= compensation.radius)
         return refusal(move.where,
@@ -201,10 +218,49 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     return CompensatedMoves{};
 }
 
-core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const ContourMove& move) {
-    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
-    const Corner corner = corner_before(compensation, move);
-    const Bend bend = bend_of(compensation, corner, move);
+void add_straight(CompensatedMoves& moves, const ContourMove& move, FlatPoint end) {
+    moves.push_back(
+        {.id = move.id, .rapid = move.rapid, .rounds_corner = true, .end = end, .arc = {}});
+}
+
+/// Fanuc's way round an outside corner: on along both tangents to where they meet, or, where the
+/// contour comes back by more than a right angle, by the tool's radius and straight across.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, 6.6.3, "Tool movement around the outside of a
+///         corner", linear connection (parameter 19607#2 = 0).
+core::Result<CompensatedMoves> pass_straight(RadiusCompensation& compensation, const Corner& corner,
+                                             const ContourMove& move) {
+    const double cosine = dot(corner.arriving, corner.leaving);
+    const bool sharp = cosine < 0.0;
+    const double beyond = sharp ? compensation.radius
+                                : compensation.radius * std::sqrt((1.0 - cosine) / (1.0 + cosine));
+    const FlatPoint out = corner.tool_arriving + beyond * corner.arriving;
+    const FlatPoint back = corner.tool_leaving - beyond * corner.leaving;
+    const bool after_arc = compensation.waiting.front().arc.has_value();
+    const FlatPoint end = after_arc ? corner.tool_arriving : out;
+    if (auto kept = check_direction(compensation, end); !kept) return tl::unexpected(kept.error());
+    CompensatedMoves moves = end_waiting(compensation, end);
+    if (after_arc) add_straight(moves, move, out);
+    if (sharp) add_straight(moves, move, back);
+    if (move.arc) add_straight(moves, move, corner.tool_leaving);
+    compensation.reached = move.arc ? corner.tool_leaving : sharp ? back : out;
+    return moves;
+}
+
+/// LinuxCNC's way round an outside corner: an arc, or a straight line before a rapid.
+CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corner,
+                            const ContourMove& move) {
+    CompensatedMoves moves = end_waiting(compensation, corner.tool_arriving);
+    add_straight(moves, move, corner.tool_leaving);
+    const int turns = compensation.side == ContourSide::left ? -1 : 1;
+    if (!move.rapid) moves.back().arc = FlatArc{corner.at, turns};
+    compensation.reached = corner.tool_leaving;
+    return moves;
+}
+
+/// Ends what waits where the contour goes on as it came, or bends towards the tool.
+core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, const Corner& corner,
+                                           Bend bend, const ContourMove& move) {
     FlatPoint met = corner.tool_arriving;
     if (bend == Bend::inside) {
         const auto both = touching_both(compensation, corner, move);
@@ -216,21 +272,33 @@ core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const Con
                                        compensation.radius));
         met = *both;
     }
-    if (bend == Bend::inside || (bend == Bend::outside && !move.arc)) {
+    if (bend == Bend::inside || compensation.extends_corners)
         if (auto kept = check_direction(compensation, met); !kept)
             return tl::unexpected(kept.error());
+    return end_waiting(compensation, met);
+}
+
+/// Ends what waits, and leads the tool to where the next move begins.
+core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corner& corner,
+                                    const ContourMove& move) {
+    if (compensation.extends_corners && compensation.entering) {
+        CompensatedMoves moves = end_waiting(compensation, corner.tool_leaving);
+        moves.front().turned_round = false; // an entry may lead anywhere
+        return moves;
     }
-    CompensatedMoves moves = end_waiting(compensation, met);
-    if (bend == Bend::outside) {
-        const int turns = compensation.side == ContourSide::left ? -1 : 1;
-        moves.push_back({.id = move.id,
-                         .rapid = move.rapid,
-                         .rounds_corner = true,
-                         .end = corner.tool_leaving,
-                         .arc = {}});
-        if (!move.rapid) moves.back().arc = FlatArc{corner.at, turns};
-        compensation.reached = corner.tool_leaving;
-    }
+    const Bend bend = bend_of(compensation, corner, move);
+    if (bend != Bend::outside) return stay_inside(compensation, corner, bend, move);
+    if (compensation.extends_corners) return pass_straight(compensation, corner, move);
+    if (!move.arc)
+        if (auto kept = check_direction(compensation, corner.tool_arriving); !kept)
+            return tl::unexpected(kept.error());
+    return pass_round(compensation, corner, move);
+}
+
+core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const ContourMove& move) {
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const Corner corner = corner_before(compensation, move);
+    FEELER_TRY(const CompensatedMoves moves, join(compensation, corner, move));
     const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : corner.leaving;
     wait_with(compensation, move, move.end + beside(compensation, heading), move.arc);
     compensation.entering = false;
@@ -247,9 +315,13 @@ RadiusCompensation begin_compensation(ContourSide side, double radius, FlatPoint
 core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const ContourMove& move) {
     RadiusCompensation next = compensation;
     core::Result<CompensatedMoves> moves;
-    if (!compensation.entered) {
+    const bool goes_nowhere = !move.arc && move.end == compensation.programmed;
+    if (!compensation.entered && goes_nowhere && compensation.extends_corners) {
+        moves = CompensatedMoves{
+            {.id = move.id, .rapid = move.rapid, .end = compensation.tool, .arc = {}}};
+    } else if (!compensation.entered) {
         moves = enter(next, move);
-    } else if (!move.arc && move.end == compensation.programmed) {
+    } else if (goes_nowhere) {
         next.waiting.push_back({.id = move.id, .rapid = move.rapid, .end = next.tool, .arc = {}});
     } else {
         moves = go_on(next, move);

@@ -47,12 +47,13 @@ using CompensatedMoves = std::vector<CompensatedMove>;
 /// they wait behind the move that waits, and happen where it will end.
 struct RadiusCompensation {
     ContourSide side = ContourSide::left;
-    double radius = 0.0;   // mm, positive
-    FlatPoint programmed;  // where the program is
-    FlatPoint tool;        // where the tool's centre would be if nothing followed
-    FlatPoint reached;     // where the moves that are final have brought it
-    bool entered = false;  // the entry move was made
-    bool entering = false; // and is the one that waits
+    double radius = 0.0;          // mm, positive
+    bool extends_corners = false; // Fanuc: straight on at outside corners, else round
+    FlatPoint programmed;         // where the program is
+    FlatPoint tool;               // where the tool's centre would be if nothing followed
+    FlatPoint reached;            // where the moves that are final have brought it
+    bool entered = false;         // the entry move was made
+    bool entering = false;        // and is the one that waits
 
     CompensatedMoves waiting{}; // a move in the plane, then those without motion in it
     FlatPoint waiting_way{};    // of the first of them, as programmed

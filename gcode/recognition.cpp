@@ -97,6 +97,7 @@ constexpr std::array candidates = {DialectId::linuxcnc, DialectId::fanuc, Dialec
 /// What the whole program has or lacks.
 struct Habits {
     std::array<size_t, candidates.size()> first_unknown{}; // line of a G code not in that dialect
+    std::array<size_t, candidates.size()> unknown_count{}; // of G codes
     size_t first_length_offset = 0;                        // G43 with H
     size_t first_crowd = 0; // G28 or a cycle with a motion code in one block
     bool has_tape_mark = false;
@@ -118,17 +119,30 @@ void observe(const Block& block, Habits& habits) {
         moves |= g && word.value <= 3.0;
         offset_number |= word.letter == 'H';
         habits.changes_tools |= word.letter == 'T' || (word.letter == 'M' && word.value == 6.0);
-        for (size_t i = 0; g && i < candidates.size(); ++i)
-            remember(habits.first_unknown[i], !find_code('G', word.value, candidates[i]),
-                     block.line);
+        for (size_t i = 0; g && i < candidates.size(); ++i) {
+            const bool unknown = !find_code('G', word.value, candidates[i]);
+            habits.unknown_count[i] += unknown;
+            remember(habits.first_unknown[i], unknown, block.line);
+        }
     }
     remember(habits.first_length_offset, length && offset_number, block.line);
     remember(habits.first_crowd, homes && moves, block.line);
 }
 
+/// A program of a control that is not read here: the dialect that knows most of its codes.
+Recognition clue_of_foreign_codes(const Habits& habits) {
+    const bool fanuc = habits.unknown_count[1] < habits.unknown_count[0];
+    const size_t index = fanuc ? 1 : 0;
+    return found(candidates[index], habits.first_unknown[index],
+                 fmt::format("has a code of a control that is not read here, and {} has most of "
+                             "the others",
+                             dialect(candidates[index]).name));
+}
+
 /// A G code that only some dialects have rules out the others.
 Clue clue_of_codes(const Habits& habits) {
     const auto [linuxcnc, fanuc, haas, grbl] = habits.first_unknown;
+    if (linuxcnc && fanuc && haas && grbl) return clue_of_foreign_codes(habits);
     if (linuxcnc && fanuc && !haas)
         return found(DialectId::haas, fanuc, "has a code that only Haas controls have");
     if (linuxcnc && !fanuc)

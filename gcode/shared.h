@@ -9,15 +9,14 @@ template <typename T>
 class Shared {
 public:
     Shared() = default;
+    ~Shared() = default;
     Shared(const Shared&) = default;
     Shared(Shared&&) = default;
-    ~Shared() = default;
-    // A copy of what is shared already costs no counting.
+    Shared& operator=(Shared&&) = default;
     Shared& operator=(const Shared& other) {
-        if (value_ != other.value_) value_ = other.value_;
+        if (value_ != other.value_) value_ = other.value_; // spares counting where nothing changes
         return *this;
     }
-    Shared& operator=(Shared&&) = default;
 
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
@@ -27,6 +26,8 @@ public:
         if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
         return *value_;
     }
+
+    bool is_shared_with(const Shared& other) const { return value_ == other.value_; }
 
     bool operator==(const Shared& other) const {
         return value_ == other.value_ || *value_ == *other.value_;

@@ -26,44 +26,55 @@ class Collector {
 public:
     explicit Collector(std::string file) { program_.file = std::move(file); }
 
-    std::optional<Error> add(std::string_view piece) {
-        for (const char c : piece)
-            if (auto error = add(c)) return error;
+    std::optional<Error> add(std::string_view text) {
+        for (size_t at = 0; at < text.size(); at += chunk_size)
+            if (auto error = add_piece(text.substr(at, chunk_size))) return error;
         return std::nullopt;
     }
 
     core::Result<Program> finish() &&;
 
 private:
-    std::optional<Error> add(char c);
+    std::optional<Error> add_piece(std::string_view piece);
     void strip_byte_order_mark();
 
-    Error refusal(std::string_view what, uint32_t line) const {
+    Error refusal(std::string_view what, size_t line) const {
         const std::string name = program_.file.empty() ? "the program" : program_.file;
-        return {ErrorCode::syntax, {.line = line}, fmt::format("{} {}", name, what), program_.file};
+        return {ErrorCode::syntax,
+                {.line = static_cast<uint32_t>(line)},
+                fmt::format("{} {}", name, what),
+                program_.file};
     }
 
     Program program_;
-    uint32_t line_ = 1;
-    size_t line_length_ = 0;
+    size_t line_length_ = 0; // of the line at the end, so far
     size_t controls_ = 0;
 };
 
-std::optional<Error> Collector::add(char c) {
-    if (c == '\0') return refusal("holds NUL bytes: it is a binary file, not an NC program", line_);
-    controls_ += is_stray_control(c);
-    if (is_line_end(c)) {
-        const bool after_return = c == '\n' && program_.text.ends_with('\r');
-        line_ += !after_return;
-        line_length_ = 0;
-    } else if (++line_length_ > longest_line) {
+std::optional<Error> Collector::add_piece(std::string_view piece) {
+    // A line that is too long is longer than a piece, so that its end need not be looked for inside
+    // of one.
+    static_assert(chunk_size <= longest_line);
+    if (program_.text.size() + piece.size() > longest_program)
+        return refusal("is longer than 1 GiB; split it into several programs", 0);
+    const size_t nul = piece.find('\0');
+    if (nul != std::string_view::npos) piece = piece.substr(0, nul);
+    const size_t first_end = std::min(piece.find_first_of("\r\n"), piece.size());
+    program_.text += piece.substr(0, first_end);
+    if (line_length_ + first_end > longest_line) {
+        const size_t line = starts_of_lines(program_.text).size();
         return refusal(fmt::format("has a line {} of more than {} characters; break it into blocks",
-                                   line_, longest_line),
-                       line_);
+                                   line, longest_line),
+                       line);
     }
-    if (program_.text.size() == longest_program)
-        return refusal("is longer than 1 GiB; split it into several programs", line_);
-    program_.text.push_back(c);
+    program_.text += piece.substr(first_end);
+    if (nul != std::string_view::npos)
+        return refusal("holds NUL bytes: it is a binary file, not an NC program",
+                       starts_of_lines(program_.text + ' ').size());
+    const size_t last_end = piece.find_last_of("\r\n");
+    line_length_ = last_end == std::string_view::npos ? line_length_ + piece.size()
+                                                      : piece.size() - last_end - 1;
+    controls_ += static_cast<size_t>(std::count_if(piece.begin(), piece.end(), is_stray_control));
     return std::nullopt;
 }
 
@@ -102,6 +113,12 @@ core::Result<bool> Program::has_line(size_t number) const {
     if (!windows) return number >= 1 && number <= line_starts.size();
     FEELER_TRY(const auto found, windows->line(number));
     return found.has_value();
+}
+
+core::Result<std::optional<std::string_view>> Program::find_line(size_t number) const {
+    if (windows) return windows->line(number);
+    if (number < 1 || number > line_starts.size()) return std::nullopt;
+    return line(number);
 }
 
 core::Result<Program> read_program(const std::string& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,11 @@ struct Program {
     /// The text of a line that it has, counted from 1, without its line end. When it is read in
     /// windows the text stands until the next look at a line.
     std::string_view line(size_t number) const;
+
+    /// The same, or empty when there is no such line.
+    ///
+    /// Errors: as has_line.
+    core::Result<std::optional<std::string_view>> find_line(size_t number) const;
 };
 
 /// The program in a file.

@@ -78,6 +78,14 @@ void add(Digest& digest, const CannedCycle& cycle) {
     digest.add(uint64_t{cycle.incremental});
 }
 
+void add(Digest& digest, const SplineState& spline) {
+    digest.add(number_of(spline.gathering.order));
+    for (const ControlPoint& point : spline.gathering.points)
+        for (const double value : {point.at.x, point.at.y, point.weight}) digest.add(value);
+    digest.add(spline.next_tangent.x);
+    digest.add(spline.next_tangent.y);
+}
+
 void add_modes(Digest& digest, const ModalState& modal) {
     for (const int mode :
          {int(modal.unit),          int(modal.unit_said),      modal.motion.value_or(-1),
@@ -90,7 +98,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
         digest.add(number_of(mode));
     for (const double value :
          {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,
-          modal.fastest_speed, modal.speed, modal.length_sign})
+          modal.fastest_speed, modal.speed, modal.length_sign, modal.cycle_dwell})
         digest.add(value);
 }
 
@@ -99,14 +107,17 @@ void add(Digest& digest, const ModalState& modal) {
     for (const Position* place :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *place);
+    digest.add(uint64_t{modal.axis_offset_on});
     digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
     add_id(digest, modal.selected_tool);
     add_id(digest, modal.tool);
     add_id(digest, modal.length_number);
+    digest.add(number_of(modal.radius_number));
     add(digest, modal.offsets);
     add(digest, modal.transforms);
+    add(digest, modal.spline);
     digest.add(uint64_t{modal.way_home.has_value()});
     if (modal.way_home) add_all(digest, *modal.way_home);
     add_all(digest, modal.direction);

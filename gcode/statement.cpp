@@ -55,16 +55,23 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
     return {};
 }
 
+/// What a code of other controls is called here.
+std::string_view meant_instead(const Word& word) {
+    if (word.value == 70.0) return "; where it means inches, write G20";
+    if (word.value == 71.0) return "; where it means millimetres, write G21";
+    return {};
+}
+
 core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect,
                             const Environment& environment) {
     const Code* code = find_code(word.letter, word.value, dialect.id);
     if (!code && word.letter == 'M')
         return add_unknown_m_code(statement, word, dialect, environment);
     if (!code)
-        return core::fail(
-            ErrorCode::unsupported,
-            fmt::format("{}: there is no such code in the dialect {}", written(word), dialect.name),
-            word.span);
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: there is no such code in the dialect {}{}",
+                                      written(word), dialect.name, meant_instead(word)),
+                          word.span);
     if (!code->refusal.empty())
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: {}", written(word), code->refusal), word.span);
@@ -81,7 +88,7 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
                           fmt::format("{}: there are too many codes in this block", written(word)),
                           word.span);
     statement.code_words[statement.code_count++] = {code, &word};
-    statement.groups |= 1u << static_cast<unsigned>(code->group);
+    statement.groups |= uint64_t{1} << static_cast<unsigned>(code->group);
     return {};
 }
 
@@ -115,8 +122,10 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
                            bool words_are_arguments) {
     statement.words.fill(nullptr);
     statement.polar_radius = statement.polar_angle = nullptr;
+    statement.corner = statement.angle = nullptr;
     statement.code_count = 0;
     statement.groups = 0;
+    statement.letters = 0;
     statement.unknown_m_codes.clear();
     statement.arguments.clear();
     for (const Word& word : block.words) {
@@ -134,11 +143,16 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             continue; // I1, J1 and K1 of CIP, which looks them up itself
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
+            statement.letters |= letter_bit(word.letter);
         } else {
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("{}: corners between moves are not supported yet", written(word)),
-                word.span);
+            const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
+            if (place)
+                return core::fail(ErrorCode::syntax,
+                                  fmt::format("{} and {} in one block: a motion ends in one corner",
+                                              written(*place), written(word)),
+                                  word.span);
+            place = &word;
+            if (word.letter != 'a') statement.letters |= corner_bit;
         }
     }
     return {};

@@ -17,6 +17,17 @@ struct CodeWord {
     const Word* word = nullptr;
 };
 
+constexpr uint32_t letter_bit(char letter) { return 1u << (letter - 'A'); }
+
+constexpr uint32_t letter_bits(std::string_view letters) {
+    uint32_t bits = 0;
+    for (const char letter : letters) bits |= letter_bit(letter);
+    return bits;
+}
+
+constexpr uint32_t axis_letter_bits = letter_bits(axis_letters);
+constexpr uint32_t corner_bit = 1u << 26; // ,R or ,C
+
 /// A block with its words looked up. Refers to the block's words.
 struct Statement {
     static constexpr size_t most_codes = 32;
@@ -24,22 +35,23 @@ struct Statement {
     std::array<const Word*, 26> words{};         // by letter, without G and M
     const Word* polar_radius = nullptr;          // @
     const Word* polar_angle = nullptr;           // ^
+    const Word* corner = nullptr;                // ,R or ,C
+    const Word* angle = nullptr;                 // ,A
     std::array<CodeWord, most_codes> code_words; // in the order written
     size_t code_count = 0;
-    uint32_t groups = 0;                        // a bit for each modal group that is there
+    uint64_t groups = 0;                        // a bit for each modal group that is there
+    uint32_t letters = 0;                       // a bit for each of `words` that is there
     std::vector<const Word*> unknown_m_codes{}; // a machine builder's
     std::vector<const Word*> arguments{};       // of a macro call: what stands behind G65 or G66
 
     std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
     const Word* word(char letter) const { return words[static_cast<size_t>(letter - 'A')]; }
     const CodeWord* of(ModalGroup group) const {
-        if (!(groups & (1u << static_cast<unsigned>(group)))) return nullptr;
+        if (!(groups & (uint64_t{1} << static_cast<unsigned>(group)))) return nullptr;
         return find(group);
     }
     bool has_axis_word() const {
-        for (const char letter : axis_letters)
-            if (word(letter)) return true;
-        return polar_radius || polar_angle;
+        return (letters & axis_letter_bits) != 0 || polar_radius || polar_angle;
     }
 
     /// The code that takes the axis words away from the motion: G10, G28, G30, G52, G92, G43.1, and

@@ -2,6 +2,7 @@
 
 #include "gcode/execution.h"
 #include "gcode/flow.h"
+#include "gcode/modes.h"
 #include "gcode/subprogram.h"
 
 namespace gcode {
@@ -126,9 +127,12 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
         else
             state.next.line = line;
     } else if (inside) {
+        const ModalState before = state.modal;
         leave(state);
+        announce_modes(execution.result, entry.word->span.column, before, state.modal);
     } else {
         state.ending = Ending::main_return;
+        if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
     }
     return {};
 }

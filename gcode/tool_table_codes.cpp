@@ -34,32 +34,44 @@ core::Result<void> take_shape(const Execution& execution, LengthOffset& entry) {
 Offsets reading_offsets(const Execution& execution, bool in_last_offset) {
     Offsets offsets = execution.modal().offsets;
     offsets.tool = {};
+    if (in_last_offset) offsets.axis = zero_position;
     if (in_last_offset) offsets.work = work_offset(*execution.state.tables, plain_offset_count - 1);
     return offsets;
 }
 
-/// The tool offsets that would make the present place read as the words say.
+/// What an entry would shift, as a place without any other offset.
+Position shift_of(const LengthOffset& entry) {
+    Position shift;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        shift[axis] = axis == 2 ? entry.length : entry.shift[axis];
+    return shift;
+}
+
+/// The tool offsets that would make the present place read as the words say. Where the offset is
+/// turned, the entry keeps what it has along the turned axes that are not named.
 core::Result<void> take_offsets_here(const Execution& execution, bool in_last_offset,
                                      LengthOffset& entry) {
     const ModalState& modal = execution.modal();
     const Position machine = machine_from_program(modal.offsets, modal.position);
     const Offsets offsets = reading_offsets(execution, in_last_offset);
-    Position read = program_from_machine(offsets, machine);
-    for (size_t axis = 0; axis < axis_count; ++axis)
-        if (const Word* word = execution.statement.word(axis_letters[axis]))
-            read[axis] = axis_value(execution, axis, *word);
-    const Position meant = machine_from_program(offsets, read);
+    Offsets only_turned;
+    only_turned.work.rotation_deg = offsets.work.rotation_deg;
+    const Position read = program_from_machine(offsets, machine);
+    Position off = program_from_machine(only_turned, shift_of(entry));
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
-        if (!machine[axis] || !meant[axis])
+        if (!read[axis])
             return core::fail(ErrorCode::missing_value,
                               fmt::format("{}: this needs a known place, and where the machine is "
                                           "along {} is unknown",
                                           written(*word), axis_letters[axis]),
                               word->span);
-        (axis == 2 ? entry.length : entry.shift[axis]) = *machine[axis] - *meant[axis];
+        off[axis] = *read[axis] - axis_value(execution, axis, *word);
     }
+    const Position shift = machine_from_program(only_turned, off);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        (axis == 2 ? entry.length : entry.shift[axis]) = *shift[axis];
     return {};
 }
 

@@ -62,6 +62,13 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
                                           written(word), *number));
     use_offset(execution, OffsetNumber(*number),
                offset_under(execution, *number, sign * length.value_or(0.0)));
+    const auto& tool = execution.modal().tool;
+    if (tool && *number != 0 && *number != value_of(*tool))
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("{}: H{} is not the offset of the tool in the spindle, T{}", written(word),
+                         *number, value_of(*tool)),
+             "offset-not-tool", fmt::format("Write H{}.", value_of(*tool))});
     return {};
 }
 
@@ -139,6 +146,12 @@ core::Result<void> select_tool(Execution& execution) {
     const Word* word = execution.statement.word('T');
     if (!word) return {};
     FEELER_TRY(const int number, whole_number(*word));
+    const auto& table = execution.state.tables->lengths;
+    if (execution.dialect.tool_entries_by_axes && number != 0 && !table.empty()
+        && !length_under(*execution.state.tables, number))
+        execution.warn(word->span, fmt::format("{}: this tool is not in the tool table: a control "
+                                               "with this table stops here",
+                                               written(*word)));
     execution.modal().selected_tool = ToolNumber(number);
     execution.emit(SelectTool{ToolNumber(number)});
     return {};

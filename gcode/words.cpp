@@ -10,6 +10,7 @@ namespace {
 using core::ErrorCode;
 
 constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
+constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
 constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
 
 /// The code of the motion or cycle that a block without one goes on with.
@@ -68,7 +69,9 @@ core::Result<void> check_word(Execution& execution, const Word& word) {
     const bool exponent = word.letter == 'E'; // of a number, most likely
     const std::string message =
         fmt::format("{}: nothing in this block uses it{}", written(word),
-                    exponent ? "; an exponent such as 1E3 is written out" : "");
+                    exponent ? "; an exponent such as 1E3 is written out, and the extruder of a "
+                               "3D printer is none of a milling machine's"
+                             : "");
     if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);
@@ -87,6 +90,7 @@ core::Result<void> check_words(Execution& execution) {
         execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
                                                "builder; it is passed over",
                                                written(*word)));
+    if (!(execution.statement.letters & bits_that_need_a_code)) return {};
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))
             if (auto checked = check_word(execution, *word); !checked) return checked;

@@ -44,6 +44,10 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
                     "Unit of lengths in variables files and tool tables")
         ->check(CLI::IsMember({"mm", "inch"}));
     command
+        .add_option("--no-decimal-point", arguments.no_decimal_point,
+                    "What X1000 means on Fanuc and Haas: 1000 units, or 1000 of the smallest steps")
+        ->check(CLI::IsMember({"units", "steps"}));
+    command
         .add_option("--search-path", arguments.search_path,
                     "Folder with subprograms; more of them with ':' or by repeating")
         ->allow_extra_args(false);
@@ -62,6 +66,8 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
     if (!arguments.machine_unit.empty())
         settings.machine_unit =
             arguments.machine_unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    if (!arguments.no_decimal_point.empty())
+        settings.counts_smallest_steps = arguments.no_decimal_point == "steps";
     settings.parameters = arguments.parameters;
     settings.tool_table = arguments.tool_table;
     settings.ini = arguments.ini;

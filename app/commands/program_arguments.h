@@ -12,7 +12,8 @@ namespace app {
 
 /// The options that say how a program is read, as words of a command line.
 struct ProgramArguments {
-    std::string dialect, start_position, block_delete, parameters, tool_table, ini, machine_unit;
+    std::string dialect, start_position, block_delete, parameters, tool_table, ini, machine_unit,
+        no_decimal_point;
     std::vector<std::string> search_path;
     std::optional<uint64_t> max_blocks;
 };

@@ -22,7 +22,9 @@ std::string WarningLog::line_for(const gcode::Warning& warning, std::string_view
         found = counts_.emplace(warning.message, 0).first;
     }
     if (++found->second > said_places) return {};
-    return error_text({core::ErrorCode::syntax, warning.where, warning.message, std::string(file)})
+    const std::string cure = warning.cure.empty() ? "" : " (" + warning.cure + ")";
+    return error_text(
+               {core::ErrorCode::syntax, warning.where, warning.message + cure, std::string(file)})
            + "\n";
 }
 

@@ -86,12 +86,13 @@ bool calls_tools(const gcode::Program& program, const gcode::Environment& enviro
 
 core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     core::Finding finding;
-    finding.rule = "program";
-    finding.severity =
-        warning.severity == gcode::Severity::note ? core::Severity::note : core::Severity::warning;
-    if (const auto set = setup.rules.find("program"); set != setup.rules.end())
+    finding.rule = warning.rule;
+    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
+    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
+    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
         finding.severity = set->second;
     finding.message = warning.message;
+    finding.cure = warning.cure;
     return finding;
 }
 

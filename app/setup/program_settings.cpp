@@ -79,6 +79,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
         replace(settings.start[axis], over.start[axis]);
     replace(settings.machine_unit, over.machine_unit);
     replace(settings.max_blocks, over.max_blocks);
+    replace(settings.counts_smallest_steps, over.counts_smallest_steps);
     replace(settings.ini, over.ini);
     replace(settings.parameters, over.parameters);
     replace(settings.tool_table, over.tool_table);
@@ -95,6 +96,8 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
     if (settings.block_delete) environment.block_delete = *settings.block_delete;
     if (settings.machine_unit) environment.machine_unit = *settings.machine_unit;
     if (settings.max_blocks) environment.limits.blocks = *settings.max_blocks;
+    if (settings.counts_smallest_steps)
+        environment.counts_smallest_steps = *settings.counts_smallest_steps;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         replace(environment.start[axis], settings.start[axis]);
     replace(environment.search_path, settings.search_path);

@@ -19,7 +19,8 @@ struct ProgramSettings {
     gcode::Position start{}; // machine coordinates, mm and degrees
     std::optional<gcode::LengthUnit> machine_unit;
     std::optional<uint64_t> max_blocks;
-    std::string ini, parameters, tool_table; // paths
+    std::optional<bool> counts_smallest_steps; // X1000 is 1 mm on Fanuc and Haas
+    std::string ini, parameters, tool_table;   // paths
     std::vector<std::string> search_path;
     std::set<int> machine_codes; // M codes of the machine's builder
 };

@@ -38,6 +38,8 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
     if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);
     if (const auto unit = table.word("unit", {"mm", "inch"}))
         settings.machine_unit = *unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    if (const auto steps = table.word("no_decimal_point", {"units", "steps"}))
+        settings.counts_smallest_steps = *steps == "steps";
     settings.parameters = path_of(table, "parameters", folder);
     settings.tool_table = path_of(table, "tool_table", folder);
     for (const std::string& name :

@@ -133,6 +133,24 @@ TEST(MaxBlocks, StopsAProgramThatRunsLonger) {
     EXPECT_TRUE(traced.warns("stopped after 3 blocks"));
 }
 
+TEST(NoDecimalPoint, MakesALengthUnitsOrSmallestSteps) {
+    const std::string program = "G21\nG0 X1000 Y2.\nM30\n";
+    Traced traced;
+    traced.dialect = "fanuc";
+    traced.run(program, {});
+    EXPECT_TRUE(traced.says("x=1000 y=2")) << traced.ran.out << traced.ran.err;
+    traced.run(program, {"--no-decimal-point", "units"});
+    EXPECT_TRUE(traced.says("x=1000 y=2")) << traced.ran.out;
+    traced.run(program, {"--no-decimal-point", "steps"});
+    EXPECT_TRUE(traced.says("x=1 y=2")) << traced.ran.out;
+    const std::string setup = traced.folder.write(
+        "s.toml", SetupWriter().program("no_decimal_point = \"steps\"\n").text());
+    traced.run(program, {"--setup", setup});
+    EXPECT_TRUE(traced.says("x=1 y=2")) << traced.ran.out << traced.ran.err;
+    traced.run(program, {"--setup", setup, "--no-decimal-point", "units"});
+    EXPECT_TRUE(traced.says("x=1000 y=2")) << traced.ran.out;
+}
+
 TEST(ProgramTable, SaysTheSameInASetup) {
     Traced traced;
     std::filesystem::create_directories(traced.folder / "subs");

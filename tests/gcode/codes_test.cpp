@@ -91,8 +91,8 @@ TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
 }
 
 TEST(Codes, RefusedOnesSayWhy) {
-    for (const std::string_view text : {"G5.2 X1 Y1 P1 L3", "G74 Z-1 R1 F1"})
-        EXPECT_THAT(error_of(text, DialectId::linuxcnc), HasSubstr("not supported yet")) << text;
+    for (const std::string_view text : {"M16 T1", "M50 P1"})
+        EXPECT_THAT(error_of(text, DialectId::haas), HasSubstr("not supported yet")) << text;
     EXPECT_THAT(error_of("M46 P1 Q2", DialectId::haas), HasSubstr("not supported yet"));
 }
 

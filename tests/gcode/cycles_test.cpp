@@ -104,6 +104,7 @@ TEST(Cycle, RepeatsUnderG91StepByStep) {
     // As rs274: G91 G81 X10 Z-3 R-2 L3 from Z10.
     EXPECT_EQ(trace("G21 G0 Z10\nF100\nG91 G81 X10 Z-3 R-2 L3", DialectId::linuxcnc),
               "straight_traverse x=0 y=0 z=10\n"
+              "set_path_mode mode=exact_path tolerance=0 naive_tolerance=0\n"
               "straight_traverse x=10 y=0 z=10\n"
               "straight_traverse x=10 y=0 z=8\n"
               "straight_feed x=10 y=0 z=5 feed=100\n"
@@ -113,7 +114,8 @@ TEST(Cycle, RepeatsUnderG91StepByStep) {
               "straight_traverse x=20 y=0 z=8\n"
               "straight_traverse x=30 y=0 z=8\n"
               "straight_feed x=30 y=0 z=5 feed=100\n"
-              "straight_traverse x=30 y=0 z=8\n");
+              "straight_traverse x=30 y=0 z=8\n"
+              "set_path_mode mode=continuous tolerance=0 naive_tolerance=0\n");
 }
 
 TEST(Cycle, RCountsFromTheInitialLevelUnderG91) {

@@ -88,8 +88,8 @@ void positions(ProgramText& text) {
     if (text.once_in(3)) text.line("G10 L2 P{} R{}", text.whole(1, 3), text.whole(0, 90));
     if (text.once_in(3)) text.line("G92{}", text.axis_words("XYZ"));
     if (text.once_in(4)) text.line("G{}.1", text.one_of({28, 30}));
-    if (text.once_in(4)) text.line("T{} M6\nG43", text.whole(1, 9));
-    if (text.once_in(5)) text.line("G{}", text.whole(20, 21));
+    if (text.once_in(4)) text.line("G49 G0\nT{} M6\nG43", text.whole(1, 9));
+    if (text.once_in(5)) text.line("G49\nG{}", text.whole(20, 21));
     text.line("G1 X[#{}+1] Y[#{}-1] Z[#{}/2]", text.whole(5420, 5425),
               5161 + 20 * text.whole(0, 1) + text.whole(0, 5),
               5221 + 20 * text.whole(0, 8) + text.whole(0, 9));
@@ -147,7 +147,7 @@ void predefined_names(ProgramText& text) {
                      "M48",   "G7",  "G8",     "G96 S9",   "G97 S9", "M51 P0", "F33"}));
     const std::string name =
         predefined[static_cast<size_t>(text.whole(0, std::size(predefined) - 1))];
-    text.line("#1=#<{}>", name);
+    text.line("#1=#<{}>\nG49", name);
     text.line("G21 G90 G17 G40 G94 F100 G8 G97 G91.1 G54 G0");
     text.line("G0 Z#1");
 }

@@ -15,6 +15,7 @@
 //     reference_compare --generate FEATURE SEED COUNT    random ones, from a seed on
 //     reference_compare --spoil FEATURE SEED COUNT       nearly valid ones
 //     reference_compare --print FEATURE SEED             the program of a seed
+//     reference_compare --print-spoilt FEATURE SEED      likewise
 //     reference_compare --judge COUNT                    what share of each feature is accepted
 namespace test_support {
 namespace {
@@ -68,8 +69,9 @@ int judge(int count) {
 int chosen(const std::vector<std::string>& words) {
     const std::string first = words.empty() ? "" : words[0];
     if (first == "--judge" && words.size() == 2) return judge(std::stoi(words[1]));
-    if (first == "--print" && words.size() == 3) {
-        std::cout << generated_program(words[1], static_cast<uint32_t>(std::stoul(words[2])));
+    if ((first == "--print" || first == "--print-spoilt") && words.size() == 3) {
+        const auto seed = static_cast<uint32_t>(std::stoul(words[2]));
+        std::cout << generated(words[1], seed, 1, first == "--print-spoilt").front();
         return 0;
     }
     if ((first == "--generate" || first == "--spoil") && words.size() == 4) {

@@ -115,7 +115,8 @@ class Canon:
         return (-1,) + (0.0,) * 12 + (0,)
 
     def next_line(self, state):
-        self.line = state.sequence_number
+        if state.sequence_number > 0:  # G70 to G72 say -1 from their first move on
+            self.line = state.sequence_number
 
     def change_tool(self, index):
         self.loaded = index
@@ -174,17 +175,36 @@ def rs_calls(path, folder, seconds):
     return calls, ('refused', line, message), prints
 
 
-def line_of_refusal(path, line, text):
+def line_of_refusal(path, line, text, message):
     """The module counts a line too many where a line could not be read, and names the call where the
     line is in a subprogram; rs274 gives the text of the line."""
     with open(path, encoding='latin-1') as program:
         lines = [''] + [each.strip() for each in program]
+    sought = re.search(r'seeking o-word: .* from line: (\d+)', message)
+    if sought:
+        return int(sought[1])
     if line < len(lines) and lines[line] == text.strip():
         return line
     if 0 < line <= len(lines) and lines[line - 1] == text.strip():
         return line - 1
     same = [number for number, each in enumerate(lines) if each == text.strip() and each]
+    called = re.match(r'(o\S+) *call', lines[line] if line < len(lines) else '', re.I)
+    if len(same) > 1 and called:
+        ends = [number for number, each in enumerate(lines)
+                if re.match(re.escape(called[1]) + r' *(sub|endsub)\b', each, re.I)]
+        same = [number for number in same if len(ends) == 2 and ends[0] < number < ends[1]]
     return same[0] if len(same) == 1 else line
+
+
+def line_of_module_refusal(gcode, path, line, rows, folder, seconds):
+    """The line that the module refused where rs274 cannot say: the lines before do not suffice."""
+    with open(path, encoding='latin-1') as program:
+        lines = program.readlines()
+    before = folder + '/before.ngc'
+    with open(before, 'w', encoding='latin-1') as out:
+        out.writelines(lines[:line - 1] + ['M2\n'])
+    _, ending = module_calls(gcode, before, rows, folder, seconds)
+    return line - 1 if ending[0] == 'refused' else line
 
 
 def numbers(text):
@@ -200,6 +220,13 @@ class Plain:
         self.said = {}
         self.line = 0
         self.threading = False
+        self.feed = 0.0
+        self.is_per_turn = False
+
+    def say_feed(self):
+        """In mm/min, under G95 as well."""
+        turns = self.state.get('speed', (0.0,))[0] if self.is_per_turn else 1.0
+        self.state['feed'] = (self.feed * turns,)
 
     def event(self, name, *values):
         for key, value in self.state.items():
@@ -238,7 +265,8 @@ class Plain:
         elif name == 'set_xy_rotation':
             self.state['rotation'] = values
         elif name == 'set_feed_rate':
-            self.state['feed'] = (values[0] * MM,)
+            self.feed = values[0] * MM
+            self.say_feed()
         elif name == 'set_plane':
             self.state['plane'] = (PLANES[values[0]],)
         elif name == 'message':
@@ -253,11 +281,13 @@ class Plain:
             self.event(STOPS[name])
         elif name == 'SET_SPINDLE_SPEED':
             self.state['speed'] = (numbers(text)[1],)
+            self.say_feed()
         elif name == 'SET_SPINDLE_MODE':
             fastest = numbers(text)[1]  # 1e30 is no limit
             self.state['fastest_speed'] = (fastest if fastest < 1e29 else 0.0,)
         elif name == 'SET_FEED_MODE':
-            self.state['feed_mode'] = (int(numbers(text)[1]),)
+            self.is_per_turn = int(numbers(text)[1]) == 1
+            self.say_feed()
         elif name == 'SELECT_TOOL':
             self.state['selected'] = (int(text),)
         elif name == 'CHANGE_TOOL':
@@ -282,6 +312,7 @@ class Plain:
         elif name in ('SET_MOTION_OUTPUT_VALUE', 'SET_AUX_OUTPUT_VALUE'):
             self.event('set_output', *numbers(text), 1, int('MOTION' in name))
         elif name == 'ORIENT_SPINDLE':
+            self.state['spindle'] = ('stopped',)  # the interpreter leaves that to the machine
             self.event('orient_spindle', *numbers(text)[1:])
 
 
@@ -319,7 +350,8 @@ def lay_together(module, rs, plain):
                 line, _, values = waiting.pop()
                 if abs(values[0] * MM - feed) < 1e-3 * unit:
                     feed = values[0] * MM
-            plain.state['feed'] = (feed,)
+            plain.feed = feed
+            plain.say_feed()
         elif name in MODULE_NAMES:
             while waiting and waiting[-1][1] == 'set_feed_rate':
                 waiting.pop()
@@ -350,10 +382,18 @@ def answer(gcode, path, rows, fresh, seconds, write):
         module, ending = module_calls(gcode, path, rows, folder, seconds)
         shutil.copy(fresh + '/pristine.mmap', fresh + '/.tool.mmap')
         rs, rs_ending, prints = rs_calls(path, folder, seconds)
-    if ending[0] == rs_ending[0] == 'refused':
-        ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1]), ending[2])
+        six_axes = re.match("Bad character '[uvw]'", rs_ending[2]) and ending[2] != rs_ending[2]
+        if six_axes and ending[0] == 'refused':
+            line = line_of_module_refusal(gcode, path, ending[1], rows, folder, seconds)
+            ending = ('refused', line, ending[2])
+    if ending[0] == rs_ending[0] == 'refused' and not six_axes:
+        ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1], rs_ending[2]), ending[2])
+    elif rs_ending[2] == 'Cannot do g1 with zero feed rate' and ending[0] == 'accepted':
+        # The module begins with a feed rate of its own.
+        ending = ('refused', line_of_refusal(path, 0, rs_ending[1], ''), rs_ending[2])
+        rs_ending = ending
     plain = Plain(write)
-    if re.match("Bad character '[uvw]'", rs_ending[2]) and ending[2] != rs_ending[2]:
+    if six_axes:
         write('no_actions\n')  # six axes are all that rs274 has
         for call in module:
             plain.from_module(*call)

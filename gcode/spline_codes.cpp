@@ -1,0 +1,164 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/motion_codes.h"
+#include "gcode/spline_chords.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// How far the chords may be from the curve that they stand for, mm.
+constexpr double chord_error = 0.001;
+
+core::Result<SplinePoint> start_of(const Execution& execution) {
+    const Position& place = execution.modal().position;
+    if (!place[0] || !place[1])
+        return core::fail(ErrorCode::missing_value,
+                          "a spline begins at an unknown place: move X and Y first, or say where "
+                          "the machine starts",
+                          moving_word(execution).span);
+    return SplinePoint{*place[0], *place[1]};
+}
+
+std::optional<double> length_word(const Execution& execution, char letter) {
+    const Word* word = execution.statement.word(letter);
+    return word ? std::optional(length_of(execution, *word)) : std::nullopt;
+}
+
+core::Result<void> refuse_compensation(const Execution& execution) {
+    if (execution.modal().compensation == Side::none) return {};
+    const Word& mover = moving_word(execution);
+    return core::fail(ErrorCode::syntax,
+                      fmt::format("{}: no spline while cutter radius compensation is on: write G40 "
+                                  "before",
+                                  written(mover)),
+                      mover.span);
+}
+
+/// G5 and G5.1 are curves of X and Y only.
+core::Result<void> check_plane_spline(const Execution& execution) {
+    const Word& mover = moving_word(execution);
+    if (execution.modal().plane != Plane::xy)
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{} is a curve of the XY plane: say G17 before", written(mover)),
+            mover.span);
+    if (!execution.statement.has_axis_word())
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} has no end: it needs X or Y", written(mover)),
+                          mover.span);
+    for (const char letter : {'Z', 'A', 'B', 'C'})
+        if (const Word* word = execution.statement.word(letter))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{}: a spline moves X and Y only: move {} in a block of "
+                                          "its own",
+                                          written(*word), letter),
+                              word->span);
+    return refuse_compensation(execution);
+}
+
+double length_of_chords(SplinePoint from, const std::vector<SplinePoint>& ends) {
+    double length = 0.0;
+    for (const SplinePoint end : ends) {
+        length += std::hypot(end.x - from.x, end.y - from.y);
+        from = end;
+    }
+    return length;
+}
+
+core::Result<void> follow(Execution& execution, const NurbsCurve& curve) {
+    const core::SourceSpan where = moving_word(execution).span;
+    FEELER_TRY(const std::vector<SplinePoint> ends,
+               placed(chords_within(curve, chord_error), where));
+    const double length = length_of_chords(curve.points.front().at, ends);
+    FEELER_TRY(const double rate, feed_rate(execution, length));
+    execution.result.is_cycle = true;
+    Position place = execution.modal().position;
+    for (const SplinePoint end : ends) {
+        place[0] = end.x, place[1] = end.y;
+        execution.feed(place, rate);
+    }
+    return {};
+}
+
+core::Result<void> cubic(Execution& execution) {
+    FEELER_TRY(const SplinePoint start, start_of(execution));
+    FEELER_TRY(const Position end, target_of(execution));
+    const CubicWords words = {length_word(execution, 'I'),
+                              length_word(execution, 'J'),
+                              length_word(execution, 'P'),
+                              length_word(execution, 'Q'),
+                              {*end[0], *end[1]}};
+    FEELER_TRY(const CubicSpline spline,
+               placed(cubic_spline(start, execution.modal().spline.next_tangent, words),
+                      moving_word(execution).span));
+    execution.modal().spline.next_tangent = spline.next_tangent;
+    return follow(execution, spline.curve);
+}
+
+core::Result<void> quadratic(Execution& execution) {
+    FEELER_TRY(const SplinePoint start, start_of(execution));
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(const NurbsCurve curve,
+               placed(quadratic_spline(start, length_word(execution, 'I'),
+                                       length_word(execution, 'J'), {*end[0], *end[1]}),
+                      moving_word(execution).span));
+    return follow(execution, curve);
+}
+
+} // namespace
+
+core::Result<void> follow_spline(Execution& execution) {
+    if (auto checked = check_plane_spline(execution); !checked) return checked;
+    const bool is_cubic = execution.statement.of(ModalGroup::motion)->code->tenths == tenths(5);
+    return is_cubic ? cubic(execution) : quadratic(execution);
+}
+
+core::Result<void> gather_control_point(Execution& execution) {
+    if (auto checked = refuse_compensation(execution); !checked) return checked;
+    const Statement& statement = execution.statement;
+    if (execution.modal().feed_mode != FeedMode::inverse_time)
+        if (auto rate = feed_rate(execution, std::nullopt); !rate)
+            return tl::unexpected(std::move(rate).error());
+    FEELER_TRY(const SplinePoint start, start_of(execution));
+    FEELER_TRY(const Position end, target_of(execution));
+    const bool is_polar = statement.polar_radius || statement.polar_angle;
+    ControlPointWords words;
+    if (statement.word('X') || is_polar) words.x = end[0];
+    if (statement.word('Y') || is_polar) words.y = end[1];
+    if (const Word* word = statement.word('P')) words.weight = word->value;
+    if (const Word* word = statement.word('L')) {
+        FEELER_TRY(words.order, whole_number(*word));
+    }
+    NurbsGathering& gathering = execution.modal().spline.gathering;
+    if (gathering.points.empty() && words.x && !words.weight)
+        execution.warn(moving_word(execution).span,
+                       "the first control point has no P: the control takes its weight as -1, and "
+                       "the curve leaves its points; write P1");
+    return placed(add_control_point(gathering, start, words), moving_word(execution).span);
+}
+
+core::Result<void> finish_spline(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Word& mover = moving_word(execution);
+    if (execution.statement.has_axis_word())
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{} takes no axis words: write the last control point in a "
+                                      "block before it",
+                                      written(mover)),
+                          mover.span);
+    if (modal.motion != tenths(5, 2))
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{} ends a curve, and none was begun with G5.2", written(mover)),
+            mover.span);
+    FEELER_TRY(const NurbsCurve curve, placed(finish_nurbs(modal.spline.gathering), mover.span));
+    modal.motion.reset();
+    modal.spline.gathering = {};
+    return follow(execution, curve);
+}
+
+} // namespace gcode

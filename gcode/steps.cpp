@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <array>
+
+#include "gcode/execution.h"
+
+namespace gcode {
+namespace {
+
+constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
+    uint64_t bits = 0;
+    for (const ModalGroup group : these) bits |= uint64_t{1} << static_cast<unsigned>(group);
+    return bits;
+}
+
+/// What one kind of words does. It is asked only where the block has one of its groups of codes or
+/// of its letters; one with neither is asked always.
+struct Step {
+    core::Result<void> (*take)(Execution&);
+    uint64_t groups = 0;
+    uint32_t letters = 0;
+
+    constexpr bool concerns_all() const { return groups == 0 && letters == 0; }
+    bool concerns(const Statement& statement) const {
+        return concerns_all() || (groups & statement.groups) || (letters & statement.letters);
+    }
+};
+
+using enum ModalGroup;
+
+// NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
+constexpr Step steps[] = {
+    {check_words},
+    {note_assumed_units},
+    {say_message},
+    {set_feed_mode, groups({feed_mode})},
+    {set_feed, 0, letter_bits("F")},
+    {set_speed, 0, letter_bits("S")},
+    {set_spindle_mode, groups({spindle_mode})},
+    {select_tool, 0, letter_bits("T")},
+    {switch_machine, groups({other})},
+    {change_tool, groups({tool_change})},
+    {turn_spindle, groups({spindle})},
+    {save_or_restore_modes, groups({other})},
+    {set_coolant, groups({coolant})},
+    {set_overrides, groups({overrides})},
+    {dwell, groups({action})},
+    {select_plane, groups({plane})},
+    {set_units, groups({units})},
+    {set_diameter_mode, groups({diameter})},
+    {set_cutter_radius},
+    {set_tool_length, groups({tool_length}), letter_bits("H")},
+    {select_offset, groups({work_offset})},
+    {set_path_mode, groups({path_control})},
+    {set_distance_mode, groups({distance, arc_distance})},
+    {set_retract_mode, groups({retract})},
+    {set_frame, groups({mirror, scaling, rotation, polar, other})},
+    {act, groups({action})},
+    {move},
+    {ask_for_corner, 0, corner_bit},
+    {stop, groups({stopping})},
+    {call},
+};
+
+constexpr uint64_t groups_of_steps = [] {
+    uint64_t bits = 0;
+    for (const Step& step : steps) bits |= step.groups;
+    return bits;
+}();
+
+constexpr uint32_t letters_of_steps = [] {
+    uint32_t bits = 0;
+    for (const Step& step : steps) bits |= step.letters;
+    return bits;
+}();
+
+constexpr size_t steps_for_all = std::count_if(
+    std::begin(steps), std::end(steps), [](const Step& step) { return step.concerns_all(); });
+
+/// The steps of a block that only moves.
+constexpr std::array<Step, steps_for_all> steps_of_moves = [] {
+    std::array<Step, steps_for_all> found{};
+    std::copy_if(std::begin(steps), std::end(steps), found.begin(),
+                 [](const Step& step) { return step.concerns_all(); });
+    return found;
+}();
+
+} // namespace
+
+core::Result<void> take_steps(Execution& execution) {
+    const Statement& statement = execution.statement;
+    if (!(statement.groups & groups_of_steps) && !(statement.letters & letters_of_steps)) {
+        for (const Step& step : steps_of_moves)
+            if (auto done = step.take(execution); !done) return done;
+        return {};
+    }
+    for (const Step& step : steps)
+        if (step.concerns(statement))
+            if (auto done = step.take(execution); !done) return done;
+    return {};
+}
+
+} // namespace gcode
