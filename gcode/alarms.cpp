@@ -9,7 +9,7 @@ namespace gcode {
 core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
                               Value value, core::SourceSpan where, BlockResult& result) {
     constexpr double alarm = 3000.0, message_stop = 3006.0;
-    if (dialect.system_parameters == SystemParameters::rs274) return {};
+    if (!remembers_words(dialect.system_parameters)) return {};
     const std::string text =
         block.comments.empty() ? std::string() : std::string(block.comments.back().text);
     if (number == alarm)

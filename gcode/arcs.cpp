@@ -66,14 +66,18 @@ bool fits_as_coordinates(const Execution& execution, const SeenArc& arc, const C
 core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
                                        const CentreWords& words, double* centre) {
     const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
+    const auto origin = [&](const Word* word, double start) {
+        const bool own = word && word->addressing != Addressing::modal;
+        return (own ? word->addressing == Addressing::absolute : absolute) ? 0.0 : start;
+    };
     if (absolute && !(words.first && words.second))
         return core::fail(
             ErrorCode::missing_value,
             fmt::format("{}: under G90.1 an arc needs both words of its centre", arc.code),
             arc.where);
-    centre[0] =
-        (absolute ? 0.0 : arc.start[0]) + (words.first ? length_of(execution, *words.first) : 0.0);
-    centre[1] = (absolute ? 0.0 : arc.start[1])
+    centre[0] = origin(words.first, arc.start[0])
+                + (words.first ? length_of(execution, *words.first) : 0.0);
+    centre[1] = origin(words.second, arc.start[1])
                 + (words.second ? length_of(execution, *words.second) : 0.0);
     auto checked = check_radii(execution, arc, centre);
     if (!checked && !absolute && fits_as_coordinates(execution, arc, words))
@@ -128,8 +132,9 @@ core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const P
     if (radius) return centre_from_radius(arc, *radius, length_of(execution, *radius), centre);
     if (words.first || words.second) return centre_from_offsets(execution, arc, words, centre);
     return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} has no centre: it needs {}, {} or R", arc.code,
-                                  offset_letters[axes.first], offset_letters[axes.second]),
+                      fmt::format("{} has no centre: it needs {}, {} or {}", arc.code,
+                                  offset_letters[axes.first], offset_letters[axes.second],
+                                  execution.dialect.radius_word),
                       arc.where);
 }
 

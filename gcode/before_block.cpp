@@ -21,6 +21,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.rules = state.rules;
     before.tables = state.tables;
     before.klartext = state.klartext;
+    before.siemens = state.siemens;
     before.has_calls = false;
 }
 
@@ -37,6 +38,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.rules = before.rules;
     state.tables = before.tables;
     state.klartext = before.klartext;
+    state.siemens = before.siemens;
 }
 
 void restore_calls(InterpreterState& state, const BeforeBlock& before) {

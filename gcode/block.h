@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "gcode/expression.h"
+#include "gcode/siemens_block.h"
 
 namespace gcode {
 
@@ -75,6 +76,17 @@ enum class FlowKind : uint8_t {
     call_program,
     end_program,
     if_go_to_label,
+    // Siemens
+    jumps,
+    for_loop,
+    end_for,
+    endless_loop,
+    end_endless,
+    until,
+    repeat_part,
+    procedure,   // PROC
+    declaration, // DEF
+    give_back,   // RET
 };
 
 /// The flow statement of a line. It stands alone on its line but for a block number and comments;
@@ -112,6 +124,7 @@ enum class CommandKind : uint8_t {
     program_error,    // FN 14
     note,             // what is read and has no effect here
     modes,            // M words alone
+    siemens,          // keywords, cycles, MCALL
 };
 
 /// A statement that begins with a keyword. Its values are words of the block: a radius is R, polar
@@ -136,6 +149,7 @@ struct Block {
     Flow flow{};
     Command command{};
     ExpressionPool pool{};
+    SiemensBlock siemens{};            // of that language alone
     std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
     bool tape_mark = false;            // a line that begins with %
 

@@ -51,8 +51,10 @@ struct Code {
     std::string_view words;   // that it uses besides F, S and T; "XYZ" stands for all axes
     DialectSet dialects;      // that know it
     std::string_view refusal; // why it is not carried out; empty when it is
+    int last = 0;             // of several codes in a row that are one, the last, in tenths
 
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }
+    constexpr int last_tenths() const { return last ? last : tenths; }
     bool uses_axes() const { return words.starts_with("XYZ"); }
 };
 

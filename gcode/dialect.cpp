@@ -88,6 +88,13 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .decimal_points_matter = false,
                               .assumed_feed = 0.0,
                               .system_parameters = SystemParameters::rs274,
+                              .parameter_letter = "#",
+                              .has_parameter_zero = false,
+                              .names_are_declared = false,
+                              .assigns_in_order = false,
+                              .machine_places_are_of_tip = false,
+                              .text_end_returns = false,
+                              .radius_word = "R",
                               .first_alarm = 0,
                               .local_count = 30,
                               .deepest_calls = 10,
@@ -155,6 +162,13 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .decimal_points_matter = true,
                            .assumed_feed = 0.0,
                            .system_parameters = SystemParameters::fanuc,
+                           .parameter_letter = "#",
+                           .has_parameter_zero = false,
+                           .names_are_declared = false,
+                           .assigns_in_order = false,
+                           .machine_places_are_of_tip = false,
+                           .text_end_returns = false,
+                           .radius_word = "R",
                            .first_alarm = 3000,
                            .local_count = 33,
                            .deepest_calls = 15,
@@ -231,16 +245,55 @@ constexpr Dialect heidenhain = [] {
     return entry;
 }();
 
-constexpr Dialect unsupported(DialectId id, std::string_view name) {
-    Dialect entry = fanuc;
-    entry.id = id;
-    entry.name = name;
-    entry.supported = false;
-    return entry;
-}
+// SINUMERIK 840D, MD21000 and MD21010 as delivered: 0.01 mm, or a thousandth of the radius.
+constexpr ArcTolerance siemens_arc = {.absolute_mm = 0.01,
+                                      .absolute_inch = 0.01 / 25.4,
+                                      .relative = 0.001,
+                                      .limit = 1e12,
+                                      .warned_mm = 0.0};
 
-constexpr std::array dialects = {
-    linuxcnc, fanuc, haas, grbl, unsupported(DialectId::siemens, "siemens"), heidenhain};
+constexpr Dialect siemens = [] {
+    Dialect entry = fanuc;
+    entry.id = DialectId::siemens;
+    entry.name = "siemens";
+    entry.arc = siemens_arc;
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
+    entry.lone_h_is_length_offset = false;
+    entry.p_names_more_places = false;
+    entry.has_extended_offsets = false;
+    entry.dwell_without_point_is_milliseconds = false;
+    entry.language = Language::siemens;
+    entry.expressions = ExpressionSyntax::siemens;
+    entry.arithmetic = {};
+    entry.arc_after_contour_is_error = false;
+    entry.has_fanuc_flow = false;
+    entry.has_corner_words = false;
+    entry.unset_is_vacant = false;
+    entry.decimal_points_matter = false;
+    entry.system_parameters = SystemParameters::siemens;
+    entry.parameter_letter = "R";
+    entry.has_parameter_zero = true;
+    entry.names_are_declared = true;
+    entry.assigns_in_order = true;
+    entry.machine_places_are_of_tip = true;
+    entry.text_end_returns = true;
+    entry.radius_word = "CR=";
+    entry.local_count = 0;
+    entry.deepest_calls = 16;
+    return entry;
+}();
+
+// ISO dialect M behind G291: Fanuc's language on the same control.
+constexpr Dialect siemens_iso = [] {
+    Dialect entry = fanuc;
+    entry.id = DialectId::siemens_iso;
+    entry.name = "siemens-iso";
+    entry.arc = siemens_arc;
+    return entry;
+}();
+
+constexpr std::array dialects = {linuxcnc, fanuc, haas, grbl, siemens, heidenhain, siemens_iso};
 
 } // namespace
 

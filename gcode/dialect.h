@@ -11,10 +11,10 @@
 
 namespace gcode {
 
-enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain };
+enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain, siemens_iso };
 
 /// What the lines of a program look like: letters with numbers, or keywords.
-enum class Language : uint8_t { words, klartext };
+enum class Language : uint8_t { words, klartext, siemens };
 
 /// How far the radius to an arc's end may be from the radius to its start.
 struct ArcTolerance {
@@ -26,7 +26,12 @@ struct ArcTolerance {
 };
 
 /// Whose numbers the parameters have in which a control shows its state.
-enum class SystemParameters : uint8_t { rs274, fanuc, haas };
+enum class SystemParameters : uint8_t { rs274, siemens, fanuc, haas };
+
+/// Whether a control's macros can ask for the words and times of the blocks before.
+constexpr bool remembers_words(SystemParameters parameters) {
+    return parameters >= SystemParameters::fanuc;
+}
 
 /// Which codes take the tool away from the contour between G41 and G40.
 enum class ContourCodes : uint8_t { rs274, fanuc };
@@ -101,8 +106,15 @@ struct Dialect {
     bool decimal_points_matter;     // X5 may mean 5 of the smallest steps
     double assumed_feed;            // mm/min of a feed that no F came before; 0 refuses
     SystemParameters system_parameters;
-    int first_alarm; // #3000=1 is the alarm after this
-    int local_count; // #1 to this are of each level of calls
+    std::string_view parameter_letter; // of numbered parameters: # or R
+    bool has_parameter_zero;           // R0
+    bool names_are_declared;           // DEF REAL X; names are of one level, also those with _
+    bool assigns_in_order;             // what a block assigns counts for what stands behind it
+    bool machine_places_are_of_tip;    // G53 and SUPA leave the tool's length on
+    bool text_end_returns;             // from a subprogram
+    std::string_view radius_word;      // of an arc: R or CR=
+    int first_alarm;                   // #3000=1 is the alarm after this
+    int local_count;                   // #1 to this are of each level of calls
     size_t deepest_calls;
     bool same_offset_stays;              // G54 while G54 is on does not look into the table again
     bool offset_writes_miss_axis_offset; // G10 counts the place anew as if there were no G92

@@ -1,5 +1,6 @@
 #include "gcode/expression.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -172,6 +173,10 @@ double of_two(Operation operation, double a, double b, double equality) {
         return truth(a != 0.0 || b != 0.0);
     case Operation::truth_xor:
         return truth((a != 0.0) != (b != 0.0));
+    case Operation::least:
+        return std::min(a, b);
+    case Operation::greatest:
+        return std::max(a, b);
     default:
         return of_bits(operation, a, b);
     }

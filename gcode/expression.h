@@ -64,6 +64,8 @@ enum class Operation : uint8_t {
     bits_and,
     bits_or,
     bits_xor,
+    least,
+    greatest,
 };
 
 /// One step of an expression in postfix order.

@@ -8,62 +8,32 @@
 
 #include <fmt/format.h>
 
+#include "gcode/expression_reader.h"
 #include "gcode/expression_syntax.h"
 
 namespace gcode {
-namespace {
 
 using core::ErrorCode;
 using enum Operation;
 
-constexpr int deepest = 48; // brackets in brackets, each a few calls of the functions below
-
-class Parser {
-public:
-    Parser(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool)
-        : lexer_(lexer), syntax_(syntax), pool_(pool) {}
-
-    core::Result<void> value();
-    core::Result<void> brackets();
-    core::Result<void> expression(int lowest_rank);
-
-private:
-    bool round_brackets() const {
-        return syntax_ == ExpressionSyntax::siemens || syntax_ == ExpressionSyntax::klartext;
-    }
-    char open() const { return round_brackets() ? '(' : '['; }
-    char close() const { return round_brackets() ? ')' : ']'; }
-
-    void emit(Operation operation, size_t column) {
-        pool_.instructions.push_back({operation, static_cast<uint32_t>(column + 1)});
-    }
-
-    const Operator* next_operator(int lowest_rank);
-    core::Result<void> parameter();
-    core::Result<void> function();
-    core::Result<void> klartext_operand();
-    core::Result<void> arc_tangent(size_t column);
-    core::Result<void> number();
-    core::Result<void> exists(size_t column);
-    core::Result<void> expect(char wanted);
-
-    Lexer& lexer_;
-    const ExpressionSyntax syntax_;
-    ExpressionPool& pool_;
-    int depth_ = 0;
-};
-
-core::Result<void> Parser::expect(char wanted) {
+core::Result<void> ExpressionReader::expect(char wanted) {
     if (lexer_.accept(wanted)) return {};
     return core::fail(ErrorCode::syntax, fmt::format("a '{}' is missing here", wanted),
                       lexer_.span(lexer_.at, lexer_.at + 1));
 }
 
 /// The operator that comes next, read, if it binds at least as tightly as asked for.
-const Operator* Parser::next_operator(int lowest_rank) {
+const Operator* ExpressionReader::next_operator(int lowest_rank) {
     for (const Operator& candidate : operators_of(syntax_)) {
         Lexer ahead = lexer_;
         if (!ahead.accept_word(candidate.spelling)) continue;
+        if (syntax_ == ExpressionSyntax::siemens && is_letter(candidate.spelling.back())
+            && ahead.at < ahead.line.size() && is_name_part(ahead.line[ahead.at])
+            && !is_digit(ahead.line[ahead.at]))
+            continue; // ORIWKS is not OR
+        if (syntax_ == ExpressionSyntax::siemens && candidate.spelling == "<"
+            && ahead.at < ahead.line.size() && ahead.line[ahead.at] == '<')
+            return nullptr; // << joins texts
         if (candidate.rank < lowest_rank) return nullptr;
         lexer_ = ahead;
         return &candidate;
@@ -72,7 +42,7 @@ const Operator* Parser::next_operator(int lowest_rank) {
 }
 
 /// Operators of one rank are taken from left to right, powers as well.
-core::Result<void> Parser::expression(int lowest_rank) {
+core::Result<void> ExpressionReader::expression(int lowest_rank) {
     if (auto done = value(); !done) return done;
     while (true) {
         lexer_.peek();
@@ -84,7 +54,7 @@ core::Result<void> Parser::expression(int lowest_rank) {
     }
 }
 
-core::Result<void> Parser::brackets() {
+core::Result<void> ExpressionReader::brackets() {
     lexer_.peek();
     if (++depth_ > deepest)
         return core::fail(ErrorCode::syntax,
@@ -96,7 +66,7 @@ core::Result<void> Parser::brackets() {
     return expect(close());
 }
 
-core::Result<void> Parser::parameter() {
+core::Result<void> ExpressionReader::parameter() {
     const size_t begin = lexer_.at++;
     if (++depth_ > deepest)
         return core::fail(ErrorCode::syntax, "parameters of parameters go too deep here",
@@ -115,7 +85,7 @@ core::Result<void> Parser::parameter() {
 }
 
 /// `ATAN[y]/[x]`; Fanuc also has `ATAN[y, x]` and `ATAN[y]`.
-core::Result<void> Parser::arc_tangent(size_t column) {
+core::Result<void> ExpressionReader::arc_tangent(size_t column) {
     const bool fanuc = syntax_ == ExpressionSyntax::fanuc;
     if (auto done = expect(open()); !done) return done;
     if (auto done = expression(0); !done) return done;
@@ -140,7 +110,7 @@ core::Result<void> Parser::arc_tangent(size_t column) {
     return {};
 }
 
-core::Result<void> Parser::exists(size_t column) {
+core::Result<void> ExpressionReader::exists(size_t column) {
     if (auto done = expect(open()); !done) return done;
     if (!lexer_.accept('#') || lexer_.peek() != '<')
         return core::fail(ErrorCode::syntax, "EXISTS asks for a named parameter: EXISTS[#<name>]",
@@ -153,19 +123,16 @@ core::Result<void> Parser::exists(size_t column) {
 }
 
 /// `Q5`, `PI`, or a function of the operand behind it: `SIN Q5`, `SQRT(...)`.
-core::Result<void> Parser::klartext_operand() {
+core::Result<void> ExpressionReader::klartext_operand() {
     const size_t begin = lexer_.at;
-    const auto push = [&](double value) {
-        pool_.instructions.push_back({Operation::number, static_cast<uint32_t>(begin + 1), value});
-    };
     if (upper(lexer_.line[begin]) == 'Q') {
         FEELER_TRY(const int number, parse_q_parameter(lexer_));
-        push(number);
+        push(number, begin);
         emit(numbered, begin);
         return {};
     }
     if (lexer_.accept_word("PI")) {
-        push(std::numbers::pi);
+        push(std::numbers::pi, begin);
         return {};
     }
     for (const Function& candidate : functions_of(syntax_)) {
@@ -173,7 +140,7 @@ core::Result<void> Parser::klartext_operand() {
         if (++depth_ > deepest) return lexer_.unexpected_character();
         if (auto done = value(); !done) return done;
         --depth_;
-        if (candidate.operation == Operation::arc_tangent) push(1.0);
+        if (candidate.operation == Operation::arc_tangent) push(1.0, begin);
         emit(candidate.operation, begin);
         return {};
     }
@@ -182,8 +149,9 @@ core::Result<void> Parser::klartext_operand() {
                       lexer_.span(begin, begin + letters.size()));
 }
 
-core::Result<void> Parser::function() {
+core::Result<void> ExpressionReader::function() {
     if (syntax_ == ExpressionSyntax::klartext) return klartext_operand();
+    if (syntax_ == ExpressionSyntax::siemens) return siemens_operand();
     const size_t begin = lexer_.at;
     if (lexer_.accept_word("ATAN")) return arc_tangent(begin);
     if (lexer_.accept_word("EXISTS")) return exists(begin);
@@ -208,7 +176,7 @@ core::Result<void> Parser::function() {
                       lexer_.span(begin, begin + letters.size()));
 }
 
-core::Result<void> Parser::number() {
+core::Result<void> ExpressionReader::number() {
     const size_t begin = lexer_.at;
     FEELER_TRY(const Number found, lexer_.number());
     pool_.instructions.push_back(
@@ -216,7 +184,7 @@ core::Result<void> Parser::number() {
     return {};
 }
 
-core::Result<void> Parser::value() {
+core::Result<void> ExpressionReader::value() {
     const char c = lexer_.peek();
     const size_t begin = lexer_.at;
     if (c == open()) return brackets();
@@ -226,7 +194,7 @@ core::Result<void> Parser::value() {
         ++ahead.at;
         const char next = ahead.peek();
         const bool sign = next == '+' || next == '-';
-        if (next == '#' || next == open() || is_letter(next) || sign) {
+        if (next == '#' || next == open() || begins_operand(next) || sign) {
             if (++depth_ > deepest) return lexer_.unexpected_character();
             lexer_ = ahead;
             auto done = value();
@@ -236,11 +204,9 @@ core::Result<void> Parser::value() {
         }
     }
     if (lexer_.is_at_number()) return number();
-    if (is_letter(c)) return function();
+    if (begins_operand(c)) return function();
     return lexer_.unexpected_character();
 }
-
-} // namespace
 
 core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
                                      Number& number) {
@@ -252,11 +218,11 @@ core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, Expr
             return Expression{};
         }
         const char next = (++(ahead = lexer).at, ahead.peek());
-        if (std::string_view("#[(+-").find(next) == std::string_view::npos && !is_letter(next))
+        if (std::string_view("#[(+-_$'").find(next) == std::string_view::npos && !is_letter(next))
             return tl::unexpected(std::move(lexer.number()).error());
     }
     const auto first = static_cast<uint32_t>(pool.instructions.size());
-    if (auto done = Parser(lexer, syntax, pool).value(); !done)
+    if (auto done = ExpressionReader(lexer, syntax, pool).value(); !done)
         return tl::unexpected(std::move(done).error());
     number.has_point = true; // a computed value is in full units
     return Expression{first, static_cast<uint32_t>(pool.instructions.size()) - first};
@@ -265,7 +231,7 @@ core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, Expr
 core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
                                    Number& number) {
     const auto first = static_cast<uint32_t>(pool.instructions.size());
-    if (auto done = Parser(lexer, syntax, pool).expression(0); !done)
+    if (auto done = ExpressionReader(lexer, syntax, pool).expression(0); !done)
         return tl::unexpected(std::move(done).error());
     if (pool.instructions.size() == first + 1
         && pool.instructions[first].operation == Operation::number) {
@@ -280,7 +246,7 @@ core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, Expres
 core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
                                          ExpressionPool& pool) {
     const auto first = static_cast<uint32_t>(pool.instructions.size());
-    if (auto done = Parser(lexer, syntax, pool).brackets(); !done)
+    if (auto done = ExpressionReader(lexer, syntax, pool).brackets(); !done)
         return tl::unexpected(std::move(done).error());
     return Expression{first, static_cast<uint32_t>(pool.instructions.size()) - first};
 }

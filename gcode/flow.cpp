@@ -9,6 +9,7 @@
 #include "gcode/klartext.h"
 #include "gcode/modes.h"
 #include "gcode/parser.h"
+#include "gcode/siemens_flow.h"
 
 namespace gcode {
 namespace {
@@ -361,6 +362,7 @@ core::Result<void> Flowing::run() {
 
 core::Result<void> run_flow(const FlowStep& step) {
     if (step.dialect.language == Language::klartext) return run_klartext_flow(step);
+    if (step.dialect.language == Language::siemens) return run_siemens_flow(step);
     switch (step.block.flow.kind) {
     case do_loop:
     case program_number:

@@ -8,6 +8,7 @@
 #include "gcode/klartext_parser.h"
 #include "gcode/lexer.h"
 #include "gcode/parser.h"
+#include "gcode/siemens_parser.h"
 
 namespace gcode {
 namespace {
@@ -18,8 +19,9 @@ bool is_one_of(FlowKind kind, std::initializer_list<FlowKind> kinds) {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-/// The block number a line begins with, and what comes behind it.
-std::optional<double> take_number(Lexer& lexer) {
+} // namespace
+
+std::optional<double> take_block_number(Lexer& lexer) {
     while (lexer.accept('/'))
         if (is_digit(lexer.peek())) ++lexer.at;
     if (upper(lexer.peek()) != 'N') return std::nullopt;
@@ -29,8 +31,6 @@ std::optional<double> take_number(Lexer& lexer) {
     lexer.accept('/');
     return number ? std::optional(number->value) : std::nullopt;
 }
-
-} // namespace
 
 std::string label_of(double number) { return fmt::format("{:.12g}", number); }
 
@@ -103,6 +103,7 @@ std::optional<uint32_t> FlowIndex::line_of_number(double number, uint32_t from,
 
 FlowIndex index_of(const Program& program, const Dialect& dialect) {
     if (dialect.language == Language::klartext) return klartext_index(program, dialect);
+    if (dialect.language == Language::siemens) return siemens_index(program, dialect);
     FlowIndex index;
     Block block;
     uint32_t scope = 0;
@@ -110,7 +111,7 @@ FlowIndex index_of(const Program& program, const Dialect& dialect) {
     for (size_t number = 1; program.has_line(number).value_or(false); ++number) {
         const auto line = static_cast<uint32_t>(number);
         Lexer lexer{.line = program.line(number), .line_number = line};
-        if (const auto block_number = take_number(lexer))
+        if (const auto block_number = take_block_number(lexer))
             index.numbers.push_back({*block_number, line});
         if (!may_begin_flow(lexer.peek())) continue;
         if (is_program_number(lexer.peek()) && !dialect.has_o_words) {

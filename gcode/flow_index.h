@@ -19,6 +19,7 @@ struct FlowMark {
     uint32_t line = 0;
     uint32_t scope = 0;          // line of the `sub` it stands in; 0 outside
     bool closes_do_loop = false; // a `while` that ends a `do`
+    uint32_t partner = 0;        // Siemens: line of the statement it belongs with; 0 when missing
 };
 
 /// A block number.
@@ -52,6 +53,11 @@ struct FlowIndex {
     /// The line with a block number: the first one from a line up to another.
     std::optional<uint32_t> line_of_number(double number, uint32_t from, uint32_t up_to) const;
 };
+
+struct Lexer;
+
+/// The block number a line begins with, which is read with what switches the block off.
+std::optional<double> take_block_number(Lexer& lexer);
 
 /// The name of a label that is written as a number: 5, or 5.5.
 std::string label_of(double number);

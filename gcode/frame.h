@@ -8,6 +8,7 @@
 #include "gcode/modal_state.h"
 #include "gcode/parameters.h"
 #include "gcode/shared.h"
+#include "gcode/siemens_block.h"
 
 namespace gcode {
 
@@ -38,8 +39,9 @@ struct Frame {
     LocalParameters locals{};
     bool shares_locals = false; // M98: #1 to #33 are those of the caller
     NamedValues named{};
-    std::map<uint32_t, int64_t> repeats{};     // line of `repeat`: rounds still to go
-    int64_t rounds_left = 0;                   // of M98 L
+    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names that are no REAL
+    std::map<uint32_t, int64_t> repeats{};                   // line of `repeat`: rounds still to go
+    int64_t rounds_left = 0;                                 // of M98 L
     std::optional<LocalParameters> again{};    // the locals that another round begins with
     Shared<std::optional<ModalState>> saved{}; // M70, M73
     bool restores = false;                     // M73: at the return

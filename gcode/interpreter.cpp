@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "gcode/alarms.h"
+#include "gcode/assignments.h"
 #include "gcode/before_block.h"
 #include "gcode/decimal_points.h"
 #include "gcode/execution.h"
@@ -13,6 +14,7 @@
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
 #include "gcode/program_parameters.h"
+#include "gcode/siemens.h"
 
 namespace gcode {
 namespace {
@@ -21,7 +23,8 @@ using core::ErrorCode;
 
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
-    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub;
+    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
+           || kind == FlowKind::call_program || kind >= FlowKind::for_loop;
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -33,14 +36,6 @@ bool is_deleted(std::string_view line) {
 } // namespace
 
 struct Interpreter::Scratch {
-    /// A parameter that a block has set, and what it was before.
-    struct Undo {
-        bool is_named;
-        double number;
-        std::string name;
-        Value value;
-    };
-
     ProgramLibrary& library;
     const Environment& environment;
     const Dialect& dialect;
@@ -49,22 +44,34 @@ struct Interpreter::Scratch {
     BlockResult result{};
     std::string line_text{};
     BeforeBlock before{};
-    std::vector<Undo> undos{};
+    std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
+    std::unique_ptr<Environment> iso_environment{}; // Siemens, behind G291
+    std::unique_ptr<Scratch> iso{};
 
+    Scratch& speaking(const InterpreterState& state);
     core::Result<bool> read_line(InterpreterState& state);
     core::Result<bool> end_of_text(InterpreterState& state);
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
-    core::Result<void> work_out_words(const ProgramParameters& parameters);
-    core::Result<void> assign(InterpreterState& state, ProgramParameters& parameters);
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
     core::SourceSpan place_of(core::SourceSpan where) const;
     void place_in_lines();
 };
+
+/// Who reads the program's language where it stands: a control may have two.
+Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
+    if (dialect.language != Language::siemens || !state.siemens->is_iso) return *this;
+    if (!iso) {
+        iso_environment = std::make_unique<Environment>(environment);
+        iso_environment->dialect = DialectId::siemens_iso;
+        iso.reset(new Scratch{library, *iso_environment, gcode::dialect(DialectId::siemens_iso)});
+    }
+    return *iso;
+}
 
 /// Reads the next line that says something; false at the end of the text.
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
@@ -107,8 +114,14 @@ void Interpreter::Scratch::remember_words(InterpreterState& state) const {
         if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
 }
 
-/// What the end of a text means: the end of the run, unless a subprogram should have gone back.
+/// What the end of a text means: the end of the run, unless a subprogram should have gone back or
+/// does so by itself, so that there is more to read.
 core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
+    if (state.ending == Ending::running && state.frames.size() > 1 && dialect.text_end_returns) {
+        keep_calls(state, before);
+        leave(state);
+        return true;
+    }
     if (state.ending == Ending::running && state.frames.size() > 1)
         return core::fail(ErrorCode::syntax,
                           fmt::format("the subprogram {} ends here without {}: the control stops "
@@ -135,75 +148,11 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, Place pla
     result.warnings.clear();
 }
 
-core::Result<void> Interpreter::Scratch::work_out_words(const ProgramParameters& parameters) {
-    size_t kept = 0;
-    for (size_t i = 0; i < block.words.size(); ++i) {
-        Word& word = block.words[i];
-        if (word.expression) {
-            FEELER_TRY(const Value value, evaluate(block.pool, word.expression, block.line,
-                                                   parameters, dialect.arithmetic));
-            if (!value) continue; // Fanuc: a vacant variable, as if the word were not there
-            word.value = *value;
-        }
-        if (kept != i) block.words[kept] = word;
-        ++kept;
-    }
-    block.words.resize(kept);
-    return {};
-}
-
-/// All right-hand sides are worked out before the first parameter is set.
-core::Result<void> Interpreter::Scratch::assign(InterpreterState& state,
-                                                ProgramParameters& parameters) {
-    undos.clear();
-    values.clear();
-    std::vector<double> numbers;
-    for (const Assignment& entry : block.assignments) {
-        Value value = entry.plain;
-        if (entry.value) {
-            FEELER_TRY(value, evaluate(block.pool, entry.value, block.line, parameters,
-                                       dialect.arithmetic));
-        }
-        values.push_back(value);
-        Value number = 0.0;
-        if (!entry.is_named) {
-            FEELER_TRY(number, evaluate(block.pool, entry.number, block.line, parameters,
-                                        dialect.arithmetic));
-        }
-        numbers.push_back(number.value_or(0.0));
-    }
-    for (size_t i = 0; i < block.assignments.size(); ++i) {
-        const Assignment& entry = block.assignments[i];
-        if (entry.is_named) {
-            const std::string& name = block.pool.names[entry.name];
-            const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
-                                                     : core::Result<Value>(Value{});
-            undos.push_back({true, 0.0, name, *old});
-            if (auto set = parameters.set_named(name, values[i], entry.span); !set) return set;
-        } else {
-            FEELER_TRY(const Value old, parameters.numbered(numbers[i], entry.span));
-            undos.push_back({false, numbers[i], {}, old});
-            if (auto set = parameters.set_numbered(numbers[i], values[i], entry.span); !set)
-                return set;
-            if (auto heard = heed_alarm(block, dialect, numbers[i], values[i], entry.span, result);
-                !heard)
-                return heard;
-        }
-    }
-    (void)state;
-    return {};
-}
-
 /// Gives the parameters of a block that failed their old values.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);
-    for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
-        if (undo->is_named)
-            parameters.restore_named(undo->name, undo->value);
-        else
-            (void)parameters.set_numbered(undo->number, undo->value, {});
-    }
+    take_back_assignments(undos, parameters);
     undos.clear();
     restore(state, before);
 }
@@ -218,10 +167,10 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
             FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
             if (!holds) return {};
         }
-        if (auto done = work_out_words(parameters); !done) return done;
-        if (auto done = assign(state, parameters); !done) return done;
+        const Assigning assigning{block, dialect, parameters, undos, values, result};
+        if (auto done = work_out_block(assigning); !done) return done;
         if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
-        if (dialect.system_parameters != SystemParameters::rs274) note_clock(block, state, result);
+        if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);
         if (changes_level(block.flow.kind)) keep_calls(state, before);
         if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
             return run_flow({library, environment, dialect, block, state, result});
@@ -237,12 +186,15 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         !looked_up)
         return looked_up;
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
-        || !state.modal_macros.empty())
+        || !state.modal_macros.empty()
+        || (dialect.language == Language::siemens && changes_levels_in_siemens(statement, state)))
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
     if (dialect.language == Language::klartext) return run_klartext(execution);
+    if (dialect.language == Language::siemens) return run_siemens(execution);
     if (auto taken = take_steps(execution); !taken) return taken;
     look_for_regrets(execution, before.modal);
+    if (state.siemens->is_iso) return leave_iso(execution);
     return {};
 }
 
@@ -250,8 +202,12 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     if (!dialect.supported)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("the dialect {} is not supported yet", dialect.name));
-    FEELER_TRY(const bool found, read_line(state));
-    if (!found) return end_of_text(state);
+    FEELER_TRY(bool found, read_line(state));
+    while (!found) {
+        FEELER_TRY(const bool goes_on, end_of_text(state));
+        if (!goes_on) return false;
+        FEELER_TRY(found, read_line(state));
+    }
     const Place place{state.next.source, block.line};
     begin_result(state, place);
     if (state.next_block >= environment.limits.blocks)
@@ -262,7 +218,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                           {.line = block.line, .column = 1});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    if (dialect.system_parameters != SystemParameters::rs274) remember_words(state);
+    if (remembers_words(dialect.system_parameters)) remember_words(state);
     if (auto watched = watch_for_endless_loop(state, place); !watched)
         return tl::unexpected(std::move(watched).error());
     return true;
@@ -294,36 +250,36 @@ Interpreter::~Interpreter() = default;
 
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
     while (true) {
+        Scratch& scratch = scratch_->speaking(state);
         Contour& contour = state.contour;
         if (!contour.ready.empty()) {
-            scratch_->result = std::move(contour.ready.front());
+            scratch.result = std::move(contour.ready.front());
             contour.ready.pop_front();
-            return &scratch_->result;
+            return &scratch.result;
         }
         if (contour.failure) return tl::unexpected(*contour.failure);
         if (state.ending != Ending::running) return nullptr;
-        keep(state, scratch_->before);
-        scratch_->undos.clear();
+        keep(state, scratch.before);
+        scratch.undos.clear();
         const uint32_t source = state.next.source;
-        auto found = scratch_->try_next(state);
+        auto found = scratch.try_next(state);
         if (found)
-            scratch_->place_in_lines();
+            scratch.place_in_lines();
         else
-            found.error().where = scratch_->place_of(found.error().where);
+            found.error().where = scratch.place_of(found.error().where);
         const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
-        if (found && *found && straight_out) return &scratch_->result;
+        if (found && *found && straight_out) return &scratch.result;
         core::Result<void> taken;
-        if (found && *found && scratch_->library.program(source).windows)
-            keep_text(scratch_->result);
+        if (found && *found && scratch.library.program(source).windows) keep_text(scratch.result);
         if (found && *found)
-            taken = take_block(contour, scratch_->result, scratch_->before.modal, state.modal);
+            taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
         else if (found)
             taken = end_contour(contour);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
-        scratch_->take_back(state);
-        error.where = scratch_->place_of(error.where);
-        if (error.file.empty()) error.file = scratch_->library.program(source).file;
+        scratch.take_back(state);
+        error.where = scratch.place_of(error.where);
+        if (error.file.empty()) error.file = scratch.library.program(source).file;
         if (contour.is_idle()) return tl::unexpected(std::move(error));
         // What came before is complete but for the moves that waited for this one.
         give_up(contour);

@@ -18,6 +18,7 @@
 #include "gcode/program_library.h"
 #include "gcode/rules.h"
 #include "gcode/shared.h"
+#include "gcode/siemens_state.h"
 #include "gcode/source.h"
 #include "gcode/tables.h"
 
@@ -62,6 +63,7 @@ struct InterpreterState {
     Shared<Tables> tables;
     Contour contour; // blocks on their way through cutter radius compensation
     Shared<KlartextState> klartext;
+    Shared<SiemensState> siemens;
     LoopWatch watch;
     RuleWatch rules;
 

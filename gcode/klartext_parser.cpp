@@ -168,7 +168,10 @@ bool goes_on(std::string_view line) {
 
 core::Result<void> parse_klartext(std::string_view text, uint32_t line, const Dialect& dialect,
                                   Block& block) {
-    KlartextReader reader{.lexer = {.line = text, .line_number = line, .blanks_end_numbers = true},
+    KlartextReader reader{.lexer = {.line = text,
+                                    .line_number = line,
+                                    .blanks_end_numbers = true,
+                                    .comma_is_point = true},
                           .dialect = dialect,
                           .block = block};
     return read_block(reader);

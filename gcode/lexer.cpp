@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -44,8 +45,8 @@ Digits collect_digits(std::string_view line, size_t begin) {
     return found;
 }
 
-/// Klartext: only behind the sign may blanks stand.
-Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
+/// Klartext and Siemens: only behind the sign may blanks stand.
+Digits collect_digits_without_blanks(std::string_view line, size_t begin, bool comma) {
     Digits found;
     size_t at = begin;
     if (at < line.size() && (line[at] == '-' || line[at] == '+')) {
@@ -53,7 +54,7 @@ Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
         for (++at; at < line.size() && is_blank(line[at]);) ++at;
     }
     for (; at < line.size(); ++at) {
-        const bool point = (line[at] == '.' || line[at] == ',') && !found.has_point;
+        const bool point = (line[at] == '.' || (comma && line[at] == ',')) && !found.has_point;
         if (!point && !is_digit(line[at])) break;
         found.has_point |= point;
         found.digits += !point;
@@ -64,6 +65,22 @@ Digits collect_digits_without_blanks(std::string_view line, size_t begin) {
     }
     found.end = at;
     return found;
+}
+
+/// Siemens: `EX` and a whole number behind a number are a power of ten.
+bool take_exponent(std::string_view line, size_t& at, Number& number) {
+    if (at + 2 >= line.size() || upper(line[at]) != 'E' || upper(line[at + 1]) != 'X') return true;
+    size_t next = at + 2;
+    const bool negative = line[next] == '-';
+    if (negative || line[next] == '+') ++next;
+    int exponent = 0;
+    const size_t digits = next;
+    for (; next < line.size() && is_digit(line[next]) && exponent < 1000; ++next)
+        exponent = exponent * 10 + (line[next] - '0');
+    if (next == digits || exponent > 300) return false;
+    number.value *= std::pow(10.0, negative ? -exponent : exponent);
+    at = next;
+    return true;
 }
 
 } // namespace
@@ -90,12 +107,23 @@ bool Lexer::is_at_number() {
     return is_digit(c) || c == '.' || c == '-' || c == '+';
 }
 
+tl::unexpected<core::Error> Lexer::bad_exponent(size_t begin) const {
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format("the exponent of '{}' is no whole number up to 300", written_from(begin)),
+        span_from(begin));
+}
+
 core::Result<Number> Lexer::number() {
     peek();
-    if (Number number; !blanks_end_numbers && read_short_number(line, at, number)) return number;
     const size_t begin = at;
-    const Digits found = blanks_end_numbers ? collect_digits_without_blanks(line, begin)
-                                            : collect_digits(line, begin);
+    if (Number number; !comma_is_point && read_short_number(line, at, number)) {
+        if (!has_exponents || take_exponent(line, at, number)) return number;
+        return bad_exponent(begin);
+    }
+    const Digits found = blanks_end_numbers
+                             ? collect_digits_without_blanks(line, begin, comma_is_point)
+                             : collect_digits(line, begin);
     if (found.digits == 0)
         return core::fail(ErrorCode::syntax, "a number is missing here", span(begin, begin + 1));
     at = found.end;
@@ -106,6 +134,7 @@ core::Result<Number> Lexer::number() {
     Number number{.has_point = found.has_point};
     std::from_chars(found.text.data(), found.text.data() + found.count, number.value,
                     std::chars_format::fixed);
+    if (has_exponents && !take_exponent(line, at, number)) return bad_exponent(begin);
     return number;
 }
 

@@ -25,6 +25,7 @@ constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 constexpr bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
+constexpr bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
 /// A place in a line that moves on as things are read. A plain value: copy it to look ahead.
 ///
@@ -34,7 +35,9 @@ struct Lexer {
     std::string_view line;
     uint32_t line_number = 1;
     size_t at = 0;
-    bool blanks_end_numbers = false; // Klartext, where a comma may be the point as well
+    bool blanks_end_numbers = false; // Klartext and Siemens
+    bool comma_is_point = false;     // Klartext: a comma may be the point as well
+    bool has_exponents = false;      // Siemens: 1.5EX-3
 
     /// The next character that is no blank, which stays to be read; NUL at the end.
     char peek() {
@@ -71,6 +74,7 @@ struct Lexer {
     ///
     /// Errors: syntax when there is none, or it has too many digits.
     core::Result<Number> number();
+    tl::unexpected<core::Error> bad_exponent(size_t begin) const;
 
     /// The comment in brackets that begins here, which ends at the bracket that matches.
     ///

@@ -104,6 +104,8 @@ struct ModalState {
     Offsets offsets;
     std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
+    // Siemens: in which the last motion of the plane ended; 0, 0 when that is not known.
+    std::array<double, 2> direction{};
 
     /// Whether the length offset that is on is that of the tool in the spindle.
     bool length_is_tools() const {

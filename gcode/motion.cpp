@@ -278,7 +278,10 @@ core::Result<Position> target_of(const Execution& execution) {
         Position machine = machine_from_program(modal.offsets, modal.position);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (const Word* word = execution.statement.word(axis_letters[axis]))
-                machine[axis] = axis_value(execution, axis, *word);
+                machine[axis] =
+                    axis_value(execution, axis, *word)
+                    + (execution.dialect.machine_places_are_of_tip ? modal.offsets.tool[axis]
+                                                                   : 0.0);
         const Position place = program_from_machine(modal.offsets, machine);
         const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
         for (size_t axis = 0; axis < axis_count; ++axis)

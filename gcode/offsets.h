@@ -10,6 +10,7 @@ namespace gcode {
 constexpr size_t plain_offset_count = 9;
 constexpr size_t extended_offset_count = 300;
 constexpr size_t work_offset_count = plain_offset_count + extended_offset_count;
+constexpr size_t no_work_offset = work_offset_count; // Siemens: G500
 
 /// The origin of a work offset in machine coordinates, and how far it is turned about Z.
 struct WorkOffset {

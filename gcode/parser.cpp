@@ -10,6 +10,7 @@
 #include "gcode/lexer.h"
 #include "gcode/messages.h"
 #include "gcode/plain_words.h"
+#include "gcode/siemens_parser.h"
 
 namespace gcode {
 namespace {
@@ -263,10 +264,13 @@ core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialec
     block.clear();
     block.line = line;
     block.text = text;
+    if (dialect.language == Language::words) {
+        if (read_plain_words(text, line, dialect, block)) return {};
+        block.words.clear();
+        return LineParser(text, line, dialect, block).parse();
+    }
     if (dialect.language == Language::klartext) return parse_klartext(text, line, dialect, block);
-    if (read_plain_words(text, line, dialect, block)) return {};
-    block.words.clear();
-    return LineParser(text, line, dialect, block).parse();
+    return parse_siemens(text, line, dialect, block);
 }
 
 } // namespace gcode

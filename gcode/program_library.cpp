@@ -1,8 +1,11 @@
 #include "gcode/program_library.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
+
+#include "gcode/lexer.h"
 
 namespace gcode {
 namespace {
@@ -27,6 +30,21 @@ std::optional<fs::path> file_in(const fs::path& folder, const std::string& name)
     const fs::path exact = root / name;
     if (fs::is_regular_file(exact, error)) found = fs::canonical(exact, error);
     if (!found || error || found->parent_path() != root) return std::nullopt;
+    return found;
+}
+
+/// The first file in a folder, by name, that is called so in some case.
+std::optional<std::string> name_in_any_case(const fs::path& folder, const std::string& wanted) {
+    std::optional<std::string> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        std::string name = entry->path().filename().string();
+        const auto same = [](char a, char b) { return upper(a) == b; };
+        if (std::equal(name.begin(), name.end(), wanted.begin(), wanted.end(), same)
+            && (!found || name < *found))
+            found = std::move(name);
+    }
     return found;
 }
 
@@ -69,6 +87,14 @@ ProgramLibrary::find(const std::vector<std::string>& file_names) {
             return source;
         }
     }
+    return std::nullopt;
+}
+
+core::Result<std::optional<uint32_t>>
+ProgramLibrary::find_in_any_case(const std::vector<std::string>& file_names) {
+    for (const std::string& folder : search_path_)
+        for (const std::string& name : file_names)
+            if (const auto actual = name_in_any_case(folder, name)) return find({*actual});
     return std::nullopt;
 }
 

@@ -37,6 +37,10 @@ public:
     /// Errors: io and syntax as read_program, and when names leave the search path.
     core::Result<std::optional<uint32_t>> find(const std::vector<std::string>& file_names);
 
+    /// Likewise, whatever the case of the letters is; the names are in capitals.
+    core::Result<std::optional<uint32_t>>
+    find_in_any_case(const std::vector<std::string>& file_names);
+
 private:
     struct Source {
         std::shared_ptr<const Program> program;

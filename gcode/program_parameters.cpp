@@ -4,18 +4,23 @@
 
 #include <fmt/format.h>
 
+#include "gcode/siemens_flow.h"
+
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
 /// The number of a parameter; a computed one may be off by rounding.
-core::Result<int> parameter_number(double number, int lowest, core::SourceSpan where) {
+core::Result<int> parameter_number(double number, int lowest, const Dialect& dialect,
+                                   core::SourceSpan where) {
     const double whole = std::round(number);
+    if (whole == 0.0 && std::abs(number) < 1e-4 && dialect.has_parameter_zero)
+        return highest_parameter;
     if (std::abs(number - whole) > 1e-4 || !(whole >= lowest && whole <= highest_parameter))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("#{:.12g}: parameters have whole numbers from {} to {}",
-                                      number, lowest, highest_parameter),
+                          fmt::format("{}{:.12g}: parameters have whole numbers from {} to {}",
+                                      dialect.parameter_letter, number, lowest, highest_parameter),
                           where);
     return static_cast<int>(whole);
 }
@@ -36,13 +41,18 @@ const Frame& ProgramParameters::locals() const {
     return const_cast<ProgramParameters*>(this)->locals();
 }
 
+bool ProgramParameters::is_global(std::string_view name) const {
+    return name.starts_with('_') && !dialect_.names_are_declared;
+}
+
 /// Names that begin with `_` are of all levels, others of the one that runs.
 const NamedValues& ProgramParameters::named_values(std::string_view name) const {
-    return name.starts_with('_') ? state_.parameters->named() : state_.frames.back().named;
+    return is_global(name) ? state_.parameters->named() : state_.frames.back().named;
 }
 
 core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan where) const {
-    FEELER_TRY(const int index, parameter_number(number, dialect_.unset_is_vacant ? 0 : 1, where));
+    FEELER_TRY(const int index,
+               parameter_number(number, dialect_.unset_is_vacant ? 0 : 1, dialect_, where));
     if (index == 0) return Value{};
     const Value unset = dialect_.unset_is_vacant ? Value{} : Value{0.0};
     if (index <= dialect_.local_count) {
@@ -54,10 +64,23 @@ core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan 
     return value ? value : unset;
 }
 
+tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
+                                                          core::SourceSpan where) const {
+    const bool system = name.starts_with('$');
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("'{}': {}", name,
+                                  system ? "this variable of the control is not known here; write "
+                                           "its value instead"
+                                         : "there is no variable of this name in this program: "
+                                           "declare it with DEF REAL, or write its value"),
+                      where);
+}
+
 core::Result<Value> ProgramParameters::named(std::string_view name, core::SourceSpan where) const {
     if (const auto shown = system_parameter(state_, environment_, name)) return *shown;
     const NamedValues& all = named_values(name);
     const auto found = all.find(name);
+    if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
     if (found == all.end())
         return core::fail(ErrorCode::invalid_value, fmt::format("#<{}> was never set", name),
                           where);
@@ -71,7 +94,7 @@ bool ProgramParameters::exists(std::string_view name) const {
 
 core::Result<void> ProgramParameters::set_numbered(double number, Value value,
                                                    core::SourceSpan where) {
-    FEELER_TRY(const int index, parameter_number(number, 1, where));
+    FEELER_TRY(const int index, parameter_number(number, 1, dialect_, where));
     if (index <= dialect_.local_count) {
         locals().locals[static_cast<size_t>(index)] = value;
         return {};
@@ -84,7 +107,7 @@ core::Result<void> ProgramParameters::set_numbered(double number, Value value,
 
 void ProgramParameters::restore_named(std::string_view name, Value value) {
     NamedValues& own = state_.frames.back().named;
-    if (name.starts_with('_'))
+    if (is_global(name))
         state_.parameters.write().set_named(name, value);
     else if (value)
         own.insert_or_assign(std::string(name), *value);
@@ -98,9 +121,15 @@ core::Result<void> ProgramParameters::set_named(std::string_view name, Value val
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("#<{}> is the control's own and cannot be set", name), where);
     const NamedValues& all = named_values(name);
+    if (dialect_.names_are_declared) {
+        if (all.find(name) == all.end()) return undeclared(name, where);
+        const auto type = state_.frames.back().types.find(name);
+        if (type != state_.frames.back().types.end())
+            value = held_as(type->second, value.value_or(0.0));
+    }
     if (all.size() >= most_named_parameters && all.find(name) == all.end())
         return core::fail(ErrorCode::invalid_value, "there are too many named parameters", where);
-    if (name.starts_with('_'))
+    if (is_global(name))
         state_.parameters.write().set_named(name, value.value_or(0.0));
     else
         state_.frames.back().named.insert_or_assign(std::string(name), value.value_or(0.0));

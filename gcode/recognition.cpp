@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/codes.h"
+#include "gcode/lexer.h"
 #include "gcode/parser.h"
 
 namespace gcode {
@@ -27,10 +28,48 @@ Clue foreign_clue(std::string_view text, size_t line) {
     for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "TOOL DEF", "BLK FORM"})
         if (words.starts_with(word))
             return found(DialectId::heidenhain, line, fmt::format("says {}", word));
-    for (const std::string_view word : {"PROC ", "DEF ", "EXTERN ", "MCALL", "CYCLE8", "%_N_"})
+    return std::nullopt;
+}
+
+/// Things only native Siemens has: keywords behind the block number, headers, values behind `=`.
+Clue siemens_clue(std::string_view text, size_t line) {
+    std::string words;
+    for (const char c : text) words.push_back(upper(c));
+    size_t first = words.find_first_not_of(" \t/");
+    if (first == std::string::npos) return std::nullopt;
+    if (std::string_view(words).substr(first).starts_with(";$PATH="))
+        return found(DialectId::siemens, line, "has a ;$PATH=");
+    words = words.substr(first, words.find(';') - first);
+    if (words.starts_with("%_N_")) return found(DialectId::siemens, line, "has a header %_N_");
+    if (words.empty() || words.find('#') != std::string::npos) return std::nullopt;
+    if (words.front() == 'N' && words.size() > 1 && is_digit(words[1]))
+        words.erase(0, std::min(words.find_first_not_of("0123456789", 1), words.size()));
+    words.erase(0, std::min(words.find_first_not_of(" \t"), words.size()));
+    for (const std::string_view word :
+         {"PROC ",   "DEF REAL", "DEF INT",  "DEF BOOL", "DEF STRING", "EXTERN ",
+          "MCALL",   "CYCLE8",   "MSG(",     "MSG (",    "GOTOF ",     "GOTOB ",
+          "SUPA",    "TRAORI",   "TRAFOOF",  "STOPRE",   "WORKPIECE(", "TRANS X",
+          "ATRANS ", "G500",     "CYCLE800", "HOLES1(",  "HOLES2("})
         if (words.starts_with(word))
             return found(DialectId::siemens, line, fmt::format("says {}", word));
+    const size_t behind_r = words.find_first_not_of("0123456789 ", 1);
+    if (words.size() > 2 && words[0] == 'R' && is_digit(words[1]) && behind_r < words.size()
+        && words[behind_r] == '=')
+        return found(DialectId::siemens, line, "sets an R parameter");
+    for (const std::string_view word :
+         {" CR=", "=AC(", "=IC(", "T=\"", " GOTOF ", " GOTOB ", " TURN=", " SUPA ", " AP=", " RP="})
+        if (words.find(word) != std::string::npos)
+            return found(DialectId::siemens, line,
+                         fmt::format("says {}", word.substr(word.find_first_not_of(' '))));
     return std::nullopt;
+}
+
+/// What the name of the file says: programs of Siemens are .MPF and .SPF.
+Clue name_clue(const std::string& file) {
+    std::string ending = file.substr(std::min(file.find_last_of('.'), file.size()));
+    for (char& c : ending) c = upper(c);
+    if (ending != ".MPF" && ending != ".SPF") return std::nullopt;
+    return Recognition{DialectId::siemens, fmt::format("its name ends in {}", ending)};
 }
 
 /// Things only LinuxCNC reads, which the parser of this version refuses.
@@ -136,6 +175,7 @@ Clue program_number_clue(const Block& block) {
 
 Recognition recognise(const Program& program) {
     constexpr size_t enough_lines = 10000; // that say something
+    if (Clue clue = name_clue(program.file)) return *clue;
     Habits habits;
     Block block;
     size_t lines = 0;
@@ -143,6 +183,7 @@ Recognition recognise(const Program& program) {
         if (!program.has_line(number).value_or(false)) break;
         const std::string_view text = program.line(number);
         if (Clue clue = foreign_clue(text, number)) return *clue;
+        if (Clue clue = siemens_clue(text, number)) return *clue;
         if (Clue clue = linuxcnc_clue(text, number)) return *clue;
         // Fanuc's is the widest of the languages whose lines hold words.
         if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))

@@ -120,6 +120,7 @@ void add(Digest& digest, const ModalState& modal) {
     add(digest, modal.spline);
     digest.add(uint64_t{modal.way_home.has_value()});
     if (modal.way_home) add_all(digest, *modal.way_home);
+    add_all(digest, modal.direction);
 }
 
 void add(Digest& digest, const Place& place) {
@@ -135,6 +136,10 @@ void add(Digest& digest, const Frame& frame) {
     for (const auto& [name, value] : frame.named) {
         digest.add(name);
         digest.add(value);
+    }
+    for (const auto& [name, type] : frame.types) {
+        digest.add(name);
+        digest.add(number_of(int(type)));
     }
     for (const auto& [line, left] : frame.repeats) {
         digest.add(number_of(line));
@@ -201,6 +206,48 @@ void add(Digest& digest, const KlartextState& klartext) {
     add(digest, klartext.transforms);
 }
 
+void add(Digest& digest, const SiemensDrilling& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.retract,
+                               cycle.reference,
+                               cycle.safety,
+                               cycle.bottom,
+                               cycle.dwell_below,
+                               cycle.first_depth,
+                               cycle.degression,
+                               cycle.dwell_above,
+                               cycle.feed_factor,
+                               double(cycle.clears_chips),
+                               cycle.least_peck,
+                               cycle.break_back,
+                               cycle.dwell_final,
+                               cycle.near,
+                               cycle.pitch,
+                               cycle.speed_in,
+                               cycle.speed_out,
+                               double(cycle.direction_after),
+                               cycle.feed_in,
+                               cycle.feed_out,
+                               double(cycle.direction)})
+        digest.add(value);
+    add_all(digest, cycle.aside);
+}
+
+void add(Digest& digest, const SiemensState& siemens) {
+    add_all(digest, siemens.pole);
+    digest.add(siemens.radius);
+    digest.add(siemens.angle_deg);
+    digest.add(uint64_t{siemens.modal_cycle.has_value()});
+    if (siemens.modal_cycle) add(digest, *siemens.modal_cycle);
+    digest.add(uint64_t{siemens.modal_call.has_value()});
+    if (siemens.modal_call) add(digest, *siemens.modal_call);
+    digest.add(number_of(siemens.edge));
+    digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
+                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.follows_tool)
+                         + 16 * int(siemens.is_iso)));
+    for (const std::string& name : siemens.tool_names) digest.add(name);
+}
+
 } // namespace
 
 uint64_t digest_of(const InterpreterState& state) {
@@ -226,6 +273,7 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
     add(digest, *state.klartext);
+    add(digest, *state.siemens);
     return digest.value();
 }
 

@@ -139,6 +139,8 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             statement.polar_radius = &word;
         } else if (word.letter == '^') {
             statement.polar_angle = &word;
+        } else if (word.letter >= 'i' && word.letter <= 'k') {
+            continue; // I1, J1 and K1 of CIP, which looks them up itself
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
             statement.letters |= letter_bit(word.letter);

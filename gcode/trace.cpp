@@ -35,17 +35,18 @@ std::string_view name_of(Plane plane) {
     return names[static_cast<size_t>(plane)];
 }
 
+std::string name_of_offset(size_t index) {
+    if (index == no_work_offset) return "G500";
+    if (index < 6) return fmt::format("G{}", 54 + index);
+    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
+    return fmt::format("P{}", index - plain_offset_count + 1);
+}
+
 namespace {
 
 std::string_view name_of(core::SpindleDirection direction) {
     if (direction == core::SpindleDirection::stopped) return "stopped";
     return direction == core::SpindleDirection::clockwise ? "clockwise" : "counterclockwise";
-}
-
-std::string name_of_offset(size_t index) {
-    if (index < 6) return fmt::format("G{}", 54 + index);
-    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
-    return fmt::format("P{}", index - plain_offset_count + 1);
 }
 
 std::string frame(const ProgramFrame& frame) {

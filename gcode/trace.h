@@ -10,6 +10,9 @@ namespace gcode {
 /// a millionth; coordinates that nobody knows are left out.
 std::string to_text(const CanonicalCommand& command);
 
+/// G54 to G59.3, P1 and on, or G500 without an offset.
+std::string name_of_offset(size_t index);
+
 /// XY, ZX, YZ, UV, WU or VW.
 std::string_view name_of(Plane plane);
 

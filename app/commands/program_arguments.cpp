@@ -27,7 +27,8 @@ std::string why_no_count(const std::string& text) {
 
 void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
     command.add_option("--dialect", arguments.dialect, "linuxcnc, fanuc, haas or grbl")
-        ->check(CLI::IsMember({"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}));
+        ->check(CLI::IsMember(
+            {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "siemens-iso", "heidenhain"}));
     command
         .add_option("--start-position", arguments.start_position,
                     "Machine coordinates at the first block, mm: X=-100,Y=-50,Z=0")

@@ -31,8 +31,8 @@ void read_machine_codes(TableReader& table, std::set<int>& codes) {
 
 ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder) {
     ProgramSettings settings;
-    if (const auto name =
-            table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "heidenhain"}))
+    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
+                                                 "siemens-iso", "heidenhain"}))
         settings.dialect = gcode::dialect_named(*name);
     settings.block_delete = table.boolean("block_delete");
     if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);

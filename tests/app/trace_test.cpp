@@ -106,12 +106,12 @@ TEST(Trace, EndsAtTheFirstErrorWithWhatCameBeforeIt) {
     EXPECT_EQ(folder.names().size(), 2u);
 }
 
-TEST(Trace, RefusesADialectThatThisVersionDoesNotSpeak) {
+TEST(Trace, RefusesADialectThatDoesNotExist) {
     const ScopedFolder folder;
-    const Ran ran = feeler({"trace", folder.write("p.nc", small_program), "--dialect", "siemens"});
+    const Ran ran = feeler({"trace", folder.write("p.nc", small_program), "--dialect", "mazak"});
     EXPECT_EQ(ran.status, 2);
     EXPECT_EQ(ran.out, "");
-    EXPECT_NE(ran.err.find("siemens"), std::string::npos);
+    EXPECT_NE(ran.err.find("mazak"), std::string::npos);
 }
 
 } // namespace

@@ -15,8 +15,9 @@ Recognition recognised(std::string_view text) {
 }
 
 TEST(Dialect, IsFoundByItsName) {
-    for (const DialectId id : {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas,
-                               DialectId::grbl, DialectId::siemens, DialectId::heidenhain}) {
+    for (const DialectId id :
+         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl,
+          DialectId::siemens, DialectId::heidenhain, DialectId::siemens_iso}) {
         EXPECT_EQ(dialect(id).id, id);
         EXPECT_EQ(dialect_named(dialect(id).name), id);
     }

@@ -159,10 +159,5 @@ TEST(Interpreter, SaysOnceThatUnitsWereAssumed) {
     EXPECT_EQ(warnings_of("G21 G0 X1\nM30\n"), "");
 }
 
-TEST(Interpreter, RefusesADialectItDoesNotHave) {
-    EXPECT_THAT(error_of("G0 X1", DialectId::siemens), HasSubstr("siemens is not supported yet"));
-    EXPECT_THAT(error_of("G0 X1", DialectId::siemens), HasSubstr("siemens"));
-}
-
 } // namespace
 } // namespace gcode

@@ -1,0 +1,114 @@
+#include "gcode/assignments.h"
+
+#include "gcode/alarms.h"
+
+namespace gcode {
+namespace {
+
+core::Result<Value> value_of(const Assigning& assigning, Expression expression) {
+    return evaluate(assigning.block.pool, expression, assigning.block.line, assigning.parameters,
+                    assigning.dialect.arithmetic);
+}
+
+/// Words that turn out to be nothing are taken out: Fanuc's vacant variables.
+core::Result<void> work_out_words(const Assigning& assigning) {
+    std::vector<Word>& words = assigning.block.words;
+    size_t kept = 0;
+    for (size_t i = 0; i < words.size(); ++i) {
+        Word& word = words[i];
+        if (word.expression) {
+            FEELER_TRY(const Value value, value_of(assigning, word.expression));
+            if (!value) continue;
+            word.value = *value;
+        }
+        if (kept != i) words[kept] = word;
+        ++kept;
+    }
+    words.resize(kept);
+    return {};
+}
+
+core::Result<Value> right_side(const Assigning& assigning, const Assignment& entry) {
+    if (!entry.value) return Value(entry.plain);
+    return value_of(assigning, entry.value);
+}
+
+core::Result<double> number_of(const Assigning& assigning, const Assignment& entry) {
+    if (entry.is_named) return 0.0;
+    FEELER_TRY(const Value number, value_of(assigning, entry.number));
+    return number.value_or(0.0);
+}
+
+core::Result<void> set(const Assigning& assigning, const Assignment& entry, double number,
+                       Value value) {
+    ProgramParameters& parameters = assigning.parameters;
+    if (entry.is_named) {
+        const std::string& name = assigning.block.pool.names[entry.name];
+        const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
+                                                 : core::Result<Value>(Value{});
+        assigning.undos.push_back({true, 0.0, name, *old});
+        return parameters.set_named(name, value, entry.span);
+    }
+    FEELER_TRY(const Value old, parameters.numbered(number, entry.span));
+    assigning.undos.push_back({false, number, {}, old});
+    if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
+    return heed_alarm(assigning.block, assigning.dialect, number, value, entry.span,
+                      assigning.result);
+}
+
+/// All right-hand sides are worked out before the first parameter is set.
+core::Result<void> assign(const Assigning& assigning) {
+    std::vector<Value>& values = assigning.values;
+    values.clear();
+    std::vector<double> numbers;
+    for (const Assignment& entry : assigning.block.assignments) {
+        FEELER_TRY(const Value value, right_side(assigning, entry));
+        values.push_back(value);
+        FEELER_TRY(const double number, number_of(assigning, entry));
+        numbers.push_back(number);
+    }
+    for (size_t i = 0; i < numbers.size(); ++i)
+        if (auto done = set(assigning, assigning.block.assignments[i], numbers[i], values[i]);
+            !done)
+            return done;
+    return {};
+}
+
+core::Result<void> work_out_in_order(const Assigning& assigning) {
+    auto word = assigning.block.words.begin();
+    const auto words_up_to = [&](uint32_t column) -> core::Result<void> {
+        for (; word != assigning.block.words.end() && word->span.column < column; ++word) {
+            if (!word->expression) continue;
+            FEELER_TRY(const Value value, value_of(assigning, word->expression));
+            word->value = value.value_or(0.0);
+        }
+        return {};
+    };
+    for (const Assignment& entry : assigning.block.assignments) {
+        if (auto done = words_up_to(entry.span.column); !done) return done;
+        FEELER_TRY(const Value value, right_side(assigning, entry));
+        FEELER_TRY(const double number, number_of(assigning, entry));
+        if (auto done = set(assigning, entry, number, value); !done) return done;
+    }
+    return words_up_to(UINT32_MAX);
+}
+
+} // namespace
+
+core::Result<void> work_out_block(const Assigning& assigning) {
+    if (assigning.dialect.assigns_in_order) return work_out_in_order(assigning);
+    if (auto done = work_out_words(assigning); !done) return done;
+    return assign(assigning);
+}
+
+void take_back_assignments(const std::vector<AssignmentUndo>& undos,
+                           ProgramParameters& parameters) {
+    for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
+        if (undo->is_named)
+            parameters.restore_named(undo->name, undo->value);
+        else
+            (void)parameters.set_numbered(undo->number, undo->value, {});
+    }
+}
+
+} // namespace gcode
