@@ -279,6 +279,7 @@ constexpr Dialect siemens = [] {
     entry.machine_places_are_of_tip = true;
     entry.text_end_returns = true;
     entry.radius_word = "CR=";
+    entry.radius_number_stays = false;
     entry.local_count = 0;
     entry.deepest_calls = 16;
     return entry;
