@@ -190,8 +190,8 @@ core::Result<void> SiemensFlowing::repeat_part() {
     }
     const auto begin = last_in(jumps[0].target, lines.begin, line_);
     if (!begin)
-        return refuse(
-            step_, fmt::format("there is no {} before this block to repeat from", jumps[0].target));
+        return refuse(step_, fmt::format("REPEAT: there is no {} before this block to repeat from",
+                                         jumps[0].target));
     if (jumps.size() > 1)
         return core::fail(ErrorCode::unsupported,
                           "REPEAT with two labels is not supported yet: put it behind the last "

@@ -111,7 +111,7 @@ TEST_P(Features, DoNotCareAboutCommentsAndBlockNumbers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfTheLanguage, Features, testing::ValuesIn(program_features()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& feature) { return feature.param.name; });
 
 } // namespace
 } // namespace test_support

@@ -97,7 +97,8 @@ TEST(Rs274Cycle, RefusesAxesOfNoUseAndCutterCompensation) {
     const std::string compensated =
         "G21 F100\nG0 X50 Y50 Z10\nG41.1 D3\nG1 X10 Y10\nX0\nG81 X1 Z-3 R2\n";
     EXPECT_EQ(error_of(compensated, DialectId::linuxcnc),
-              "6:1: G81: no cycle while cutter radius compensation is on: write G40 before");
+              "6:1: G81 is not possible between G41 and G40: switch cutter radius compensation "
+              "off before");
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2 K2"), DialectId::linuxcnc),
               "3:19: K2: nothing in this block uses it");
 }

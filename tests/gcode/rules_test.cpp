@@ -48,7 +48,7 @@ TEST(Rules, WantALengthOffsetBeforeTheFirstMotionInZ) {
 
 TEST(Rules, WantTheLengthOffsetOfTheToolThatWasChangedIn) {
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nT2 M6\nG0 Z2.\n")),
-                ElementsAre("missing-length-offset@4"));
+                ElementsAre("missing-length-offset@5"));
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nT2 M6\nG43 H2 Z2.\n")), IsEmpty());
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nT1 M6\nG0 Z2.\n")), IsEmpty());
 }
