@@ -46,12 +46,13 @@ core::Result<void> set(const Assigning& assigning, const Assignment& entry, doub
         const std::string& name = assigning.block.pool.names[entry.name];
         const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
                                                  : core::Result<Value>(Value{});
+        if (auto done = parameters.set_named(name, value, entry.span); !done) return done;
         assigning.undos.push_back({true, 0.0, name, *old});
-        return parameters.set_named(name, value, entry.span);
+        return {};
     }
-    FEELER_TRY(const Value old, parameters.numbered(number, entry.span));
-    assigning.undos.push_back({false, number, {}, old});
+    const Value old = parameters.kept(number);
     if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
+    assigning.undos.push_back({false, number, {}, old});
     return heed_alarm(assigning.block, assigning.dialect, number, value, entry.span,
                       assigning.result);
 }
@@ -107,7 +108,7 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos,
         if (undo->is_named)
             parameters.restore_named(undo->name, undo->value);
         else
-            (void)parameters.set_numbered(undo->number, undo->value, {});
+            parameters.restore_numbered(undo->number, undo->value);
     }
 }
 

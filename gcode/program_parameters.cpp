@@ -105,6 +105,23 @@ core::Result<void> ProgramParameters::set_numbered(double number, Value value,
     return {};
 }
 
+Value ProgramParameters::kept(double number) const {
+    const auto index = parameter_number(number, 1, dialect_, {});
+    if (!index) return {};
+    const bool is_local = *index <= dialect_.local_count;
+    return is_local ? locals().locals[static_cast<size_t>(*index)]
+                    : state_.parameters->numbered(*index);
+}
+
+void ProgramParameters::restore_numbered(double number, Value kept) {
+    const auto index = parameter_number(number, 1, dialect_, {});
+    if (!index) return;
+    if (*index <= dialect_.local_count)
+        locals().locals[static_cast<size_t>(*index)] = kept;
+    else if (state_.parameters->numbered(*index) != kept)
+        state_.parameters.write().set_numbered(*index, kept);
+}
+
 void ProgramParameters::restore_named(std::string_view name, Value value) {
     NamedValues& own = state_.frames.back().named;
     if (is_global(name))

@@ -20,7 +20,12 @@ public:
     core::Result<void> set_numbered(double number, Value value, core::SourceSpan where);
     core::Result<void> set_named(std::string_view name, Value value, core::SourceSpan where);
 
-    /// Gives a named parameter the value that it had, or takes it away if it was not there.
+    /// What is kept under a number, without what a control shows there; empty when nothing is.
+    Value kept(double number) const;
+
+    /// Gives a parameter what was kept there, or takes it away if nothing was. Offsets and modes
+    /// that followed a numbered one are not touched.
+    void restore_numbered(double number, Value kept);
     void restore_named(std::string_view name, Value value);
 
 private:
