@@ -158,8 +158,7 @@ void peck(Drilling& hole, bool out_of_the_hole) {
     const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
     for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
         hole.feed(depth);
-        const bool too_low = hole.clear && *hole.clear < hole.r;
-        if (out_of_the_hole) hole.traverse(too_low || !stays_low ? hole.r : hole.clear);
+        if (out_of_the_hole) hole.traverse(hole.r);
         hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
     }
     hole.feed(hole.bottom);
