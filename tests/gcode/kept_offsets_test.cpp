@@ -80,6 +80,16 @@ TEST(ToolEntries, NeedAValue) {
     EXPECT_EQ(refused("G10 L1 P5 R2"), "");
 }
 
+TEST(Tapping, TakesTheOverridesAwayThatATurnedThreadLeftOn) {
+    const std::string text = traced("S100 M3 F100 G0 Z10 X20\nM49\nG76 P1 Z-5 I-1 J0.3 K1 R1\n"
+                                    "G84 X5 Z-2 R2");
+    const size_t thread = text.rfind("thread_feed"), tap = text.find("z=-2 ", thread);
+    ASSERT_NE(tap, std::string::npos) << text;
+    EXPECT_THAT(text.substr(thread, tap - thread),
+                HasSubstr("enable_override kind=feed enabled=0\n"));
+    EXPECT_THAT(text.substr(tap), testing::Not(HasSubstr("enabled=1")));
+}
+
 TEST(Messages, WriteFourDigitsFromPercentFOn) {
     EXPECT_EQ(traced("#5=3.14159265\n(print,#5 %f#5 %.2f#5 %d#5)"),
               "message text=3.141593 3.1416 3.14 3\n");
