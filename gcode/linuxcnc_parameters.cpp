@@ -204,8 +204,8 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     if (name.size() < 2 || name[0] != '_') return std::nullopt;
     if (name.starts_with("_ini[")) {
         const auto found = environment.ini_values.find(std::string(name));
-        return found == environment.ini_values.end() ? std::nullopt
-                                                     : std::optional(Value{found->second});
+        if (found == environment.ini_values.end()) return std::nullopt;
+        return Value{found->second};
     }
     if (name.size() == 2 || name.starts_with("_abs_")) {
         const size_t axis = axis_letters.find(upper(name.back()));

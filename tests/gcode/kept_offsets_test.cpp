@@ -90,6 +90,25 @@ TEST(Tapping, TakesTheOverridesAwayThatATurnedThreadLeftOn) {
     EXPECT_THAT(text.substr(tap), testing::Not(HasSubstr("enabled=1")));
 }
 
+TEST(Units, AreNotMissedByWordsThatAreNoLengths) {
+    for (const char* text : {"M61 Q2", "M3 S100\nM19 R90", "M66 P1 L3 Q2"})
+        EXPECT_THAT(warnings_of(text, DialectId::linuxcnc), testing::Not(HasSubstr("units not")))
+            << text;
+    EXPECT_THAT(warnings_of("G0 X1", DialectId::linuxcnc), HasSubstr("units not said"));
+}
+
+TEST(IniValues, AreReadByNameAndMissedWhereTheFileHasNone) {
+    Environment environment = known_environment(DialectId::linuxcnc);
+    environment.ini_values["_ini[setup]xpos"] = 3.5;
+    const Ran ran = run_text("G21\nG0 X#<_ini[setup]xpos> Y[EXISTS[#<_INI[Setup]XPos>]]\n"
+                             "Z[EXISTS[#<_ini[setup]y>]]\nX#<_ini[setup]y>",
+                             environment);
+    EXPECT_EQ(commands_of(ran.run), "straight_traverse x=3.5 y=1 z=0\n"
+                                    "straight_traverse x=3.5 y=1 z=0\n");
+    ASSERT_TRUE(ran.run.error);
+    EXPECT_EQ(ran.run.error->message, "#<_ini[setup]y> was never set");
+}
+
 TEST(Messages, WriteFourDigitsFromPercentFOn) {
     EXPECT_EQ(traced("#5=3.14159265\n(print,#5 %f#5 %.2f#5 %d#5)"),
               "message text=3.141593 3.1416 3.14 3\n");
