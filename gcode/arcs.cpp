@@ -222,6 +222,12 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
+    if (is_secondary(axes.first))
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: there are no arcs in the planes of G17.1, G18.1 and "
+                                      "G19.1: say G17, G18 or G19 before",
+                                      written(moving_word(execution))),
+                          moving_word(execution).span);
     if (auto checked = check_arc_in_frame(execution, axes); !checked) {
         const Word* radius = execution.statement.word('R');
         return radius ? move_along_scaled_arc(execution, axes, *radius) : checked;

@@ -13,6 +13,8 @@ constexpr std::string_view axis_letters = "XYZABCUVW";
 
 constexpr bool is_rotary(size_t axis) { return axis >= 3 && axis < 6; }
 
+constexpr bool is_secondary(size_t axis) { return axis >= 6; }
+
 /// mm, and degrees of the rotary axes.
 using AxisValues = std::array<double, axis_count>;
 

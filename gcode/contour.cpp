@@ -36,14 +36,16 @@ double feed_of(const CanonicalCommand& command) {
     return 0.0;
 }
 
-/// A move of the tool's centre as a command. Round a corner the other axes stand still.
+/// A move of the tool's centre as a command of the point that is controlled, which is `tip` away.
+/// Round a corner the other axes stand still.
 CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand& programmed,
-                            const Position& start, Plane plane) {
-    const Position end = moved(move.rounds_corner ? start : *end_of(programmed), plane, move.end);
+                            const Position& start, Plane plane, FlatPoint tip) {
+    const Position end =
+        moved(move.rounds_corner ? start : *end_of(programmed), plane, move.end + tip);
     if (move.rapid) return StraightTraverse{end};
     if (!move.arc) return StraightFeed{end, feed_of(programmed)};
-    return ArcFeed{
-        end, plane, {move.arc->centre.u, move.arc->centre.v}, move.arc->turns, feed_of(programmed)};
+    const FlatPoint centre = move.arc->centre + tip;
+    return ArcFeed{end, plane, {centre.u, centre.v}, move.arc->turns, feed_of(programmed)};
 }
 
 /// Identifies a command by its block, counted from the start of the run, and its place there.
@@ -53,7 +55,9 @@ void place_move(Contour& contour, const CompensatedMove& move) {
     PendingBlock& block = contour.pending[move.id / commands_of_a_block - contour.first_pending];
     const size_t index = move.id % commands_of_a_block;
     PendingBlock::Slot& slot = block.slots[index];
-    slot.moves.push_back(command_of(move, block.result.commands[index], slot.start, contour.plane));
+    const FlatPoint tip = contour.path->entered ? contour.tip : FlatPoint{};
+    slot.moves.push_back(
+        command_of(move, block.result.commands[index], slot.start, contour.plane, tip));
     if (!move.rounds_corner) slot.is_waiting = false;
     if (move.turned_round)
         block.result.warnings.push_back(
@@ -135,6 +139,16 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
     return {};
 }
 
+/// Where the controlled point of a turning tool lies, seen from the centre of its nose of radius 1:
+/// the crossing of the lines along X and Z that touch the nose on the side the tool points to.
+FlatPoint tip_of(int orientation, Plane plane) {
+    constexpr int along_x[] = {0, -1, -1, 1, 1, 0, -1, 0, 1, 0};
+    constexpr int along_z[] = {0, 1, -1, -1, 1, 1, 0, -1, 0, 0};
+    if (plane != Plane::zx) return {};
+    const double x = along_x[orientation], z = along_z[orientation];
+    return axes_of(plane).first == 0 ? FlatPoint{x, z} : FlatPoint{z, x};
+}
+
 core::Result<void> begin_path(Contour& contour, const ModalState& before, const ModalState& after,
                               const BlockResult& block) {
     contour.plane = after.plane;
@@ -148,6 +162,7 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
         after.compensation == Side::left ? ContourSide::left : ContourSide::right;
     contour.path = begin_compensation(side, after.compensation_radius, *at);
     contour.path->extends_corners = contour.style == ContourStyle::fanuc;
+    contour.tip = contour.path->radius * tip_of(after.turning_orientation, after.plane);
     return {};
 }
 

@@ -32,6 +32,7 @@ struct Contour {
     Corners corners{};                      // what waits here has not come to the compensation yet
     std::optional<RadiusCompensation> path; // while compensation is on
     Plane plane = Plane::xy;
+    FlatPoint tip{};     // from the centre of a turning tool's nose to the point that is controlled
     bool pauses = false; // the block being executed takes the tool away from the contour
     ContourStyle style = ContourStyle::rs274;
     std::deque<PendingBlock> pending{};

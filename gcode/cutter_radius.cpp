@@ -87,6 +87,29 @@ core::Result<int> radius_number(Execution& execution) {
     return number;
 }
 
+/// The way a turning tool points: of the L word with G41.1, else of the tool's entry. 0 is a mill.
+core::Result<int> turning_orientation(Execution& execution, const CodeWord& entry) {
+    const Word* word = execution.statement.word('L');
+    int orientation = 0;
+    if (entry.code->tenths % 10 == 1) {
+        if (word) {
+            FEELER_TRY(orientation, whole_number(*word, 0, 9));
+        }
+    } else {
+        FEELER_TRY(const int number, radius_number(execution));
+        const auto& entries = execution.state.tables->lengths;
+        const auto found = entries.find(core::OffsetNumber(number));
+        if (found != entries.end()) orientation = found->second.orientation;
+    }
+    const bool turns = orientation != 0 && orientation != 9;
+    if (!turns || execution.modal().plane == Plane::zx) return orientation;
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("{}: this is a turning tool (orientation {}), which is "
+                                  "compensated in the plane of G18 only",
+                                  written(*entry.word), orientation),
+                      word ? word->span : entry.word->span);
+}
+
 /// How much G51 scales the contour, which leaves the tool as it is.
 core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord& entry) {
     const auto& scaling = execution.modal().transforms.scaling;
@@ -171,16 +194,13 @@ core::Result<void> set_cutter_radius(Execution& execution) {
                                       "and G18",
                                       written(*entry->word)),
                           entry->word->span);
-    if (const Word* word = execution.statement.word('L'); word && word->value != 0.0)
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: the orientation of turning tools is not supported yet",
-                                      written(*word)),
-                          word->span);
+    FEELER_TRY(const int orientation, turning_orientation(execution, *entry));
     FEELER_TRY(const double diameter, offset_diameter(execution, *entry));
     const bool left = entry->code->tenths / 10 == 41;
     modal.compensation = left ? Side::left : Side::right;
     FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
     modal.compensation_radius = diameter / 2.0 / stretch;
+    modal.turning_orientation = orientation;
     return {};
 }
 

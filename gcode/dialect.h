@@ -62,6 +62,7 @@ struct Dialect {
     bool unused_words_are_errors;     // a K word where nothing uses it
     bool machine_move_is_rapid;       // G53 under any motion code, G1 as well
     bool machine_move_needs_g90;      // G53 under G91 is not as under G90
+    bool machine_move_needs_motion;   // G53 in a block that does not move is refused
     bool length_needs_g43;            // else a tool change puts its length on
     bool lone_h_is_length_offset;     // H without G43, while a length offset is on
     bool p_names_more_places;         // G54 P1, G30 P3

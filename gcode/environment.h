@@ -29,13 +29,14 @@ struct Environment {
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
     std::map<core::ToolNumber, double> tool_lengths{};   // for H numbers without an entry
     std::map<core::ToolNumber, double> tool_diameters{}; // for D numbers without an entry
-    Position start{};                        // gauge line; X, Y, Z empty where nobody knows
-    std::optional<AxisValues> home{};        // G28; machine zero when nobody says
-    std::optional<AxisValues> second_home{}; // G30; likewise
-    bool counts_smallest_steps = false;      // X5 is 5 um, X5. is 5 mm, where points matter
-    std::map<int, double> parameters{};      // numbered ones, as in a variables file
-    std::vector<std::string> search_path{};  // folders of subprograms; else the program's own
-    std::set<int> known_m_codes{};           // of the machine's builder, passed over in silence
+    Position start{};                           // gauge line; X, Y, Z empty where nobody knows
+    std::optional<AxisValues> home{};           // G28; machine zero when nobody says
+    std::optional<AxisValues> second_home{};    // G30; likewise
+    bool counts_smallest_steps = false;         // X5 is 5 um, X5. is 5 mm, where points matter
+    std::map<int, double> parameters{};         // numbered ones, as in a variables file
+    std::map<std::string, double> ini_values{}; // LinuxCNC's ini file, by names as _ini[traj]x
+    std::vector<std::string> search_path{};     // folders of subprograms; else the program's own
+    std::set<int> known_m_codes{};              // of the machine's builder, passed over in silence
     Limits limits{};
 };
 

@@ -42,13 +42,11 @@ core::Result<void> go_home(Execution& execution) {
         moves[axis] = all || execution.statement.word(axis_letters[axis]);
         if (moves[axis]) machine[axis] = home[axis];
     }
-    // In a turned frame a motion along one axis of the machine changes all three coordinates.
-    const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
-    // What a tool is offset by along rotary axes does not shift where these go.
-    Offsets offsets = modal.offsets;
-    for (size_t axis = 0; axis < axis_count; ++axis)
-        if (is_rotary(axis)) offsets.tool[axis] = 0.0;
-    const Position place = program_from_machine(offsets, machine);
+    // In a turned frame a motion along one axis of the machine changes all three coordinates. Where
+    // a work offset is turned, LinuxCNC goes along the axes of the program instead.
+    const bool turned = modal.offsets.has_frame;
+    const Position place =
+        program_from_machine(without_rotary_tool(modal.offsets), turned ? machine : home);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (moves[axis] || (turned && axis < 3)) end[axis] = place[axis];

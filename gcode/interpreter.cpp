@@ -11,6 +11,7 @@
 #include "gcode/flow.h"
 #include "gcode/klartext.h"
 #include "gcode/klartext_parser.h"
+#include "gcode/linuxcnc_parameters.h"
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
 #include "gcode/plain_words.h"
@@ -331,6 +332,7 @@ InterpreterState initial_state(const Environment& environment) {
     tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
+    begin_with_kept_offsets(state, environment);
     Position start = environment.start;
     // Axes beyond X, Y and Z that nobody speaks of stand at zero, or are not there.
     for (size_t axis = 3; axis < axis_count; ++axis)

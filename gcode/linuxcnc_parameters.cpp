@@ -199,8 +199,14 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     return std::nullopt;
 }
 
-std::optional<Value> linuxcnc_parameter(const InterpreterState& state, std::string_view name) {
+std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
+                                        const Environment& environment, std::string_view name) {
     if (name.size() < 2 || name[0] != '_') return std::nullopt;
+    if (name.starts_with("_ini[")) {
+        const auto found = environment.ini_values.find(std::string(name));
+        if (found == environment.ini_values.end()) return std::nullopt;
+        return Value{found->second};
+    }
     if (name.size() == 2 || name.starts_with("_abs_")) {
         const size_t axis = axis_letters.find(upper(name.back()));
         if (axis != std::string_view::npos && (name.size() == 2 || name.size() == 6)) {
@@ -246,6 +252,22 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
         return number == g92_is_on || number == active_offset;
     }
     return true;
+}
+
+void begin_with_kept_offsets(InterpreterState& state, const Environment& environment) {
+    if (dialect(environment.dialect).system_parameters != SystemParameters::rs274) return;
+    const auto kept = [&](int number) {
+        const auto found = environment.parameters.find(number);
+        return found != environment.parameters.end() ? found->second : 0.0;
+    };
+    ModalState& modal = state.modal;
+    const double active = kept(active_offset);
+    if (active >= 1.0 && active <= static_cast<double>(plain_offset_count))
+        modal.offsets.active = static_cast<size_t>(active) - 1;
+    modal.offsets.work = work_offset(*state.tables, modal.offsets.active);
+    if (kept(g92_is_on) == 0.0) return;
+    modal.axis_offset_on = true;
+    modal.offsets.axis = modal.suspended_axis;
 }
 
 } // namespace gcode

@@ -29,8 +29,8 @@ std::string parameter_text(Lexer& lexer, const ProgramParameters& parameters, in
     return fmt::format("{:.{}f}", **value, decimals);
 }
 
-/// The text of `(DEBUG, ...)` and `(PRINT, ...)`: parameters are written out; `%d`, `%f` and `%.3f`
-/// set their digits from there on.
+/// The text of `(DEBUG, ...)` and `(PRINT, ...)`: parameters are written out with six digits, until
+/// `%d` (none), `%f` (four) or `%.3f` sets another number from there on.
 std::string written_out(std::string_view text, const ProgramParameters& parameters) {
     std::string out;
     int decimals = 6;
@@ -41,7 +41,7 @@ std::string written_out(std::string_view text, const ProgramParameters& paramete
             decimals = 0;
             lexer.at += 2;
         } else if (rest.starts_with("%f")) {
-            decimals = 6;
+            decimals = 4;
             lexer.at += 2;
         } else if (rest.size() > 3 && rest.starts_with("%.") && is_digit(rest[2])
                    && rest[3] == 'f') {

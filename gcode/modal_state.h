@@ -72,6 +72,7 @@ struct ModalState {
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
     Side compensation = Side::none;
     double compensation_radius = 0.0; // mm; below zero it is on the other side
+    int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 is a mill
     bool leaves_contour = false;      // since G40 no straight move was made
     bool diameter_mode = false;       // G7: X words are diameters
     bool surface_speed = false;       // G96

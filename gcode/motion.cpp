@@ -174,12 +174,22 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     const bool incremental = modal.distance == DistanceMode::incremental;
     if (execution.dialect.machine_move_needs_g90 && incremental)
         return core::fail(ErrorCode::unsupported,
-                          "G53 under G91 is not the same on all controls of this kind: say G90",
+                          "G53 under G91 stops some controls and is passed over by others: say G90",
                           action->word->span);
     if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
     if (modal.cycle || !is_straight(modal.motion))
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
     return move_straight(execution, modal.motion == tenths(0));
+}
+
+/// G53 in a block that does not move.
+core::Result<void> refuse_lone_machine_place(const Execution& execution) {
+    if (!execution.dialect.machine_move_needs_motion || !in_machine_coordinates(execution))
+        return {};
+    return core::fail(ErrorCode::missing_value,
+                      "G53 is for its own block only, and this one does not move: write G0 or G1 "
+                      "and the place behind it",
+                      execution.statement.of(ModalGroup::action)->word->span);
 }
 
 core::Result<void> act_once(Execution& execution, int code) {
@@ -236,6 +246,19 @@ double axis_value(const Execution& execution, size_t axis, const Word& word) {
 
 namespace {
 
+/// G53 with @ or ^, which are about the origin of the program.
+core::Result<void> refuse_polar_words(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const Word* word = statement.polar_radius ? statement.polar_radius : statement.polar_angle;
+    if (!word) return {};
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format("{}: @ and ^ are about the origin of the program, so G53 does not "
+                    "take them: give the place as X and Y",
+                    written(*word)),
+        word->span);
+}
+
 /// @ and ^: X and Y by their distance from the origin and the angle there, in every plane. What is
 /// not said is that of the present place.
 core::Result<void> place_polar(const Execution& execution, Position& target) {
@@ -278,6 +301,8 @@ core::Result<Position> target_of(const Execution& execution) {
     const ModalState& modal = execution.modal();
     Position target = modal.position;
     if (in_machine_coordinates(execution)) {
+        if (auto checked = refuse_polar_words(execution); !checked)
+            return tl::unexpected(std::move(checked).error());
         Position machine = machine_from_program(modal.offsets, modal.position);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (const Word* word = execution.statement.word(axis_letters[axis]))
@@ -285,7 +310,7 @@ core::Result<Position> target_of(const Execution& execution) {
                     axis_value(execution, axis, *word)
                     + (execution.dialect.machine_places_are_of_tip ? modal.offsets.tool[axis]
                                                                    : 0.0);
-        const Position place = program_from_machine(modal.offsets, machine);
+        const Position place = program_from_machine(without_rotary_tool(modal.offsets), machine);
         const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
@@ -374,7 +399,7 @@ core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
     if (auto checked = refuse_lone_arc(execution); !checked) return checked;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
-    if (!has_motion_words(execution) && !cycle_words) return {};
+    if (!has_motion_words(execution) && !cycle_words) return refuse_lone_machine_place(execution);
     if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
     if (auto taken = take_polar_words(execution); !taken) return taken;
     warn_of_axis_left_out(execution);

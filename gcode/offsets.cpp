@@ -97,6 +97,12 @@ Position program_from_machine(const Offsets& offsets, const Position& machine) {
     return place;
 }
 
+Offsets without_rotary_tool(Offsets offsets) {
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis)) offsets.tool[axis] = 0.0;
+    return offsets;
+}
+
 core::AxisPosition linear_axes(const Position& position) {
     return {position[0], position[1], position[2]};
 }

@@ -51,6 +51,10 @@ Position machine_minus_program(const Offsets& offsets);
 Position machine_from_program(const Offsets& offsets, const Position& program);
 Position program_from_machine(const Offsets& offsets, const Position& machine);
 
+/// The offsets that G28, G30 and G53 count: what a tool is offset by along rotary axes does not
+/// shift where these go.
+Offsets without_rotary_tool(Offsets offsets);
+
 /// The first three axes, as the simulator has them.
 core::AxisPosition linear_axes(const Position& position);
 

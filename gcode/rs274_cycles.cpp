@@ -123,9 +123,10 @@ void warn_of_plane(Drilling& hole) {
 }
 
 void enable_overrides(Execution& execution, bool enabled) {
-    if (execution.modal().feed_override)
+    // They are taken away after M49, too: G76 leaves that of the feed on.
+    if (!enabled || execution.modal().feed_override)
         execution.emit(EnableOverride{OverrideKind::feed, enabled});
-    if (execution.modal().speed_override)
+    if (!enabled || execution.modal().speed_override)
         execution.emit(EnableOverride{OverrideKind::speed, enabled});
 }
 

@@ -94,7 +94,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
           int(modal.compensation),  int(modal.leaves_contour), int(modal.diameter_mode),
           int(modal.surface_speed), int(modal.feed_override),  int(modal.speed_override),
           int(modal.adaptive_feed), int(modal.feed_hold),      int(modal.spindle),
-          int(modal.mist),          int(modal.flood)})
+          int(modal.mist),          int(modal.flood),          modal.turning_orientation})
         digest.add(number_of(mode));
     for (const double value :
          {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,

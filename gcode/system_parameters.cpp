@@ -27,7 +27,7 @@ std::optional<Value> system_parameter(const InterpreterState& state, const Envir
                                       std::string_view name) {
     if (is_siemens(environment)) return siemens_variable(state, name);
     if (is_fanuc(environment)) return std::nullopt;
-    return linuxcnc_parameter(state, name);
+    return linuxcnc_parameter(state, environment, name);
 }
 
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,

@@ -18,6 +18,17 @@ core::Result<int> tool_of_entry(const Execution& execution) {
     return whole_number(*word, 1, 99999);
 }
 
+core::Result<void> need_a_value(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    for (const char letter : {'R', 'I', 'J', 'Q'})
+        if (statement.word(letter)) return {};
+    if (statement.has_axis_word()) return {};
+    return core::fail(ErrorCode::missing_value,
+                      "G10 does not say what to write into the tool table: it needs an axis word, "
+                      "R, I, J or Q",
+                      statement.of(ModalGroup::action)->word->span);
+}
+
 /// The radius, the angles and the way a turning tool points, which L1, L10 and L11 take alike.
 core::Result<void> take_shape(const Execution& execution, LengthOffset& entry) {
     const Statement& statement = execution.statement;
@@ -79,6 +90,7 @@ core::Result<void> take_offsets_here(const Execution& execution, bool in_last_of
 
 core::Result<void> write_tool_entry(Execution& execution, int kind) {
     FEELER_TRY(const int tool, tool_of_entry(execution));
+    if (auto checked = need_a_value(execution); !checked) return checked;
     std::map<OffsetNumber, LengthOffset>& lengths = execution.state.tables.write().lengths;
     LengthOffset entry;
     if (const auto known = lengths.find(OffsetNumber(tool)); known != lengths.end())

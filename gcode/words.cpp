@@ -11,7 +11,7 @@ using core::ErrorCode;
 
 constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
-constexpr std::string_view letters_of_lengths = "XYZIJKRQF";
+constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R are often none
 
 /// The code of the motion or cycle that a block without one goes on with.
 const Code* going_on(const Execution& execution) {

@@ -1,5 +1,7 @@
 #include "app/setup/ini_file.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -37,13 +39,28 @@ struct IniReader {
 
     std::string resolved(const std::string& name) const { return (folder / name).string(); }
 
+    /// Programs see numbers whose section and name have no small letters.
+    void note_number(const std::string& key, const std::string& value);
+
     /// Why a value cannot be taken; empty when it was, or says nothing about programs.
     std::string take(const std::string& key, const std::string& value);
 };
 
+void IniReader::note_number(const std::string& key, const std::string& value) {
+    std::string name = "_ini[" + section + "]" + key;
+    const auto is_small = [](unsigned char letter) { return std::islower(letter) != 0; };
+    if (std::any_of(name.begin() + 5, name.end(), is_small)) return;
+    const auto number = number_in(value);
+    if (!number) return;
+    for (char& letter : name)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    file.values.insert_or_assign(name, *number);
+}
+
 std::string IniReader::take(const std::string& key, const std::string& value) {
     const std::string name = section + " " + key;
     if (value.empty()) return {};
+    note_number(key, value);
     if (name == "TRAJ LINEAR_UNITS") {
         file.machine_unit = unit_named(value);
         if (!file.machine_unit) return "LINEAR_UNITS must be mm or inch";
@@ -58,6 +75,8 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
             file.search_path.push_back(resolved(each));
     } else if (name == "RS274NGC RS274NGC_STARTUP_CODE") {
         file.startup_code = value;
+    } else if (key == "WRAPPED_ROTARY" && value != "0" && section.starts_with("AXIS_")) {
+        file.wrapped_axes += section.substr(5);
     }
     return {};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct IniFile {
     std::string tool_table;                        // [EMCIO] TOOL_TABLE
     std::vector<std::string> search_path; // [DISPLAY] PROGRAM_PREFIX, [RS274NGC] SUBROUTINE_PATH
     std::string startup_code;             // [RS274NGC] RS274NGC_STARTUP_CODE
+    std::string wrapped_axes;             // letters of those with WRAPPED_ROTARY = 1
+    std::map<std::string, double> values; // all numbers, as programs name them: _ini[traj]x
 };
 
 /// Errors: io when it cannot be read; syntax, with its line, for units that are neither mm nor

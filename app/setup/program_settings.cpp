@@ -54,10 +54,12 @@ std::string existing(const std::string& path, const ProgramSettings& settings,
     return {};
 }
 
-/// The settings with what their ini file adds.
-core::Result<ProgramSettings> with_ini(ProgramSettings settings, std::vector<std::string>& notes) {
+/// The settings with what their ini file adds; what only programs see goes to the environment.
+core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environment& environment,
+                                       std::vector<std::string>& notes) {
     if (settings.ini.empty()) return settings;
     FEELER_TRY(const IniFile ini, read_ini(settings.ini));
+    environment.ini_values = ini.values;
     ProgramSettings stated;
     stated.machine_unit = ini.machine_unit;
     stated.parameters = existing(ini.parameters, settings, notes);
@@ -67,6 +69,11 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, std::vector<std
         notes.push_back(fmt::format("{}: RS274NGC_STARTUP_CODE is not run before the program; if "
                                     "it matters, put it there: {}",
                                     settings.ini, ini.startup_code));
+    if (!ini.wrapped_axes.empty())
+        notes.push_back(
+            fmt::format("{}: WRAPPED_ROTARY of {} is not followed: an absolute place is "
+                        "taken as so many degrees, not as a direction and an angle",
+                        settings.ini, ini.wrapped_axes));
     return overlaid(stated, settings);
 }
 
@@ -91,7 +98,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
 core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
                                              gcode::Environment& environment) {
     std::vector<std::string> notes;
-    FEELER_TRY(const ProgramSettings settings, with_ini(given, notes));
+    FEELER_TRY(const ProgramSettings settings, with_ini(given, environment, notes));
     if (settings.dialect) environment.dialect = *settings.dialect;
     if (settings.block_delete) environment.block_delete = *settings.block_delete;
     if (settings.machine_unit) environment.machine_unit = *settings.machine_unit;

@@ -113,6 +113,25 @@ TEST(IniFile, NamesUnitVariablesToolsAndSearchPathFromItsOwnFolder) {
     EXPECT_TRUE(traced.says("length=4\n")) << traced.ran.out;
 }
 
+TEST(IniFile, ShowsItsNumbersToPrograms) {
+    Traced traced;
+    const std::string ini = traced.folder.write(
+        "mill.ini", "[SETUP]\nXPOS = 3.337\nYPOS=-4\nsmall = 5\nTEXT = some\n"
+                    "[AXIS_A]\nWRAPPED_ROTARY = 1\n[AXIS_B]\nWRAPPED_ROTARY = 0\n");
+    const std::string program =
+        "g21 g0 x#<_ini[setup]xpos> y#<_INI[SetUp]YPos>\n"
+        "z[exists[#<_ini[setup]xpos>]] a[exists[#<_ini[setup]small>]]\n"
+        "z[exists[#<_ini[setup]text>]] a[exists[#<_ini[nothing]xpos>]]\nm2\n";
+    traced.run(program, {"--ini", ini});
+    EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
+    EXPECT_TRUE(traced.says("x=3.337 y=-4\n")) << traced.ran.out;
+    EXPECT_TRUE(traced.says("x=3.337 y=-4 z=1 a=0\n")) << traced.ran.out;
+    EXPECT_TRUE(traced.says("x=3.337 y=-4 z=0 a=0\n")) << traced.ran.out;
+    EXPECT_TRUE(traced.warns("WRAPPED_ROTARY of A is not followed")) << traced.ran.err;
+    traced.run(program, {});
+    EXPECT_EQ(traced.ran.status, 2);
+}
+
 TEST(IniFile, MayNameFilesThatAreNotThereYet) {
     Traced traced;
     const std::string ini =

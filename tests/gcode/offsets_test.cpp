@@ -114,10 +114,11 @@ TEST(Offsets, APMakesG54AnotherOffset) {
 TEST(Offsets, G53MovesInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_EQ(in_shop("G43 H1\nG53 G0 Z-10"), "use_tool_length_offset number=1 length=95\n"
                                               "straight_traverse x=350 y=200 z=315\n");
-    // Under G91 as well, except that Fanuc controls pass it over there.
-    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::haas})
-        EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", dialect), "straight_traverse x=0 y=200 z=420\n");
-    EXPECT_THAT(error_of("G91 G53 G0 X-350", DialectId::fanuc), HasSubstr("1:5: G53 under G91"));
+    // Under G91 as well, except that Fanuc controls pass it over there and LinuxCNC stops.
+    EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", DialectId::haas),
+              "straight_traverse x=0 y=200 z=420\n");
+    for (const DialectId dialect : {DialectId::linuxcnc, DialectId::fanuc})
+        EXPECT_THAT(error_of("G91 G53 G0 X-350", dialect), HasSubstr("1:5: G53 under G91"));
     EXPECT_EQ(error_of("G53 X1", DialectId::linuxcnc), "1:1: G53 needs G0 or G1");
     EXPECT_EQ(error_of("G53 X1", DialectId::fanuc), "");
     EXPECT_EQ(error_of("G2 X10 I5 F100\nG53 X1", DialectId::linuxcnc), "2:1: G53 needs G0 or G1");
