@@ -14,6 +14,12 @@ std::vector<uint32_t> starts_of_lines(std::string_view text) {
     return starts;
 }
 
+std::string_view what_has_nuls(std::string_view text) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        return "is UTF-16 text, which controls do not read: save it as plain text (ASCII or UTF-8)";
+    return "holds NUL bytes: it is a binary file, not an NC program";
+}
+
 bool has_a_block(std::string_view text) {
     char comment = '\0';
     for (const char c : text) {
