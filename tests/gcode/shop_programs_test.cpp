@@ -127,6 +127,13 @@ TEST(ShopProgram, BeginsWithALineThatCancelsEverything) {
               "");
 }
 
+TEST(ShopProgram, DwellsInMillisecondsWhereStepsAreCounted) {
+    Environment environment = known_environment(DialectId::fanuc);
+    environment.counts_smallest_steps = true;
+    EXPECT_THAT(commands_of(run_text("G21 G4 X1500\nG4 P1500", environment).run),
+                HasSubstr("dwell seconds=1.5\ndwell seconds=1.5\n"));
+}
+
 TEST(ShopProgram, LeavesOutWhatStandsBehindASlash) {
     const std::string program = "G21 G0 X1. Y1.\nX4. /2 Y5.\nG91 X1.";
     Environment environment = known_environment(DialectId::fanuc);
