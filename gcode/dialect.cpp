@@ -252,6 +252,7 @@ constexpr Dialect heidenhain = [] {
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.dwell_without_point_is_milliseconds = false;
+    entry.decimal_points_matter = false;
     entry.language = Language::klartext;
     entry.expressions = ExpressionSyntax::klartext;
     entry.arithmetic = {};

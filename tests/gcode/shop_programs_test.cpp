@@ -134,6 +134,13 @@ TEST(ShopProgram, DwellsInMillisecondsWhereStepsAreCounted) {
                 HasSubstr("dwell seconds=1.5\ndwell seconds=1.5\n"));
 }
 
+TEST(ShopProgram, InKlartextMayMixWholeAndBrokenLengths) {
+    const std::string head = "0 BEGIN PGM A MM\n1 L X-5 Y-5 Z+0 R0 FMAX\n2 L X+27.5 R0 FMAX\n";
+    EXPECT_EQ(warnings_of(head + "3 END PGM A MM\n", DialectId::heidenhain), "");
+    EXPECT_THAT(error_of(head + "3 CC Y-4 Z-4\n", DialectId::heidenhain),
+                HasSubstr("out of the working plane"));
+}
+
 TEST(ShopProgram, LeavesOutWhatStandsBehindASlash) {
     const std::string program = "G21 G0 X1. Y1.\nX4. /2 Y5.\nG91 X1.";
     Environment environment = known_environment(DialectId::fanuc);
