@@ -94,7 +94,7 @@ TEST(ShopMacro, RoundIsToTheSmallestStepBehindAnAddress) {
                                                                  "straight_feed x=-3.581 "));
         EXPECT_THAT(trace("G20\n#1=1.00333\nG0 X[ROUND[#1]]", control), HasSubstr("x=25.48382 "));
         EXPECT_THAT(trace("#1=ROUND[1.6]\nG0 X#1", control), HasSubstr("x=2 "));
-        EXPECT_THAT(trace("G65 P9 X[ROUND[1.6]]\nM30\nO9\nG0 X#24\nM99", control),
+        EXPECT_THAT(trace("O1\nG65 P9 X[ROUND[1.6]]\nM30\nO9\nG0 X#24\nM99", control),
                     HasSubstr("x=2 "));
     }
     EXPECT_THAT(trace("G21 G0 X[ROUND[1.2345]]", DialectId::linuxcnc), HasSubstr("x=1 "));
@@ -118,7 +118,7 @@ TEST(ShopProgram, BeginsWithG0WhereNoMotionCodeCame) {
         EXPECT_EQ(trace("G21\nG54 X10. Y5.\nG91 X1.", dialect).find("error"), std::string::npos);
         EXPECT_THAT(warnings_of("G21\nG54 X10. Y5.", dialect), HasSubstr("taken as G0"));
     }
-    EXPECT_THAT(error_of("G54 X10", DialectId::siemens), HasSubstr("no motion code"));
+    EXPECT_THAT(error_of("G54 X10", DialectId::linuxcnc), HasSubstr("no motion code"));
 }
 
 TEST(ShopProgram, BeginsWithALineThatCancelsEverything) {
