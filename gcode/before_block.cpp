@@ -21,6 +21,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.rules = state.rules;
     before.tables = state.tables;
     before.klartext = state.klartext;
+    before.spline = state.spline;
     before.siemens = state.siemens;
     before.has_calls = false;
 }
@@ -38,6 +39,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.rules = before.rules;
     state.tables = before.tables;
     state.klartext = before.klartext;
+    state.spline = before.spline;
     state.siemens = before.siemens;
 }
 

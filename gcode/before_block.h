@@ -16,6 +16,7 @@ struct BeforeBlock {
     RuleWatch rules;
     Shared<Tables> tables;
     Shared<KlartextState> klartext;
+    Shared<SplineState> spline;
     Shared<SiemensState> siemens;
     // Only of blocks that call or return.
     bool has_calls = false;

@@ -13,7 +13,9 @@
 #include "gcode/klartext_parser.h"
 #include "gcode/macro_calls.h"
 #include "gcode/parser.h"
+#include "gcode/plain_words.h"
 #include "gcode/program_parameters.h"
+#include "gcode/quick_move.h"
 #include "gcode/siemens.h"
 
 namespace gcode {
@@ -58,6 +60,7 @@ struct Interpreter::Scratch {
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
+    bool try_quick_move(InterpreterState& state);
     core::SourceSpan place_of(core::SourceSpan where) const;
     void place_in_lines();
 };
@@ -228,6 +231,27 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     return true;
 }
 
+/// Takes a line that is a straight move and nothing else; false when it is not, and nothing has
+/// changed then. Nothing can fail here, so nothing is kept to be taken back.
+bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
+    if (dialect.language != Language::words || environment.counts_smallest_steps
+        || state.next_block >= environment.limits.blocks || !moves_quickly(state))
+        return false;
+    const auto found = library.program(state.next.source).find_line(state.next.line);
+    if (!found || !*found) return false;
+    block.clear();
+    block.line = state.next.line;
+    block.text = **found;
+    if (!read_plain_words(block.text, block.line, dialect, block)) return false;
+    begin_result(state, {state.next.source, block.line});
+    if (!take_quick_move(block, state, result)) return false;
+    if (dialect.decimal_points_matter) note_points(block, state, result);
+    ++state.next.line;
+    ++state.next_block;
+    if (remembers_words(dialect.system_parameters)) remember_words(state);
+    return true;
+}
+
 /// Where a place of the block really is: a block may have several lines.
 core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
     const bool several = dialect.language == Language::klartext && where.line == block.line;
@@ -263,6 +287,7 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         }
         if (contour.failure) return tl::unexpected(*contour.failure);
         if (state.ending != Ending::running) return nullptr;
+        if (scratch.try_quick_move(state)) return &scratch.result;
         keep(state, scratch.before);
         scratch.undos.clear();
         const uint32_t source = state.next.source;

@@ -20,6 +20,7 @@
 #include "gcode/shared.h"
 #include "gcode/siemens_state.h"
 #include "gcode/source.h"
+#include "gcode/spline.h"
 #include "gcode/tables.h"
 
 namespace gcode {
@@ -63,6 +64,7 @@ struct InterpreterState {
     Shared<Tables> tables;
     Contour contour; // blocks on their way through cutter radius compensation
     Shared<KlartextState> klartext;
+    Shared<SplineState> spline;
     Shared<SiemensState> siemens;
     LoopWatch watch;
     RuleWatch rules;

@@ -128,8 +128,7 @@ core::Result<void> LineWindows::check(const Window& window) const {
             refusal(ErrorCode::syntax, what_has_nuls(text),
                     window.first_line + static_cast<uint64_t>(behind - window.starts.begin()) - 1));
     }
-    const auto controls =
-        static_cast<size_t>(std::count_if(text.begin(), text.end(), is_stray_control));
+    const size_t controls = count_stray_controls(text);
     if (looks_binary(controls, window.text.size()))
         return tl::unexpected(
             refusal(ErrorCode::syntax, "is a binary file, not an NC program", window.first_line));

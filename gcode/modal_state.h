@@ -3,12 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "core/base/ids.h"
 #include "core/sim/event.h"
 #include "gcode/offsets.h"
 #include "gcode/program_transforms.h"
-#include "gcode/spline.h"
 
 namespace gcode {
 
@@ -53,14 +53,6 @@ struct CannedCycle {
     bool bottom_is_way = false;          // Z was said under G91: counts from R
 
     bool operator==(const CannedCycle&) const = default;
-};
-
-/// What the blocks of splines leave behind for one another.
-struct SplineState {
-    NurbsGathering gathering{}; // since G5.2
-    SplinePoint next_tangent{}; // I and J of a G5 that has none
-
-    bool operator==(const SplineState&) const = default;
 };
 
 /// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
@@ -114,9 +106,11 @@ struct ModalState {
                && core::value_of(*length_number) == core::value_of(*tool);
     }
     double cycle_dwell = 0.0; // s, P of the last canned cycle
-    SplineState spline;
 
     bool operator==(const ModalState&) const = default;
 };
+
+// It is copied at every block.
+static_assert(std::is_trivially_copyable_v<ModalState>);
 
 } // namespace gcode

@@ -54,8 +54,10 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
         execution.traverse(end);
         return {};
     }
-    FEELER_TRY(const double rate,
-               feed_rate(execution, way_between(execution.modal().position, end)));
+    const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;
+    const std::optional<double> way =
+        needs_way ? way_between(execution.modal().position, end) : std::nullopt;
+    FEELER_TRY(const double rate, feed_rate(execution, way));
     execution.feed(end, rate);
     return {};
 }
@@ -100,9 +102,10 @@ bool acts_once(int code) {
 }
 
 /// Begins with a motion code, or goes on with none.
-void set_motion(ModalState& modal, std::optional<MotionCode> motion) {
-    if (modal.motion == tenths(5, 2) && motion != modal.motion) modal.spline.gathering = {};
-    modal.motion = motion;
+void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
+    std::optional<MotionCode>& active = state.modal.motion;
+    if (active == tenths(5, 2) && motion != active) state.spline.write().gathering = {};
+    active = motion;
 }
 
 /// Another cycle begins with words of its own, but counts from the same level.
@@ -135,11 +138,11 @@ core::Result<void> set_motion_mode(Execution& execution) {
                                       written(*taker->word), written(*mover->word)),
                           mover->word->span);
     if (motion && !acts_once(motion->code->tenths)) {
-        set_motion(modal, motion->code->tenths);
+        set_motion(execution.state, motion->code->tenths);
         modal.cycle.reset();
     }
     if (!cycle) return {};
-    if (execution.dialect.cycles_are_motions && !motion) set_motion(modal, {});
+    if (execution.dialect.cycles_are_motions && !motion) set_motion(execution.state, {});
     if (cycle->code->tenths == tenths(80)) {
         modal.cycle.reset();
         return {};
@@ -306,8 +309,9 @@ core::Result<Position> target_of(const Execution& execution) {
     if (polar) place_by_radius_and_angle(execution, target);
     const PlaneAxes plane = axes_of(modal.plane);
     for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (!(execution.statement.letters & letter_bit(axis_letters[axis]))) continue;
         const Word* word = execution.statement.word(axis_letters[axis]);
-        if (!word || (polar && (axis == plane.first || axis == plane.second))) continue;
+        if (polar && (axis == plane.first || axis == plane.second)) continue;
         const double value = axis_value(execution, axis, *word);
         const bool absolute = word->addressing == Addressing::modal
                                   ? modal.distance == DistanceMode::absolute
@@ -355,8 +359,8 @@ double turns_a_minute(const ModalState& modal) {
 
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length) {
     const ModalState& modal = execution.modal();
-    const Word& mover = moving_word(execution);
     const auto refuse = [&](std::string_view why) {
+        const Word& mover = moving_word(execution);
         return core::fail(ErrorCode::missing_value, fmt::format("{}: {}", written(mover), why),
                           mover.span);
     };

@@ -1,5 +1,7 @@
 #include "gcode/program_text.h"
 
+#include <algorithm>
+
 namespace gcode {
 
 std::vector<uint32_t> starts_of_lines(std::string_view text) {
@@ -18,6 +20,15 @@ std::string_view what_has_nuls(std::string_view text) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         return "is UTF-16 text, which controls do not read: save it as plain text (ASCII or UTF-8)";
     return "holds NUL bytes: it is a binary file, not an NC program";
+}
+
+size_t count_stray_controls(std::string_view text) {
+    // Nearly always every control character is a line end or a tab, which is told by plain counts.
+    size_t low = 0, common = 0;
+    for (const char c : text) low += static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    for (const char c : text) common += c == '\n' || c == '\r' || c == '\t';
+    if (low == common) return 0;
+    return static_cast<size_t>(std::count_if(text.begin(), text.end(), is_stray_control));
 }
 
 bool has_a_block(std::string_view text) {

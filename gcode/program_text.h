@@ -33,6 +33,9 @@ constexpr bool is_stray_control(char c) {
     return (static_cast<unsigned char>(c) < 0x20 && !harmless) || c == 0x7F;
 }
 
+/// How many of them a text has.
+size_t count_stray_controls(std::string_view text);
+
 /// Whether a text has so many of them that it is another format. A few are damaged lines.
 constexpr bool looks_binary(size_t stray_controls, size_t size) {
     return stray_controls * 10 > size;

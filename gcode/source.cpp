@@ -73,7 +73,7 @@ std::optional<Error> Collector::add_piece(std::string_view piece) {
     const size_t last_end = piece.find_last_of("\r\n");
     line_length_ = last_end == std::string_view::npos ? line_length_ + piece.size()
                                                       : piece.size() - last_end - 1;
-    controls_ += static_cast<size_t>(std::count_if(piece.begin(), piece.end(), is_stray_control));
+    controls_ += count_stray_controls(piece);
     return std::nullopt;
 }
 

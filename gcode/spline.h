@@ -107,4 +107,12 @@ SplinePoint point_at(const NurbsCurve& curve, double parameter);
 /// Errors: weights cancel on the way.
 core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve);
 
+/// What the blocks of splines leave behind for one another.
+struct SplineState {
+    NurbsGathering gathering{}; // since G5.2
+    SplinePoint next_tangent{}; // I and J of a G5 that has none
+
+    bool operator==(const SplineState&) const = default;
+};
+
 } // namespace gcode

@@ -93,9 +93,9 @@ core::Result<void> cubic(Execution& execution) {
                               length_word(execution, 'Q'),
                               {*end[0], *end[1]}};
     FEELER_TRY(const CubicSpline spline,
-               placed(cubic_spline(start, execution.modal().spline.next_tangent, words),
+               placed(cubic_spline(start, execution.state.spline->next_tangent, words),
                       moving_word(execution).span));
-    execution.modal().spline.next_tangent = spline.next_tangent;
+    execution.state.spline.write().next_tangent = spline.next_tangent;
     return follow(execution, spline.curve);
 }
 
@@ -133,7 +133,7 @@ core::Result<void> gather_control_point(Execution& execution) {
     if (const Word* word = statement.word('L')) {
         FEELER_TRY(words.order, whole_number(*word));
     }
-    NurbsGathering& gathering = execution.modal().spline.gathering;
+    NurbsGathering& gathering = execution.state.spline.write().gathering;
     if (gathering.points.empty() && words.x && !words.weight)
         execution.warn(moving_word(execution).span,
                        "the first control point has no P: the control takes its weight as -1, and "
@@ -155,9 +155,10 @@ core::Result<void> finish_spline(Execution& execution) {
             ErrorCode::syntax,
             fmt::format("{} ends a curve, and none was begun with G5.2", written(mover)),
             mover.span);
-    FEELER_TRY(const NurbsCurve curve, placed(finish_nurbs(modal.spline.gathering), mover.span));
+    FEELER_TRY(const NurbsCurve curve,
+               placed(finish_nurbs(execution.state.spline->gathering), mover.span));
     modal.motion.reset();
-    modal.spline.gathering = {};
+    execution.state.spline.write().gathering = {};
     return follow(execution, curve);
 }
 

@@ -118,7 +118,6 @@ void add(Digest& digest, const ModalState& modal) {
     digest.add(number_of(modal.radius_number));
     add(digest, modal.offsets);
     add(digest, modal.transforms);
-    add(digest, modal.spline);
     digest.add(uint64_t{modal.way_home.has_value()});
     if (modal.way_home) add_all(digest, *modal.way_home);
     add_all(digest, modal.direction);
@@ -274,6 +273,7 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
     add(digest, *state.klartext);
+    add(digest, *state.spline);
     add(digest, *state.siemens);
     return digest.value();
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "gcode/execution.h"
 
@@ -13,25 +14,43 @@ constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
 }
 
 /// What one kind of words does. It is asked only where the block has one of its groups of codes or
-/// of its letters; one with neither is asked always.
+/// of its letters. One with neither is asked always, or where the state makes it due.
 struct Step {
     core::Result<void> (*take)(Execution&);
     uint64_t groups = 0;
     uint32_t letters = 0;
+    bool (*is_due)(const Execution&) = nullptr;
 
     constexpr bool concerns_all() const { return groups == 0 && letters == 0; }
-    bool concerns(const Statement& statement) const {
-        return concerns_all() || (groups & statement.groups) || (letters & statement.letters);
+    bool concerns(const Execution& execution) const {
+        if (concerns_all()) return !is_due || is_due(execution);
+        return (groups & execution.statement.groups) || (letters & execution.statement.letters);
     }
 };
+
+bool lacks_units(const Execution& execution) {
+    return !execution.modal().unit_said && !execution.state.said_unit;
+}
+
+bool has_comments(const Execution& execution) { return !execution.block.comments.empty(); }
+
+bool is_compensated(const Execution& execution) {
+    return execution.modal().compensation != Side::none
+           || execution.statement.of(ModalGroup::cutter_radius);
+}
+
+bool may_call(const Execution& execution) {
+    return !execution.state.modal_macros.empty() || execution.statement.of(ModalGroup::subprogram)
+           || execution.statement.of(ModalGroup::macro);
+}
 
 using enum ModalGroup;
 
 // NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
 constexpr Step steps[] = {
     {check_words},
-    {note_assumed_units},
-    {say_message},
+    {note_assumed_units, 0, 0, lacks_units},
+    {say_message, 0, 0, has_comments},
     {set_feed_mode, groups({feed_mode})},
     {set_feed, 0, letter_bits("F")},
     {set_speed, 0, letter_bits("S")},
@@ -47,7 +66,7 @@ constexpr Step steps[] = {
     {select_plane, groups({plane})},
     {set_units, groups({units})},
     {set_diameter_mode, groups({diameter})},
-    {set_cutter_radius},
+    {set_cutter_radius, 0, 0, is_compensated},
     {set_tool_length, groups({tool_length}), letter_bits("H")},
     {select_offset, groups({work_offset})},
     {set_path_mode, groups({path_control})},
@@ -58,7 +77,7 @@ constexpr Step steps[] = {
     {move},
     {ask_for_corner, 0, corner_bit},
     {stop, groups({stopping})},
-    {call},
+    {call, 0, 0, may_call},
 };
 
 constexpr uint64_t groups_of_steps = [] {
@@ -88,13 +107,11 @@ constexpr std::array<Step, steps_for_all> steps_of_moves = [] {
 
 core::Result<void> take_steps(Execution& execution) {
     const Statement& statement = execution.statement;
-    if (!(statement.groups & groups_of_steps) && !(statement.letters & letters_of_steps)) {
-        for (const Step& step : steps_of_moves)
-            if (auto done = step.take(execution); !done) return done;
-        return {};
-    }
-    for (const Step& step : steps)
-        if (step.concerns(statement))
+    const bool only_moves =
+        !(statement.groups & groups_of_steps) && !(statement.letters & letters_of_steps);
+    const std::span<const Step> wanted = only_moves ? std::span<const Step>(steps_of_moves) : steps;
+    for (const Step& step : wanted)
+        if (step.concerns(execution))
             if (auto done = step.take(execution); !done) return done;
     return {};
 }

@@ -19,7 +19,11 @@ constexpr uint32_t seeds = 12;
 
 /// The lines of two programs that mean the same may be others.
 PlainRun without_lines(PlainRun run) {
-    for (PlainCommand& command : run.commands) command.line = 1;
+    for (PlainCommand& command : run.commands) {
+        command.line = 1;
+        // The reference names three axes of a tapping move, so these are what is compared.
+        if (command.kind == "rigid_tap") command.values.assign(&command.end[0], &command.end[3]);
+    }
     if (run.refused) run.refused = 1;
     run.message.clear();
     return run;
@@ -96,9 +100,9 @@ TEST_P(Features, DoNotCareAboutCommentsAndBlockNumbers) {
         while (begin < program.size()) {
             const size_t end = std::min(program.find('\n', begin), program.size());
             const std::string line = program.substr(begin, end - begin);
-            commented += line + " (about X1 Y2)\n(between)\n";
-            const bool is_word =
-                !line.empty() && line[0] != 'N' && line[0] != '%' && line[0] != '/';
+            commented += line + " (about X1 Y2)\n";
+            const char first = gcode::Lexer{.line = line}.peek();
+            const bool is_word = std::string_view("\0Nn%/", 5).find(first) == std::string::npos;
             numbered += is_word ? fmt::format("N{} {}\n", number += 10, line) : line + "\n";
             begin = end + 1;
         }
