@@ -82,6 +82,10 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
                               word->span);
     }
     if (const Word* word = statement.word('P')) {
+        if (word->value < 0.0)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: a time is not negative", written(*word)),
+                              word->span);
         const bool milliseconds =
             execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
         cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;

@@ -115,6 +115,7 @@ bool Interpreter::Scratch::begins_another_program(const InterpreterState& state)
 
 /// The words of the block before, which macros can ask for, and the time it took.
 void Interpreter::Scratch::remember_words(InterpreterState& state) const {
+    if (!remembers_words(dialect.system_parameters)) return;
     advance_timers(state);
     for (const Word& word : block.words)
         if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
@@ -225,7 +226,6 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                           {.line = block.line, .column = 1});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    if (remembers_words(dialect.system_parameters)) remember_words(state);
     if (auto watched = watch_for_endless_loop(state, place); !watched)
         return tl::unexpected(std::move(watched).error());
     return true;
@@ -248,7 +248,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     if (dialect.decimal_points_matter) note_points(block, state, result);
     ++state.next.line;
     ++state.next_block;
-    if (remembers_words(dialect.system_parameters)) remember_words(state);
+    remember_words(state);
     return true;
 }
 
@@ -296,14 +296,19 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
             scratch.place_in_lines();
         else
             found.error().where = scratch.place_of(found.error().where);
+        const bool is_block = found && *found;
         const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
-        if (found && *found && straight_out) return &scratch.result;
+        if (is_block && straight_out) {
+            scratch.remember_words(state);
+            return &scratch.result;
+        }
         core::Result<void> taken;
-        if (found && *found && scratch.library.program(source).windows) keep_text(scratch.result);
-        if (found && *found)
+        if (is_block && scratch.library.program(source).windows) keep_text(scratch.result);
+        if (is_block)
             taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
         else if (found)
             taken = end_contour(contour);
+        if (is_block && taken) scratch.remember_words(state);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch.take_back(state);

@@ -43,10 +43,6 @@ core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cy
             ErrorCode::missing_value,
             fmt::format("G{} needs a P word, the seconds it waits at the bottom", cycle.code / 10),
             moving_word(execution).span);
-    const Word* word = execution.statement.word('P');
-    if (word && cycle.dwell && *cycle.dwell < 0.0)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a time is not negative", written(*word)), word->span);
     return {};
 }
 
