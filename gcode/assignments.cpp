@@ -1,5 +1,7 @@
 #include "gcode/assignments.h"
 
+#include <algorithm>
+
 #include "gcode/alarms.h"
 
 namespace gcode {
@@ -10,6 +12,29 @@ core::Result<Value> value_of(const Assigning& assigning, Expression expression) 
                     assigning.dialect.arithmetic);
 }
 
+bool calls_macro(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return word.letter == 'G' && word.value >= 65.0 && word.value < 67.0;
+    });
+}
+
+/// The value of a word. In lengths and angles, but not in arguments of macros, ROUND may be to the
+/// smallest step of the control.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, "Arithmetic and logic operation", ROUND; Haas mill
+///         operator's manual 96-8000, "Notes on functions".
+core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) {
+    Arithmetic arithmetic = assigning.dialect.arithmetic;
+    const bool is_length =
+        std::string_view("XYZABCUVWIJKRQrc").find(word.letter) != std::string_view::npos;
+    if (arithmetic.rounds_lengths_to_steps && is_length && !calls_macro(assigning.block)) {
+        const bool angle = word.letter >= 'A' && word.letter <= 'C';
+        arithmetic.steps_in_one = assigning.inch && !angle ? 10000.0 : 1000.0;
+    }
+    return evaluate(assigning.block.pool, word.expression, assigning.block.line,
+                    assigning.parameters, arithmetic);
+}
+
 /// Words that turn out to be nothing are taken out: Fanuc's vacant variables.
 core::Result<void> work_out_words(const Assigning& assigning) {
     std::vector<Word>& words = assigning.block.words;
@@ -17,7 +42,7 @@ core::Result<void> work_out_words(const Assigning& assigning) {
     for (size_t i = 0; i < words.size(); ++i) {
         Word& word = words[i];
         if (word.expression) {
-            FEELER_TRY(const Value value, value_of(assigning, word.expression));
+            FEELER_TRY(const Value value, value_of_word(assigning, word));
             if (!value) continue;
             word.value = *value;
         }

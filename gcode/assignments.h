@@ -23,6 +23,7 @@ struct Assigning {
     std::vector<AssignmentUndo>& undos; // gets what was set, in order
     std::vector<Value>& values;         // room to work in
     BlockResult& result;
+    bool inch; // what lengths are in
 };
 
 /// Works out a block's words and sets its parameters: first the words, then all right-hand sides,

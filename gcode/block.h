@@ -149,9 +149,11 @@ struct Block {
     Flow flow{};
     Command command{};
     ExpressionPool pool{};
-    SiemensBlock siemens{};            // of that language alone
-    std::optional<int> block_delete{}; // `/` is 1, `/1` to `/9` their number
-    bool tape_mark = false;            // a line that begins with %
+    SiemensBlock siemens{};             // of that language alone
+    std::optional<int> block_delete{};  // `/` is 1, `/1` to `/9` their number
+    bool tape_mark = false;             // a line that begins with %
+    bool is_program_name = false;       // a line that begins with <NAME>
+    std::optional<size_t> kept_words{}; // before a `/` within the block
 
     bool has_message = false; // a comment that the control acts on
 

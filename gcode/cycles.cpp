@@ -13,6 +13,13 @@ using core::ErrorCode;
 
 constexpr size_t most_commands = 200000; // of one block
 
+bool pecks(int code) { return code == tenths(73) || code == tenths(83); }
+
+/// Haas: I is the first peck, each after it is smaller by J, and none smaller than K.
+///
+/// Source: Haas mill operator's manual 96-8000, G73 and G83.
+bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.shift[0] > 0.0; }
+
 bool taps(int code) { return code == tenths(74) || code == tenths(84); }
 
 /// How often Fanuc's scaling stretches the drilling axis; Q and what G73 and G83 draw back are not.
@@ -35,19 +42,35 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
 const Word* shift_word(const Execution& execution, int code, size_t axis) {
     if (hole_pattern(execution)) return nullptr;
     const bool bores_back = execution.dialect.cycles_are_rs274 && code == tenths(87);
+    if (pecks(code) && execution.dialect.pecks_may_shrink)
+        return execution.statement.word("IJK"[axis]);
     const bool shifts =
         code == tenths(76) || bores_back || works_from_the_back(execution.dialect, code);
     if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
     return execution.statement.word("IJK"[axis]);
 }
 
+/// R and the bottom. Those said under G90 are places also for holes of G91, except where a control
+/// has them follow the mode.
+void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) {
+    const bool incremental = execution.modal().distance == DistanceMode::incremental;
+    if (const Word* word = execution.statement.word(axis_letters[normal])) {
+        cycle.bottom = length_of(execution, *word);
+        cycle.bottom_is_way = incremental;
+    }
+    if (const Word* word = execution.statement.word('R')) {
+        cycle.r = length_of(execution, *word);
+        cycle.r_is_way = incremental;
+    }
+    if (execution.dialect.cycle_levels_follow_g91)
+        cycle.r_is_way = cycle.bottom_is_way = incremental;
+}
+
 /// The modal cycle with the words of this block taken in.
 core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
     CannedCycle cycle = *execution.modal().cycle;
     const Statement& statement = execution.statement;
-    if (const Word* word = statement.word(axis_letters[normal]))
-        cycle.bottom = length_of(execution, *word);
-    if (const Word* word = statement.word('R')) cycle.r = length_of(execution, *word);
+    take_levels(execution, normal, cycle);
     if (const Word* word = statement.word('Q')) {
         const double depth = length_of(execution, *word);
         cycle.peck = execution.dialect.peck_sign_is_ignored ? std::abs(depth) : depth;
@@ -67,13 +90,14 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
             execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
         cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
     }
-    if (!cycle.bottom) return missing(execution, cycle, axis_letters[normal]);
-    if (!cycle.r) return missing(execution, cycle, 'R');
-    const bool pecks = cycle.code == tenths(73) || cycle.code == tenths(83);
-    if (pecks && !cycle.peck) return missing(execution, cycle, 'Q');
     for (size_t i = 0; i < 3; ++i)
         if (const Word* word = shift_word(execution, cycle.code, i))
             cycle.shift[i] = length_of(execution, *word);
+    if (!cycle.bottom) return missing(execution, cycle, axis_letters[normal]);
+    if (!cycle.r) return missing(execution, cycle, 'R');
+    if (pecks(cycle.code) && !pecks_shrink(cycle) && !cycle.peck)
+        return missing(execution, cycle, 'Q');
+    if (pecks_shrink(cycle) && cycle.shift[2] <= 0.0) return missing(execution, cycle, 'K');
     if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
     if (execution.dialect.cycles_are_rs274)
         if (auto checked = check_rs274_cycle(execution, cycle); !checked)
@@ -107,7 +131,9 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
                                       "{:.4f} mm",
                                       cycle.code / 10, r, bottom),
                           where);
-    if (cycle.peck && (r - bottom) / *cycle.peck > most_commands / 4)
+    const double least_peck =
+        pecks_shrink(cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
+    if (least_peck > 0.0 && (r - bottom) / least_peck > most_commands / 4)
         return core::fail(
             ErrorCode::invalid_value,
             fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
@@ -133,14 +159,13 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const core::SourceSpan where = moving_word(execution).span;
-    const bool incremental = modal.distance == DistanceMode::incremental;
-    if (incremental && !cycle.initial_level)
+    if (cycle.r_is_way && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("G{} under G91 counts from a level that is unknown along {}",
                                       cycle.code / 10, axis_letters[axes.normal]),
                           where);
-    const double r = incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
-    const double bottom = incremental ? r + *cycle.bottom : *cycle.bottom;
+    const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
+    const double bottom = cycle.bottom_is_way ? r + *cycle.bottom : *cycle.bottom;
     if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
         return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;
@@ -154,12 +179,15 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
 void peck(Drilling& hole, bool out_of_the_hole) {
     const double stretch = stretch_along(hole.execution, hole.normal);
     const double back = hole.execution.dialect.peck_clearance / stretch;
-    const double step = *hole.cycle.peck / stretch;
+    const std::array<double, 3>& shrinking = hole.cycle.shift;
+    double step = (shrinking[0] > 0.0 ? shrinking[0] : *hole.cycle.peck) / stretch;
     const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
     for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
         hole.feed(depth);
         if (out_of_the_hole) hole.traverse(hole.r);
         hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
+        if (shrinking[0] > 0.0)
+            step = std::max(step - shrinking[1] / stretch, shrinking[2] / stretch);
     }
     hole.feed(hole.bottom);
 }

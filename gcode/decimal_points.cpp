@@ -50,6 +50,8 @@ void note_points(const Block& block, InterpreterState& state, BlockResult& resul
 }
 
 void count_smallest_steps(Block& block, const ModalState& modal) {
+    const bool waits = has_code(block, 'G', [](double code) { return code == 4.0; });
+    if (waits) return; // X is a time, and counts milliseconds anyway
     const bool to_inch = has_code(block, 'G', [](double code) { return code == 20.0; });
     const bool to_mm = has_code(block, 'G', [](double code) { return code == 21.0; });
     const bool inch = to_inch || (modal.unit == LengthUnit::inch && !to_mm);

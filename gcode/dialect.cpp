@@ -40,6 +40,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .dwell_takes_x_and_u = false,
                               .bare_length_offset_is_tool = true,
                               .cycles_are_rs274 = true,
+                              .begins_with_g0 = false,
                               .motion_codes_move = true,
                               .cycles_are_motions = true,
                               .axis_words_serve_one_code = true,
@@ -59,7 +60,9 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .has_extended_offsets = false,
                               .diameters_in_tool_entries = false,
                               .g87_is_back_boring = false,
+                              .cycle_levels_follow_g91 = true,
                               .boring_feeds_to_r = false,
+                              .pecks_may_shrink = false,
                               .peck_sign_is_ignored = false,
                               .scale_without_point_is_thousandths = false,
                               .repeats_with_k = false,
@@ -77,6 +80,7 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .has_active_comments = true,
                               .has_o_words = true,
                               .has_fanuc_flow = false,
+                              .deletes_within_blocks = false,
                               .has_corner_words = false,
                               .has_polar_words = true,
                               .offset_words_may_repeat = false,
@@ -103,6 +107,13 @@ constexpr Dialect linuxcnc = {.id = DialectId::linuxcnc,
                               .offset_writes_miss_axis_offset = true,
                               .surface_speed_needs_s = true};
 
+// Fanuc 30i user's manual B-63944EN, "Custom macro"; angles as parameter 6004 has them when it is
+// 0.
+constexpr Arithmetic fanuc_arithmetic = {.bitwise_logic = true,
+                                         .fix_is_to_zero = true,
+                                         .angles_have_no_sign = true,
+                                         .rounds_lengths_to_steps = true};
+
 constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .name = "fanuc",
                            .supported = true,
@@ -115,6 +126,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .dwell_takes_x_and_u = true,
                            .bare_length_offset_is_tool = false,
                            .cycles_are_rs274 = false,
+                           .begins_with_g0 = true,
                            .motion_codes_move = false,
                            .cycles_are_motions = false,
                            .axis_words_serve_one_code = false,
@@ -134,7 +146,9 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .has_extended_offsets = true,
                            .diameters_in_tool_entries = false,
                            .g87_is_back_boring = true,
+                           .cycle_levels_follow_g91 = false,
                            .boring_feeds_to_r = true,
+                           .pecks_may_shrink = false,
                            .peck_sign_is_ignored = true,
                            .scale_without_point_is_thousandths = true,
                            .repeats_with_k = true,
@@ -142,7 +156,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .repeated_codes_are_errors = false,
                            .language = Language::words,
                            .expressions = ExpressionSyntax::fanuc,
-                           .arithmetic = {.bitwise_logic = true},
+                           .arithmetic = fanuc_arithmetic,
                            .tool_entries_by_axes = false,
                            .arc_after_contour_is_error = true,
                            .contour_breaks_are_errors = false,
@@ -152,6 +166,7 @@ constexpr Dialect fanuc = {.id = DialectId::fanuc,
                            .has_active_comments = false,
                            .has_o_words = false,
                            .has_fanuc_flow = true,
+                           .deletes_within_blocks = true,
                            .has_corner_words = true,
                            .has_polar_words = false,
                            .offset_words_may_repeat = true,
@@ -183,9 +198,11 @@ constexpr Dialect haas = [] {
     entry.id = DialectId::haas;
     entry.name = "haas";
     entry.contour_style = ContourStyle::rs274;
+    entry.arithmetic.angles_have_no_sign = false;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.diameters_in_tool_entries = true;
+    entry.pecks_may_shrink = true;
     entry.g87_is_back_boring = false;
     entry.scale_without_point_is_thousandths = false;
     entry.repeats_with_k = false;
@@ -211,6 +228,7 @@ constexpr Dialect grbl = [] {
     entry.feed_before_units = false;
     entry.tool_entries_by_axes = false;
     entry.has_active_comments = false;
+    entry.begins_with_g0 = true;
     entry.motion_codes_move = false;
     entry.has_o_words = false;
     entry.feed_mode_clears_feed = false;
@@ -236,6 +254,7 @@ constexpr Dialect heidenhain = [] {
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.dwell_without_point_is_milliseconds = false;
+    entry.decimal_points_matter = false;
     entry.language = Language::klartext;
     entry.expressions = ExpressionSyntax::klartext;
     entry.arithmetic = {};
@@ -265,6 +284,7 @@ constexpr Dialect siemens = [] {
     entry.p_names_more_places = false;
     entry.has_extended_offsets = false;
     entry.dwell_without_point_is_milliseconds = false;
+    entry.begins_with_g0 = false;
     entry.language = Language::siemens;
     entry.expressions = ExpressionSyntax::siemens;
     entry.arithmetic = {};

@@ -56,6 +56,7 @@ struct Dialect {
     bool dwell_takes_x_and_u;                 // G4 X1.5
     bool bare_length_offset_is_tool;          // G43 without H means the tool in the spindle
     bool cycles_are_rs274;   // exact path, spindles that turn, G87 and G88 as NISTIR 6556 has them
+    bool begins_with_g0;     // axis words before any motion code are a rapid, else an error
     bool motion_codes_move;  // G0 without axis words is a rapid to where it stands, G2 an error
     bool cycles_are_motions; // G80-G89 share a modal group with G0-G3
     bool axis_words_serve_one_code;   // G0 and G28 in one block are refused
@@ -75,7 +76,9 @@ struct Dialect {
     bool has_extended_offsets;        // G54.1 P1; G10 L20 P1 writes it
     bool diameters_in_tool_entries;   // G10 L12 R is a diameter, else a radius
     bool g87_is_back_boring;          // else boring with a retract by hand
+    bool cycle_levels_follow_g91;     // R and Z said under G90 count as ways under G91
     bool boring_feeds_to_r;           // G85 and G89 climb beyond R in a rapid
+    bool pecks_may_shrink;            // I, J and K of G73 and G83: the first, less each, the least
     bool peck_sign_is_ignored;        // Q-2 pecks as Q2
     bool scale_without_point_is_thousandths; // G51 P2000 doubles
     bool repeats_with_k;                     // K repeats a canned cycle, as L does
@@ -95,6 +98,7 @@ struct Dialect {
     bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
     bool has_o_words;                      // o<name> sub, if, while ...
     bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
+    bool deletes_within_blocks;            // X1 /Y2 leaves out Y2
     bool has_corner_words;                 // ,R and ,C
     bool has_polar_words;                  // @ and ^
     bool offset_words_may_repeat;          // I, J and K, as arguments of a macro

@@ -123,6 +123,10 @@ double of_one(Operation operation, double a) {
         return a * a;
     case Operation::full_turn:
         return modulo(a, 360.0);
+    case Operation::away_from_zero:
+        return std::copysign(std::ceil(std::abs(a)), a);
+    case Operation::arc_tangent_of_one:
+        return std::atan(a) * degrees;
     default:
         return truth(a == 0.0); // truth_not
     }
@@ -195,6 +199,21 @@ Operation with_bits(Operation operation) {
     }
 }
 
+Operation with_amounts(Operation operation) {
+    if (operation == Operation::fix) return Operation::truncate;
+    return operation == Operation::fup ? Operation::away_from_zero : operation;
+}
+
+/// What the control does where the program has this operation.
+Operation done_for(Operation operation, const Arithmetic& arithmetic) {
+    if (arithmetic.bitwise_logic) operation = with_bits(operation);
+    return arithmetic.fix_is_to_zero ? with_amounts(operation) : operation;
+}
+
+bool is_angle_of_turn(Operation operation) {
+    return operation == Operation::arc_tangent || operation == Operation::arc_sine;
+}
+
 constexpr size_t deepest = 64;
 
 /// The values of an expression while it is worked out.
@@ -207,8 +226,7 @@ public:
     core::Result<void> apply(const Instruction& step) {
         const core::SourceSpan where{.line = line_, .column = step.column, .length = 1};
         if (step.operation <= Operation::exists) return load(step, where);
-        const Operation operation =
-            arithmetic_.bitwise_logic ? with_bits(step.operation) : step.operation;
+        const Operation operation = done_for(step.operation, arithmetic_);
         const bool pair = operation >= Operation::arc_tangent;
         const Value right = pair ? pop() : Value{};
         const Value left = pop();
@@ -216,10 +234,13 @@ public:
         const double a = left.value_or(0.0), b = right.value_or(0.0);
         if (const std::string_view why = objection_to(operation, a, b); !why.empty())
             return core::fail(ErrorCode::invalid_value, fmt::format("this is {}", why), where);
-        const double result =
-            pair ? of_two(operation, a, b, arithmetic_.equality) : of_one(operation, a);
+        double result = pair ? of_two(operation, a, b, arithmetic_.equality) : of_one(operation, a);
         if (!std::isfinite(result))
             return core::fail(ErrorCode::invalid_value, "this is beyond all numbers", where);
+        if (operation == Operation::round && arithmetic_.steps_in_one != 1.0)
+            result = std::round(a * arithmetic_.steps_in_one) / arithmetic_.steps_in_one;
+        if (arithmetic_.angles_have_no_sign && is_angle_of_turn(operation) && result < 0.0)
+            result += 360.0;
         return push(result, where);
     }
 

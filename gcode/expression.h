@@ -41,7 +41,9 @@ enum class Operation : uint8_t {
     fraction, // what is behind the point
     truncate, // what is before the point
     square,
-    full_turn, // an angle in degrees, from 0 to 360
+    full_turn,          // an angle in degrees, from 0 to 360
+    away_from_zero,     // the whole number that is not less in amount
+    arc_tangent_of_one, // from -90 to 90
     // of two
     arc_tangent,
     hypotenuse, // the root of the sum of squares
@@ -107,8 +109,12 @@ public:
 
 /// How the operators of a control behave where controls differ.
 struct Arithmetic {
-    double equality = 0.0;      // EQ holds up to this difference
-    bool bitwise_logic = false; // AND, OR and XOR work on bits, else on truth
+    double equality = 0.0;                // EQ holds up to this difference
+    bool bitwise_logic = false;           // AND, OR and XOR work on bits, else on truth
+    bool fix_is_to_zero = false;          // FIX[-1.2] is -1 and FUP[-1.2] is -2, else -2 and -1
+    bool angles_have_no_sign = false;     // ASIN and ATAN[y]/[x] are from 0 to 360 degrees
+    bool rounds_lengths_to_steps = false; // ROUND behind X is to the smallest step, else to 1
+    double steps_in_one = 1.0;            // ROUND is to a whole number of these
 };
 
 /// The value of an expression.

@@ -99,8 +99,8 @@ core::Result<void> ExpressionReader::arc_tangent(size_t column) {
             lexer_ = ahead;
             if (auto done = brackets(); !done) return done;
         } else if (fanuc) {
-            pool_.instructions.push_back(
-                {Operation::number, static_cast<uint32_t>(column + 1), 1.0});
+            emit(Operation::arc_tangent_of_one, column);
+            return {};
         } else {
             return core::fail(ErrorCode::syntax, "ATAN takes two values here, as ATAN[y]/[x]",
                               lexer_.span(column, lexer_.at));

@@ -23,6 +23,16 @@ Position home_of(Execution& execution, const CodeWord& entry) {
     return home;
 }
 
+/// The place between, for G29: axes that this block does not name keep theirs.
+void keep_way_home(Execution& execution, bool all) {
+    ModalState& modal = execution.modal();
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    if (!modal.way_home) modal.way_home = machine;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (all || execution.statement.word(axis_letters[axis]))
+            (*modal.way_home)[axis] = machine[axis];
+}
+
 } // namespace
 
 core::Result<void> go_home(Execution& execution) {
@@ -34,7 +44,7 @@ core::Result<void> go_home(Execution& execution) {
         FEELER_TRY(const Position between, target_of(execution));
         execution.traverse(between);
     }
-    modal.way_home = machine_from_program(modal.offsets, modal.position);
+    keep_way_home(execution, all);
     const Position home = home_of(execution, entry);
     Position machine = machine_from_program(modal.offsets, modal.position);
     std::array<bool, axis_count> moves{};

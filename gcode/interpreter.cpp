@@ -100,6 +100,9 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         }
         if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
+        if (block.kept_words && environment.block_delete)
+            block.words.erase(block.words.begin() + static_cast<std::ptrdiff_t>(*block.kept_words),
+                              block.words.end());
         if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
         return true;
     }
@@ -172,7 +175,8 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
             FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
             if (!holds) return {};
         }
-        const Assigning assigning{block, dialect, parameters, undos, values, result};
+        const bool inch = state.modal.unit == LengthUnit::inch;
+        const Assigning assigning{block, dialect, parameters, undos, values, result, inch};
         if (auto done = work_out_block(assigning); !done) return done;
         if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
         if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);

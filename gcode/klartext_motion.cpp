@@ -257,6 +257,11 @@ core::Result<void> go_along(Execution& execution, const PathElement& contour) {
 core::Result<void> set_pole(Execution& execution) {
     const PlaneAxes axes = plane_of(execution);
     const Statement& statement = execution.statement;
+    if (const Word* word = statement.word(axis_letters[axes.normal]))
+        return refuse_statement(
+            execution, fmt::format("{}: arcs out of the working plane are not supported yet: write "
+                                   "short lines",
+                                   written(*word)));
     const Position base = base_of(execution);
     std::array<std::optional<double>, 2> pole = execution.state.klartext->pole;
     const size_t plane_axes[] = {axes.first, axes.second};

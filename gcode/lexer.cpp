@@ -129,7 +129,8 @@ core::Result<Number> Lexer::number() {
     at = found.end;
     if (found.too_long)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("the number '{}' has too many digits", written_from(begin)),
+                          fmt::format("the number '{}...' has too many digits",
+                                      written_from(begin).substr(0, 20)),
                           span_from(begin));
     Number number{.has_point = found.has_point};
     std::from_chars(found.text.data(), found.text.data() + found.count, number.value,

@@ -125,7 +125,7 @@ core::Result<void> LineWindows::check(const Window& window) const {
     if (const size_t nul = text.find('\0'); nul != std::string_view::npos) {
         const auto behind = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
         return tl::unexpected(
-            refusal(ErrorCode::syntax, "holds NUL bytes: it is a binary file, not an NC program",
+            refusal(ErrorCode::syntax, what_has_nuls(text),
                     window.first_line + static_cast<uint64_t>(behind - window.starts.begin()) - 1));
     }
     const size_t controls = count_stray_controls(text);

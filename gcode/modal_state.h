@@ -49,7 +49,8 @@ struct CannedCycle {
     std::optional<double> peck;          // Q
     std::array<double, 3> shift{};       // I, J, K of G76 and G87
     std::optional<double> initial_level; // where the axis was before the first of the cycles
-    bool incremental = false;            // whether R and the bottom count from there
+    bool r_is_way = false;               // R was said under G91: counts from there
+    bool bottom_is_way = false;          // Z was said under G91: counts from R
 
     bool operator==(const CannedCycle&) const = default;
 };

@@ -152,17 +152,27 @@ core::Result<void> set_motion_mode(Execution& execution) {
         modal.cycle = CannedCycle{};
     else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
         forget_words(*modal.cycle);
+    else if (modal.cycle->code != code)
+        modal.cycle->shift = {};
     modal.cycle->code = cycle->code->tenths;
     return {};
 }
 
-core::Result<void> refuse_without_mode(const Execution& execution) {
-    for (const Word& word : execution.block.words)
-        if (axis_letters.find(word.letter) != std::string_view::npos)
+/// Before the first motion code: the one that the control begins with.
+core::Result<void> move_without_mode(Execution& execution) {
+    for (const Word& word : execution.block.words) {
+        if (axis_letters.find(word.letter) == std::string_view::npos) continue;
+        if (!execution.dialect.begins_with_g0)
             return core::fail(
                 ErrorCode::missing_value,
                 fmt::format("{}: no motion code is active; say G0, G1, G2 or G3", written(word)),
                 word.span);
+        execution.warn(word.span, fmt::format("{}: no motion code came before it; taken as G0, "
+                                              "with which the control begins as delivered",
+                                              written(word)));
+        execution.modal().motion = tenths(0);
+        return move_straight(execution, true);
+    }
     return {};
 }
 
@@ -204,7 +214,7 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     const bool threads = modal.cycle && modal.cycle->code == tenths(76);
     if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
     if (modal.cycle) return run_canned_cycle(execution);
-    if (!modal.motion) return refuse_without_mode(execution);
+    if (!modal.motion) return move_without_mode(execution);
     if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
     if (is_arc(modal.motion)) {
         assume_feed(execution);

@@ -82,11 +82,13 @@ private:
         if (c == ',' && dialect_.has_corner_words) return corner_word();
         if ((c == '@' || c == '^') && dialect_.has_polar_words) return word(c, c);
         if (c == ':' && dialect_.has_fanuc_flow && block_.is_empty()) return word(c, 'O');
+        if (c == '<' && dialect_.has_fanuc_flow && block_.is_empty()) return program_name();
         if (is_letter(c)) return lettered(upper(c));
         return stray(c);
     }
 
-    /// `/` stands first, or right after the N word. `/10` is no switch.
+    /// `/` stands first, or right after the N word; on some controls also before the words that it
+    /// leaves out. `/10` is no switch.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
         int number = 1;
@@ -95,6 +97,12 @@ private:
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
         const bool in_place = block_.words.empty() || (after_number && block_.assignments.empty());
+        const bool within = dialect_.deletes_within_blocks && block_.assignments.empty()
+                            && block_.flow.kind == FlowKind::none;
+        if (!in_place && within) {
+            if (!block_.kept_words) block_.kept_words = block_.words.size();
+            return {};
+        }
         if (!in_place || block_.block_delete)
             return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
                               lexer_.span_from(begin));
@@ -108,6 +116,15 @@ private:
             return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
         block_.tape_mark = true;
+        return {};
+    }
+
+    /// `<NAME>` in place of an O number.
+    core::Result<void> program_name() {
+        const size_t end = lexer_.line.find('>', lexer_.at);
+        if (end == std::string_view::npos) return lexer_.unexpected_character();
+        lexer_.at = end + 1;
+        block_.is_program_name = true;
         return {};
     }
 
@@ -256,6 +273,8 @@ void Block::clear() {
     command = {};
     block_delete.reset();
     tape_mark = false;
+    is_program_name = false;
+    kept_words.reset();
     has_message = false;
 }
 

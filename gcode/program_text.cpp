@@ -16,6 +16,12 @@ std::vector<uint32_t> starts_of_lines(std::string_view text) {
     return starts;
 }
 
+std::string_view what_has_nuls(std::string_view text) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        return "is UTF-16 text, which controls do not read: save it as plain text (ASCII or UTF-8)";
+    return "holds NUL bytes: it is a binary file, not an NC program";
+}
+
 size_t count_stray_controls(std::string_view text) {
     // Nearly always every control character is a line end or a tab, which is told by plain counts.
     size_t low = 0, common = 0;

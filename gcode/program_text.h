@@ -19,6 +19,10 @@ inline std::string_view without_line_end(std::string_view line) {
     return line;
 }
 
+/// What a file with NUL bytes is, for a message: another encoding by its first two bytes, or no
+/// text.
+std::string_view what_has_nuls(std::string_view text);
+
 /// Whether anything stands outside of comments, tape marks and blanks.
 bool has_a_block(std::string_view text);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -72,6 +73,15 @@ Clue name_clue(const std::string& file) {
     return Recognition{DialectId::siemens, fmt::format("its name ends in {}", ending)};
 }
 
+/// `@5` or `^30`, not in a comment. `letters` has no blanks.
+bool has_polar_word(std::string_view letters) {
+    const size_t code_end = std::min(letters.find('('), letters.find(';'));
+    const std::string_view code = letters.substr(0, code_end);
+    const size_t mark = code.find_first_of("@^");
+    if (mark == std::string_view::npos || mark + 1 >= code.size()) return false;
+    return is_digit(code[mark + 1]) || std::string_view("+-.[#").find(code[mark + 1]) < 5;
+}
+
 /// Things only LinuxCNC reads, which the parser of this version refuses.
 Clue linuxcnc_clue(std::string_view text, size_t line) {
     std::string letters;
@@ -82,6 +92,8 @@ Clue linuxcnc_clue(std::string_view text, size_t line) {
         return found(DialectId::linuxcnc, line, "has a named parameter or O word");
     if (letters.find("(AXIS,") != std::string::npos || letters.find("(DEBUG,") != std::string::npos)
         return found(DialectId::linuxcnc, line, "has an active comment");
+    if (has_polar_word(letters))
+        return found(DialectId::linuxcnc, line, "has a polar word (@ or ^)");
     const size_t after_number = letters.find_first_not_of("0123456789", 1);
     if (!letters.starts_with('O') || after_number == std::string::npos) return std::nullopt;
     const std::string_view rest = std::string_view(letters).substr(after_number);
@@ -165,10 +177,39 @@ Recognition judge(const Habits& habits) {
     return {DialectId::grbl, "it has no tools, no expressions, no % marks and only codes of Grbl"};
 }
 
-Clue program_number_clue(const Block& block) {
-    if (block.words.empty() || block.words.front().letter != 'O') return std::nullopt;
-    return found(DialectId::fanuc, block.line,
-                 fmt::format("is a program number (O{:.12g})", block.words.front().value));
+/// What only Fanuc's family of controls has: the number or name of a program, jumps and loops.
+Clue family_clue(const Block& block) {
+    if (!block.words.empty() && block.words.front().letter == 'O')
+        return found(DialectId::fanuc, block.line,
+                     fmt::format("is a program number (O{:.12g})", block.words.front().value));
+    if (block.is_program_name)
+        return found(DialectId::fanuc, block.line, "is the name of a program in < and >");
+    if (block.flow.kind != FlowKind::none)
+        return found(DialectId::fanuc, block.line, "has IF, WHILE or GOTO");
+    return std::nullopt;
+}
+
+/// What Haas controls have and Fanuc's have not. M97 without P is another code of Fanuc's.
+Clue haas_clue(const Block& block) {
+    const auto is_place = [](const Word& word) { return word.letter == 'P'; };
+    const bool has_place = std::any_of(block.words.begin(), block.words.end(), is_place);
+    for (const Word& word : block.words) {
+        if (word.expression || (word.letter != 'G' && word.letter != 'M')) continue;
+        if (word.letter == 'M' && (word.value != 97.0 || !has_place)) continue;
+        if (!find_code(word.letter, word.value, DialectId::haas)
+            || find_code(word.letter, word.value, DialectId::fanuc))
+            continue;
+        return found(DialectId::haas, block.line,
+                     fmt::format("has a code that only Haas controls have ({}{:.12g})", word.letter,
+                                 word.value));
+    }
+    return std::nullopt;
+}
+
+Clue language_clue(std::string_view text, size_t line) {
+    if (Clue clue = foreign_clue(text, line)) return clue;
+    if (Clue clue = siemens_clue(text, line)) return clue;
+    return linuxcnc_clue(text, line);
 }
 
 } // namespace
@@ -178,24 +219,27 @@ Recognition recognise(const Program& program) {
     if (Clue clue = name_clue(program.file)) return *clue;
     Habits habits;
     Block block;
+    Clue family; // Fanuc, unless a code of Haas follows
     size_t lines = 0;
     for (size_t number = 1; lines < enough_lines; ++number) {
         if (!program.has_line(number).value_or(false)) break;
         const std::string_view text = program.line(number);
-        if (Clue clue = foreign_clue(text, number)) return *clue;
-        if (Clue clue = siemens_clue(text, number)) return *clue;
-        if (Clue clue = linuxcnc_clue(text, number)) return *clue;
+        if (!family)
+            if (Clue clue = language_clue(text, number)) return *clue;
         // Fanuc's is the widest of the languages whose lines hold words.
         if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
             continue;
         lines += !block.is_empty();
         habits.has_expressions |= !block.pool.instructions.empty();
-        if (Clue clue = program_number_clue(block)) return *clue;
-        if (block.flow.kind != FlowKind::none)
-            return found(DialectId::fanuc, number, "has IF, WHILE or GOTO");
+        if (!family) family = family_clue(block);
+        if (family) {
+            if (Clue clue = haas_clue(block)) return *clue;
+            continue;
+        }
         observe(block, habits);
     }
-    return judge(habits);
+    if (!family) return judge(habits);
+    return *family;
 }
 
 } // namespace gcode

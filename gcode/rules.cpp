@@ -204,7 +204,8 @@ void look_at_end(Execution& execution) {
 
 void look_at_block_delete(Execution& execution) {
     RuleWatch& watch = execution.state.rules;
-    if (!execution.block.block_delete || watch.said_block_delete) return;
+    const bool switched = execution.block.block_delete || execution.block.kept_words;
+    if (!switched || watch.said_block_delete) return;
     watch.said_block_delete = true;
     advise(
         execution, {.line = execution.block.line, .column = 1}, "block-delete",

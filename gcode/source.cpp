@@ -69,8 +69,7 @@ std::optional<Error> Collector::add_piece(std::string_view piece) {
     }
     program_.text += piece.substr(first_end);
     if (nul != std::string_view::npos)
-        return refusal("holds NUL bytes: it is a binary file, not an NC program",
-                       starts_of_lines(program_.text + ' ').size());
+        return refusal(what_has_nuls(program_.text), starts_of_lines(program_.text + ' ').size());
     const size_t last_end = piece.find_last_of("\r\n");
     line_length_ = last_end == std::string_view::npos ? line_length_ + piece.size()
                                                       : piece.size() - last_end - 1;

@@ -75,7 +75,8 @@ void add(Digest& digest, const CannedCycle& cycle) {
     for (const auto& value : {cycle.bottom, cycle.r, cycle.dwell, cycle.peck, cycle.initial_level})
         digest.add(value);
     add_all(digest, cycle.shift);
-    digest.add(uint64_t{cycle.incremental});
+    digest.add(uint64_t{cycle.r_is_way});
+    digest.add(uint64_t{cycle.bottom_is_way});
 }
 
 void add(Digest& digest, const SplineState& spline) {

@@ -34,6 +34,11 @@ ExitCode check(const Options& options) {
                      "is not inferred from the program yet; assets/setups holds examples)"});
         return ExitCode::failed;
     }
+    const auto safe = check_output(options.output, {options.program, options.setup});
+    if (!safe) {
+        print_error(safe.error());
+        return ExitCode::failed;
+    }
     const auto settings = settings_of(options.reading);
     if (!settings) {
         print_error(settings.error());

@@ -104,6 +104,22 @@ core::Result<void> OutputStream::give_up() {
     return std::fflush(stdout) == 0 ? core::Result<void>{} : standard_output_failed();
 }
 
+core::Result<void> check_output(const std::string& output,
+                                std::initializer_list<std::string> read) {
+    for (const std::string& input : read) {
+        std::error_code ignored; // of files that are not there, which others complain of
+        if (output.empty() || !std::filesystem::is_regular_file(output, ignored)
+            || !std::filesystem::equivalent(output, input, ignored))
+            continue;
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::invalid_value,
+             {},
+             "is read here, and would be lost: give -o the name of another file",
+             output});
+    }
+    return {};
+}
+
 core::Result<void> write_output(const std::string& path, const std::string& text) {
     FEELER_TRY(OutputStream stream, OutputStream::open(path));
     if (auto written = stream.write(text); !written) return written;

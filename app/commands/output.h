@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,6 +15,11 @@ namespace app {
 ///
 /// Errors: io, with the path.
 core::Result<void> write_output(const std::string& path, const std::string& text);
+
+/// Refuses an output file that is one of the files that are read.
+///
+/// Errors: invalid_value, with the path.
+core::Result<void> check_output(const std::string& output, std::initializer_list<std::string> read);
 
 /// A result that is written piece by piece, to a file or to standard output, as write_output does.
 /// The old file stays unless the new one is finished.

@@ -26,7 +26,9 @@ std::string why_no_count(const std::string& text) {
 } // namespace
 
 void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
-    command.add_option("--dialect", arguments.dialect, "linuxcnc, fanuc, haas or grbl")
+    command
+        .add_option("--dialect", arguments.dialect,
+                    "The control's language; else it is recognised, and said")
         ->check(CLI::IsMember(
             {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "siemens-iso", "heidenhain"}));
     command

@@ -105,6 +105,8 @@ struct Tracing {
 
 core::Result<void> run_trace(const Options& options) {
     FEELER_TRY(gcode::Program program, gcode::open_program(options.program));
+    const auto safe = check_output(options.output, {options.program, options.setup});
+    if (!safe) return safe;
     std::optional<gcode::DialectId> stated;
     FEELER_TRY(gcode::Environment environment, environment_of(options, stated));
     FEELER_TRY(environment.dialect, choose_dialect(stated, program));

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,17 @@ TEST(StartPosition, LeavesAxesUnknownThatItDoesNotName) {
     Traced traced;
     traced.run("G21 G0 X10\nM2\n", {"--start-position", "Y=3"});
     EXPECT_TRUE(traced.says("straight_traverse x=10 y=3\n")) << traced.ran.out;
+}
+
+TEST(Output, NeverReplacesTheProgram) {
+    const std::string program = "G21 G0 X1\nM2\n";
+    Traced traced;
+    const std::string path = traced.folder.write("p.ngc", program);
+    traced.run(program, {"-o", path});
+    EXPECT_NE(traced.ran.status, 0);
+    EXPECT_TRUE(traced.warns("another file")) << traced.ran.err;
+    std::ifstream file(path);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), program);
 }
 
 TEST(BlockDelete, LeavesBlocksWithASlashOut) {

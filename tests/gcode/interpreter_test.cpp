@@ -115,7 +115,8 @@ TEST(Interpreter, GivesTheSameAgainFromACopiedState) {
 }
 
 TEST(Interpreter, NeedsAMotionCodeForAxisWords) {
-    EXPECT_EQ(error_of("G54\nX10"), "2:1: X10: no motion code is active; say G0, G1, G2 or G3");
+    EXPECT_EQ(error_of("G54\nX10", DialectId::linuxcnc),
+              "2:1: X10: no motion code is active; say G0, G1, G2 or G3");
     EXPECT_THAT(error_of("G0 X1\nG80 X2", DialectId::linuxcnc), HasSubstr("2:5: X2"));
 }
 
