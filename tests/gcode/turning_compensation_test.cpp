@@ -56,7 +56,7 @@ void expect_shifted(const Run& run, const Run& mill, const Tip& tip, double radi
 TEST(TurningCompensation, MovesThePointThatIsControlled) {
     const Ran mill = run_text(contour("G42.1 D3"), DialectId::linuxcnc);
     ASSERT_FALSE(mill.run.error);
-    EXPECT_NEAR(places(mill.run)[0][0], 21.549878, 1e-6);
+    EXPECT_NEAR(places(mill.run)[0][0], 21.578368, 1e-6);
     for (const Tip& tip : tips) {
         const std::string entry = fmt::format("G42.1 D3 L{}", tip.orientation);
         expect_shifted(run_text(contour(entry), DialectId::linuxcnc).run, mill.run, tip, 1.5);
