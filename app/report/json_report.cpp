@@ -106,7 +106,7 @@ Json statistics_json(const CheckRun& run) {
     json["refined"] = run.statistics.refined;
     json["sweeps"] = run.statistics.sweeps;
     json["removed"] = run.removed;
-    json["duration"] = run.duration;
+    json["duration"] = run.cycle_time;
     json["seconds"] = {
         {"read", run.times.read}, {"model", run.times.model}, {"check", run.times.check}};
     return json;
@@ -126,6 +126,7 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["mesh_size"] = run.setup.mesh_size;
     json["assumptions"] = run.assumptions;
     json["verdict"] = core::name_of(run.verdict);
+    json["cycle_time"] = run.cycle_time;
     if (run.stopped) json["error"] = error_json(*run.stopped);
     json["blocks"] = Json::array();
     for (const CheckedBlock& block : run.blocks)

@@ -120,8 +120,8 @@ std::string summary_text(const CheckRun& run) {
                         core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
                         trimmed(clearance_text(run, block->result)), pair.allowance.distance);
     }
-    text += fmt::format("  removed    {:.1f} mm3 in {} of machine time\n", run.removed,
-                        duration_text(run.duration));
+    text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
+    text += fmt::format("  removed    {:.1f} mm3\n", run.removed);
     text +=
         fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
                     run.setup.mesh_size, run.lines, run.points,

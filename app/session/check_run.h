@@ -39,10 +39,10 @@ struct CheckRun {
     core::Verdict verdict = core::Verdict::clear;
     std::optional<core::Error> stopped; // why the program could not be run to its end
     core::Statistics statistics;
-    size_t points = 0;     // of the stock's model at the end
-    size_t lines = 0;      // scan lines
-    double duration = 0.0; // of the program, seconds
-    double removed = 0.0;  // mm3
+    size_t points = 0;       // of the stock's model at the end
+    size_t lines = 0;        // scan lines
+    double cycle_time = 0.0; // of the program, seconds
+    double removed = 0.0;    // mm3
     CheckTimes times;
 
     bool has_errors() const;

@@ -30,9 +30,11 @@ void read_axis(TableReader& table, core::Machine& machine) {
     axis.max = table.number("max");
     axis.home = table.number("home");
     axis.rapid = table.number("rapid");
-    table.number("acceleration"); // rapids and feeds run at full speed in this version
+    axis.acceleration = table.number("acceleration");
     if (axis.min && axis.max && *axis.min >= *axis.max) table.refuse("min", "must be below max");
     if (axis.rapid && *axis.rapid <= 0.0) table.refuse("rapid", "must be above 0");
+    if (axis.acceleration && *axis.acceleration <= 0.0)
+        table.refuse("acceleration", "must be above 0");
     table.finish();
 }
 

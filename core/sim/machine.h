@@ -14,7 +14,8 @@ namespace core {
 struct MachineAxis {
     Vec3 direction = Vec3(0.0); // unit length
     std::optional<double> min, max, home;
-    std::optional<double> rapid; // mm/min
+    std::optional<double> rapid;        // mm/min
+    std::optional<double> acceleration; // mm/s2
 };
 
 /// straight: all axes arrive together; dogleg: each axis runs at its own speed.
@@ -22,8 +23,9 @@ enum class RapidStyle : uint8_t { straight, dogleg };
 
 /// A mill with three linear axes.
 struct Machine {
-    std::array<MachineAxis, 3> axes = {
-        {{{1, 0, 0}, {}, {}, {}, {}}, {{0, 1, 0}, {}, {}, {}, {}}, {{0, 0, 1}, {}, {}, {}, {}}}};
+    std::array<MachineAxis, 3> axes = {{{{1, 0, 0}, {}, {}, {}, {}, {}},
+                                        {{0, 1, 0}, {}, {}, {}, {}, {}},
+                                        {{0, 0, 1}, {}, {}, {}, {}, {}}}};
     RapidStyle rapid = RapidStyle::straight;
 
     /// Where the gauge line stands in the machine frame at these axis values.

@@ -6,7 +6,6 @@
 namespace core {
 namespace {
 
-constexpr double assumed_rapid = 10'000.0; // mm/min, where the machine states none
 constexpr double seconds_per_minute = 60.0;
 
 std::optional<Vec3> known(const AxisPosition& p) {

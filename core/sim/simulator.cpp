@@ -51,6 +51,7 @@ struct BlockRun {
     void carry_out(const SpindleChange& change) { state.spindle = change; }
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
+    void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
