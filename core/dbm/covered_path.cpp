@@ -22,9 +22,14 @@ bool widens_upwards(const RevolvedProfile& flutes) {
     return is_convex(flutes);
 }
 
+/// A straight move of a tip in the tool's frame, where the tool stands upright.
+struct Move {
+    Vec3 from, to;
+};
+
 /// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
-bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
-    const Vec3 q = logged.sweep.from, by = logged.sweep.to - logged.sweep.from;
+bool covers(const Move& move, const Vec3& p, double sideways) {
+    const Vec3 q = move.from, by = move.to - move.from;
     // The places of the move that are not above p: first .. last of 0 .. 1.
     double first = 0.0, last = 1.0;
     if (by.z > 0.0) last = std::min(last, (p.z - q.z) / by.z);
@@ -39,14 +44,14 @@ bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
 
 /// A search among the moves that can serve.
 struct Search {
-    std::vector<const LoggedSweep*> moves;
+    std::vector<Move> moves;
     double sideways;
 
     /// Both ends over one move: then, both being straight, all between is over it too.
     bool covered(const Vec3& a, const Vec3& b, int depth) const {
         bool ends_covered = false;
-        for (const LoggedSweep* move : moves) {
-            const bool at_a = covers(*move, a, sideways), at_b = covers(*move, b, sideways);
+        for (const Move& move : moves) {
+            const bool at_a = covers(move, a, sideways), at_b = covers(move, b, sideways);
             if (at_a && at_b) return true;
             ends_covered = ends_covered || at_a || at_b;
         }
@@ -56,25 +61,45 @@ struct Search {
     }
 };
 
+/// The height of the highest point of a box along `up`.
+double top_along(const Aabb& box, const Vec3& up) {
+    return glm::dot(glm::max(box.min * up, box.max * up), Vec3(1.0));
+}
+
+/// Everything that may have been cut over or under a path, along `up`.
+Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb& stock) {
+    Aabb path;
+    path.extend(from);
+    path.extend(to);
+    Aabb all = path;
+    all.extend(stock);
+    const Vec3 far = glm::length(all.size()) * up;
+    for (const Vec3& place : {from, to}) {
+        path.extend(place + far);
+        path.extend(place - far);
+    }
+    return path;
+}
+
 } // namespace
 
 bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
     if (question.sideways <= 0.0 || !widens_upwards(question.flutes)) return false;
     const double height = bounds(question.flutes).max.z;
-    Aabb path;
-    path.extend(question.from);
-    path.extend(question.to);
-    Search search{{}, question.sideways};
+    const Vec3 up = question.orientation[2];
+    const Mat3 tool_from_stock = glm::transpose(question.orientation);
     // What cut under the path reached up through it, to the stock's top and beyond.
-    path.min.z = -infinity;
-    path.max.z = infinity;
+    const double top = top_along(stock.outer_box, up);
+    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
+    Search search{{}, question.sideways};
     for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
-        const LoggedSweep& logged = stock.log[number];
-        const CutterSweep& sweep = logged.sweep;
-        if (std::min(sweep.from.z, sweep.to.z) + height < stock.outer_box.max.z) continue;
-        if (same_profile(sweep.cutter->flutes, question.flutes)) search.moves.push_back(&logged);
+        const CutterSweep& sweep = stock.log[number].sweep;
+        if (sweep.orientation[2] != up) continue;
+        if (!same_profile(sweep.cutter->flutes, question.flutes)) continue;
+        const Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to};
+        if (std::min(move.from.z, move.to.z) + height >= top) search.moves.push_back(move);
     }
-    return search.covered(question.from, question.to, 0);
+    return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
 }
 
 } // namespace core

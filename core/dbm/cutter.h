@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/dbm/solid.h"
-#include "core/dbm/swept_line.h"
+#include "core/dbm/tilted_line.h"
 
 namespace core {
 
@@ -22,10 +22,13 @@ struct Cutter {
 /// A cutter for paths that stay within `path_error` mm of the straight moves given for them.
 Cutter make_cutter(const RevolvedProfile& flutes, double path_error);
 
-/// One straight move of a cutter. Frame: that of the stock; places of the tool's tip.
+/// One straight move of a cutter that does not turn meanwhile.
+/// Frame: that of the stock; places of the tool's tip.
 struct CutterSweep {
     std::shared_ptr<const Cutter> cutter;
     Vec3 from = Vec3(0.0), to = Vec3(0.0);
+    Mat3 orientation = Mat3(1.0); // stock_from_tool
+    uint32_t block = 0;           // of the program, whatever the caller counts by
 };
 
 /// The box of everything the sweep may remove.
