@@ -13,7 +13,7 @@ namespace app {
 namespace {
 
 struct Options {
-    std::string program, setup, output;
+    std::string program, setup, output, stock;
     ProgramArguments reading;
     std::string format = "text";
     std::optional<double> allowance, mesh_size;
@@ -26,6 +26,31 @@ std::string report(const Options& options, const CheckRun& run) {
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
 
+/// Whether what is to be written can be, as far as that is known beforehand.
+core::Result<void> check_files(const Options& options) {
+    if (auto safe = check_output(options.output, {options.program, options.setup}); !safe)
+        return safe;
+    if (options.stock.empty()) return {};
+    if (auto safe = check_output(options.stock, {options.program, options.setup, options.output});
+        !safe)
+        return safe;
+    if (auto form = mesh_form(options.stock); !form) return tl::unexpected(form.error());
+    return {};
+}
+
+/// Writes what was asked for beside the report.
+core::Result<void> save_results(const Options& options, CheckRun& run) {
+    if (options.stock.empty()) return {};
+    if (run.stopped)
+        return tl::unexpected<core::Error>({core::ErrorCode::invalid_value,
+                                            {},
+                                            "was not written: the program did not run to its end",
+                                            options.stock});
+    FEELER_TRY(const StockFile file, stock_file(*run.stock, options.stock));
+    run.saved_stock = file.facts;
+    return write_output(options.stock, file.bytes);
+}
+
 ExitCode check(const Options& options) {
     if (options.setup.empty()) {
         print_error({core::ErrorCode::missing_value,
@@ -34,7 +59,7 @@ ExitCode check(const Options& options) {
                      "is not inferred from the program yet; assets/setups holds examples)"});
         return ExitCode::failed;
     }
-    const auto safe = check_output(options.output, {options.program, options.setup});
+    const auto safe = check_files(options);
     if (!safe) {
         print_error(safe.error());
         return ExitCode::failed;
@@ -44,13 +69,15 @@ ExitCode check(const Options& options) {
         print_error(settings.error());
         return ExitCode::failed;
     }
-    const auto run = run_check(
+    auto run = run_check(
         {options.program, options.setup, options.allowance, options.mesh_size, *settings});
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
     }
     if (run->stopped) print_error(*run->stopped);
+    const auto saved = save_results(options, *run);
+    if (!saved) print_error(saved.error());
     // A run that did not come to its end goes to standard output: a file would look like a whole
     // one.
     const auto written = write_output(run->stopped ? "" : options.output, report(options, *run));
@@ -58,7 +85,7 @@ ExitCode check(const Options& options) {
         print_error(written.error());
         return ExitCode::failed;
     }
-    if (run->stopped) return ExitCode::failed;
+    if (run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 
@@ -80,6 +107,8 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
+    command.add_option("--save-stock", options->stock,
+                       "Write what is left of the stock to this file (.stl, .ply)");
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");
     command.add_flag("--pairs", options->pairs, "JSON: add every pair of bodies to every block");
     command.callback([options, &exit_code] { exit_code = check(*options); });

@@ -112,6 +112,13 @@ Json statistics_json(const CheckRun& run) {
     return json;
 }
 
+Json saved_json(const SavedStock& saved) {
+    return {{"file", saved.file},
+            {"triangles", saved.triangles},
+            {"error", saved.error},
+            {"lost_points", saved.lost}};
+}
+
 } // namespace
 
 std::string json_report(const CheckRun& run, bool pairs) {
@@ -134,6 +141,7 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["findings"] = Json::array();
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
+    if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
     json["statistics"] = statistics_json(run);
     // Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

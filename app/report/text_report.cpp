@@ -126,6 +126,7 @@ std::string summary_text(const CheckRun& run) {
         fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
                     run.setup.mesh_size, run.lines, run.points,
                     run.times.read + run.times.model + run.times.check);
+    if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
     text += "  assuming\n";
     for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);
     return text;

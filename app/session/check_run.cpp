@@ -248,6 +248,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     Runner{*program, file.environment, run}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
+    run.stock = std::move(state->stock);
     return run;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/stock_file.h"
 #include "app/setup/setup_file.h"
 #include "core/sim/simulator.h"
 #include "gcode/interpreter.h"
@@ -44,6 +45,8 @@ struct CheckRun {
     double cycle_time = 0.0; // of the program, seconds
     double removed = 0.0;    // mm3
     CheckTimes times;
+    std::optional<core::CutModel> stock; // what is left of it
+    std::optional<SavedStock> saved_stock;
 
     bool has_errors() const;
 };

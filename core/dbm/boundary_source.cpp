@@ -70,7 +70,8 @@ NearestFace towards(const CutterSweep& sweep, const Vec3& place) {
     const ConvexShape point = convex_segment(place, place);
     for (const Cutter::Piece& piece : sweep.cutter->pieces) {
         for (const ProfileElement& element : piece.around.elements) {
-            const Separation gap = separation(swept(convex(element), places), point,
+            const ConvexShape body = posed(convex(element), {sweep.orientation, Vec3(0.0)});
+            const Separation gap = separation(swept(body, places), point,
                                               {.tolerance = 1e-11, .limit = nearest.distance});
             if (gap.found() && gap.upper > 0.0)
                 nearest.offer(gap.upper, (gap.point_a - gap.point_b) / gap.upper);

@@ -5,6 +5,7 @@
 
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
+#include "core/geom/triangle_distance.h"
 
 namespace core {
 namespace {
@@ -239,7 +240,7 @@ void Contouring::add_upright_quads(const CellLayer& layer) {
 }
 
 double distance_to(const Vec3& p, const Triangle& t) {
-    return separation(convex_segment(p, p), convex(t), {.tolerance = 1e-9}).upper;
+    return glm::distance(p, nearest_point(t, p));
 }
 
 /// Two triangles, cut along the diagonal that leaves them nearer to the point on the line.
