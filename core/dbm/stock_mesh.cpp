@@ -15,12 +15,18 @@ constexpr int32_t nowhere = -1;
 /// How far beyond an edge an end is still taken for the edge's own, mm.
 constexpr double slack = 1e-6;
 
+/// Where a line passes the surface between two nodes.
+struct CrossedEdge {
+    SurfacePoint surface;
+    std::optional<uint32_t> sweep;
+};
+
 /// Nodes with the same z: where the lines of the three families meet. Node (i, j) stands where the
 /// lines i - 1 and j - 1 do; those round the outside have no lines and are outside.
 struct NodeLayer {
     std::vector<uint8_t> inside;
     std::array<std::vector<int32_t>, 2> edges; // along X, Y from each node: number of its point
-    std::vector<SurfacePoint> points;
+    std::vector<CrossedEdge> points;
 };
 
 /// Cells between two layers of nodes; cell (i, j) has node (i, j) as its lowest corner.
@@ -28,12 +34,12 @@ struct CellLayer {
     std::vector<uint8_t> inside;       // a bit for each corner
     std::vector<int32_t> first_vertex; // of its pieces
     std::vector<int32_t> z_edges;      // from each node of the lower layer
-    std::vector<SurfacePoint> points;
+    std::vector<CrossedEdge> points;
 };
 
-using EdgePoints = std::array<const SurfacePoint*, 12>;
+using EdgePoints = std::array<const CrossedEdge*, 12>;
 
-const SurfacePoint* point_of(const std::vector<SurfacePoint>& points, int32_t number) {
+const CrossedEdge* point_of(const std::vector<CrossedEdge>& points, int32_t number) {
     return number == nowhere ? nullptr : &points[static_cast<size_t>(number)];
 }
 
@@ -59,7 +65,7 @@ private:
     NodeLayer nodes(int k);
     CellLayer cells(const NodeLayer& below, const NodeLayer& above, int k);
     int32_t cross(int axis, const std::array<int, 3>& node, bool from_inside,
-                  std::vector<SurfacePoint>& points);
+                  std::vector<CrossedEdge>& points);
     void make_vertices(CellLayer& layer, const NodeLayer& below, const NodeLayer& above, int i,
                        int j, int k);
     EdgePoints points_of(const CellLayer& layer, const NodeLayer& below, const NodeLayer& above,
@@ -67,7 +73,7 @@ private:
     void add_flat_quads(const NodeLayer& nodes, const CellLayer& below, const CellLayer& above);
     void add_upright_quads(const CellLayer& layer);
     int32_t vertex(const CellLayer& layer, int i, int j, size_t edge) const;
-    void add_quad(std::array<int32_t, 4> corners, const Vec3& point, bool upwards);
+    void add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards);
 
     const CutModel& model_;
     const ScanGrid& grid_;
@@ -124,7 +130,7 @@ NodeLayer Contouring::nodes(int k) {
 /// The point at which the line along `axis` leaves or enters the matter between a node and the
 /// next.
 int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_inside,
-                          std::vector<SurfacePoint>& points) {
+                          std::vector<CrossedEdge>& points) {
     const int u = node[static_cast<size_t>(u_axis(axis))] - 1;
     const int v = node[static_cast<size_t>(v_axis(axis))] - 1;
     const int step = node[static_cast<size_t>(axis)] - 1;
@@ -140,15 +146,16 @@ int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_in
         point.along = end;
         found = true;
     }
-    SurfacePoint surface;
+    CrossedEdge edge;
     if (found) {
-        surface.normal = sources_.at(point).normal;
+        const BoundarySource source = sources_.at(point);
+        edge = {{Vec3(0.0), source.normal}, source.sweep};
         ++taken_;
     } else {
-        surface.normal[axis] = from_inside ? 1.0 : -1.0;
+        edge.surface.normal[axis] = from_inside ? 1.0 : -1.0;
     }
-    surface.place = point_on_line(grid_, axis, u, v, std::clamp(point.along, low, high));
-    points.push_back(surface);
+    edge.surface.place = point_on_line(grid_, axis, u, v, std::clamp(point.along, low, high));
+    points.push_back(edge);
     return static_cast<int32_t>(points.size()) - 1;
 }
 
@@ -202,7 +209,7 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
         std::array<SurfacePoint, 12> met;
         size_t count = 0;
         for (size_t e = 0; e < 12; ++e)
-            if (pieces.piece[e] == piece) met[count++] = *edge_points[e];
+            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->surface;
         result_.mesh.vertices.push_back(feature_point({met.data(), count}, {corner(0), corner(1)}));
     }
 }
@@ -222,11 +229,11 @@ void Contouring::add_flat_quads(const NodeLayer& nodes, const CellLayer& below,
             if (const auto* p = point_of(nodes.points, nodes.edges[0][at(i, j)]))
                 add_quad({vertex(below, i, j - 1, 3), vertex(below, i, j, 2),
                           vertex(above, i, j, 0), vertex(above, i, j - 1, 1)},
-                         p->place, here);
+                         *p, here);
             if (const auto* p = point_of(nodes.points, nodes.edges[1][at(i, j)]))
                 add_quad({vertex(below, i - 1, j, 7), vertex(above, i - 1, j, 5),
                           vertex(above, i, j, 4), vertex(below, i, j, 6)},
-                         p->place, here);
+                         *p, here);
         }
 }
 
@@ -236,7 +243,7 @@ void Contouring::add_upright_quads(const CellLayer& layer) {
             if (const auto* p = point_of(layer.points, layer.z_edges[at(i, j)]))
                 add_quad({vertex(layer, i - 1, j - 1, 11), vertex(layer, i, j - 1, 10),
                           vertex(layer, i, j, 8), vertex(layer, i - 1, j, 9)},
-                         p->place, (layer.inside[at(i, j)] & 1U) != 0);
+                         *p, (layer.inside[at(i, j)] & 1U) != 0);
 }
 
 double distance_to(const Vec3& p, const Triangle& t) {
@@ -244,10 +251,11 @@ double distance_to(const Vec3& p, const Triangle& t) {
 }
 
 /// Two triangles, cut along the diagonal that leaves them nearer to the point on the line.
-void Contouring::add_quad(std::array<int32_t, 4> corners, const Vec3& point, bool upwards) {
+void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards) {
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
     const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
+    const Vec3& point = edge.surface.place;
     double away[2];
     for (size_t k = 0; k < 2; ++k)
         away[k] = std::min(distance_to(point, {place(k), place(k + 1), place(k + 2)}),
@@ -255,6 +263,7 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const Vec3& point, boo
     const size_t k = away[1] < away[0] - 1e-9 ? 1 : 0;
     result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
     result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
+    result_.samples.push_back({point, edge.sweep});
     result_.error = std::max(result_.error, away[k]);
 }
 

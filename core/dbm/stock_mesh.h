@@ -5,9 +5,16 @@
 
 namespace core {
 
+/// A place where a scan line passes the surface of a stock.
+struct SurfaceSample {
+    Vec3 place = Vec3(0.0);
+    std::optional<uint32_t> sweep; // what made it, by its number in the log; empty: raw stock
+};
+
 /// The surface of a model as triangles.
 struct StockMesh {
     Mesh mesh;
+    std::vector<SurfaceSample> samples; // sample k lies beside triangles 2 k and 2 k + 1
     double error = 0.0; // mm: every boundary point of the model that is not lost is this near to it
     size_t lost = 0;    // boundary points on details thinner than the mesh size, not in the surface
 };

@@ -8,6 +8,7 @@
 #include "core/distance/body_distance.h"
 #include "core/sim/finding.h"
 #include "core/sim/machine.h"
+#include "core/sim/part_comparison.h"
 #include "core/sim/tool_assembly.h"
 
 namespace core {
@@ -35,6 +36,7 @@ struct Setup {
     Machine machine;
     Vec3 stock_origin = Vec3(0.0); // of the stock's frame, in the machine frame
     Solid stock;                   // in the stock's frame
+    std::optional<Part> part; // what is to be made
     std::vector<Fixture> fixtures;
     std::map<ToolNumber, ToolAssembly> tools;
     std::optional<ToolNumber> tool_at_start;
