@@ -112,6 +112,28 @@ Json statistics_json(const CheckRun& run) {
     return json;
 }
 
+Json part_json(const CheckRun& run) {
+    const core::PartComparison& comparison = *run.comparison;
+    Json json;
+    json["tolerance"] = run.setup.part->tolerance;
+    json["largest_gouge"] = comparison.largest_gouge;
+    json["largest_excess"] = comparison.largest_excess;
+    json["between_samples"] = comparison.between_samples;
+    json["samples"] = comparison.samples;
+    json["regions"] = Json::array();
+    for (const core::DeviationRegion& region : comparison.regions) {
+        Json entry;
+        entry["kind"] = core::name_of(region.kind);
+        entry["amount"] = region.amount;
+        entry["at"] = array_of(region.place);
+        entry["area"] = region.area;
+        entry["block"] = region.block ? Json(*region.block) : Json(nullptr);
+        entry["line"] = region.block ? Json(run.blocks[*region.block].line) : Json(nullptr);
+        json["regions"].push_back(std::move(entry));
+    }
+    return json;
+}
+
 Json saved_json(const SavedStock& saved) {
     return {{"file", saved.file},
             {"triangles", saved.triangles},
@@ -141,6 +163,7 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["findings"] = Json::array();
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
+    if (run.comparison) json["part"] = part_json(run);
     if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
     json["statistics"] = statistics_json(run);
     // Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/report/text_layout.h"
+#include "app/session/part_check.h"
 
 namespace app {
 namespace {
@@ -126,6 +127,9 @@ std::string summary_text(const CheckRun& run) {
         fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
                     run.setup.mesh_size, run.lines, run.points,
                     run.times.read + run.times.model + run.times.check);
+    if (run.comparison)
+        text +=
+            fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
     if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
     text += "  assuming\n";
     for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);

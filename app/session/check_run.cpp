@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/session/digest.h"
+#include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
 #include "core/sim/block_clock.h"
 #include "gcode/lowering.h"
@@ -249,6 +250,9 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.check = seconds_since(checking);
     conclude(run, *state);
     run.stock = std::move(state->stock);
+    if (!run.stopped && (job.needs_surface || run.setup.part))
+        run.surface = core::stock_mesh(*run.stock);
+    check_part(run);
     return run;
 }
 

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh_bytes.h"
 
 namespace app {
@@ -42,14 +41,13 @@ std::string facts_of(const SavedStock& saved) {
     return text;
 }
 
-core::Result<StockFile> stock_file(const core::CutModel& stock, const std::string& path) {
+core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
+                                   const std::string& path) {
     FEELER_TRY(const MeshForm form, mesh_form(path));
-    const core::StockMesh surface = core::stock_mesh(stock);
     if (surface.mesh.triangles.empty())
         return refused(path, "was not written: nothing is left of the stock");
     StockFile file;
-    file.facts = {path, surface.mesh.triangles.size(), surface.error, stock.lines.grid.spacing,
-                  surface.lost};
+    file.facts = {path, surface.mesh.triangles.size(), surface.error, mesh_size, surface.lost};
     if (form == MeshForm::stl) file.facts.error += rounding_of(surface.mesh);
     if (form == MeshForm::stl) {
         file.bytes = core::stl_bytes(

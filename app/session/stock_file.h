@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/dbm/cut_model.h"
+#include "core/dbm/stock_mesh.h"
 
 namespace app {
 
@@ -33,9 +33,11 @@ struct StockFile {
     std::string bytes;
 };
 
-/// What is left of a stock as a mesh file, in the frame of the stock; its error stands in the file.
+/// The surface of a stock as a mesh file, in the frame of the stock; its error stands in the file.
+/// Scan lines are `mesh_size` apart.
 ///
 /// Errors: those of mesh_form; invalid_value when nothing is left.
-core::Result<StockFile> stock_file(const core::CutModel& stock, const std::string& path);
+core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
+                                   const std::string& path);
 
 } // namespace app

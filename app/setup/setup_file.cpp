@@ -185,10 +185,7 @@ void read_bodies(TableReader& root, BodyContext& context) {
         root.need("[stock]");
     for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
         read_fixture(fixture, context);
-    if (root.has("part")) {
-        root.table("part", "[part]");
-        context.file.assumptions.push_back("[part] is not compared with the result yet");
-    }
+    if (auto part = root.table("part", "[part]")) read_part(*part, context);
 }
 
 void read_root(TableReader& root, BodyContext& context, const ProgramSettings& over,
