@@ -58,7 +58,7 @@ public:
 
 private:
     size_t at(int i, int j) const { return static_cast<size_t>(i + j * width_); }
-    const IntervalList& line(int axis, int u, int v) const {
+    decltype(auto) line(int axis, int u, int v) const {
         return model_.lines.families[static_cast<size_t>(axis)].line(u, v);
     }
 
@@ -86,8 +86,8 @@ private:
 };
 
 /// Which of the nodes along a line lie in its matter, from node 0 on.
-template <typename Mark>
-void mark_inside(const ScanGrid& grid, int axis, const IntervalList& line, const Mark& mark) {
+template <typename Line, typename Mark>
+void mark_inside(const ScanGrid& grid, int axis, const Line& line, const Mark& mark) {
     const double first = grid.coordinate(axis, 0);
     for (const Interval& matter : line) {
         const double from = std::ceil((matter.lower - first) / grid.spacing) - 1.0;

@@ -7,6 +7,7 @@
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
 #include "core/sim/leg_check.h"
+#include "core/sim/loose_pieces.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
@@ -20,6 +21,7 @@ struct SimulatorState {
     AxisPosition position;          // where the last motion ended
     SpindleChange spindle;
     LengthOffsetChange length_offset;
+    PieceWatch pieces; // of the stock
     double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
     StockHints hints;
