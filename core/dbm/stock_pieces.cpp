@@ -301,19 +301,21 @@ bool cannot_have_parted(const CutModel& model, const Aabb& box) {
     const auto [u_first, u_last] = lines_within(grid, 0, box.min.x, box.max.x, 1);
     const auto [v_first, v_last] = lines_within(grid, 1, box.min.y, box.max.y, 1);
     if (u_first > u_last || v_first > v_last) return true;
-    const double below = std::ceil((box.min.z - grid.coordinate(2, 0)) / grid.spacing) - 1.0;
+    double low = -infinity, high = box.min.z;
+    for (int v = v_first; v <= v_last; ++v)
+        for (int u = u_first; u <= u_last; ++u) {
+            const auto& line = family(model, 2).line(u, v);
+            if (line.size() != 1) return false;
+            low = std::max(low, line[0].lower);
+            high = std::min(high, line[0].upper);
+        }
+    const double below = std::ceil((high - grid.coordinate(2, 0)) / grid.spacing) - 1.0;
     const int k = static_cast<int>(std::clamp(below, -1.0, grid.count(2) - 1.0));
-    if (k < 0) return false;
-    const double z = grid.coordinate(2, k);
-    for (int v = v_first; v <= v_last; ++v) {
+    if (k < 0 || grid.coordinate(2, k) < low) return false;
+    for (int v = v_first; v <= v_last; ++v)
         if (!covers(family(model, 0).line(v, k), grid.coordinate(0, u_first),
                     grid.coordinate(0, u_last)))
             return false;
-        for (int u = u_first; u <= u_last; ++u) {
-            const auto& line = family(model, 2).line(u, v);
-            if (line.size() != 1 || line[0].lower > z || line[0].upper < z) return false;
-        }
-    }
     return covers(family(model, 1).line(k, u_first), grid.coordinate(1, v_first),
                   grid.coordinate(1, v_last));
 }

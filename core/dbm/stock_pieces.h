@@ -41,8 +41,9 @@ private:
     std::vector<uint32_t> piece_of_; // of each part of each tile; none for crumbs
 };
 
-/// Whether a cut within `box` can have parted nothing: below it, lines along X and Y show one layer
-/// of matter all over the box and one mesh size round it, and all lines along Z stand on that.
+/// Whether a cut within `box` can have parted nothing: below it and below all that was cut there
+/// before, lines along X and Y show one layer of matter all over the box and one mesh size round
+/// it, and all lines along Z stand on that.
 /// Cost: some microseconds; false says nothing.
 bool cannot_have_parted(const CutModel& model, const Aabb& box);
 
