@@ -35,7 +35,7 @@ void rotate(Matrix& a, Matrix& frame, size_t p, size_t q) {
 
 } // namespace
 
-Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& cell) {
+Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& room) {
     Vec3 middle(0.0);
     for (const SurfacePoint& point : points) middle += point.place;
     middle /= static_cast<double>(points.size());
@@ -58,7 +58,7 @@ Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& cell) {
         const Vec3 direction(frame[0][k], frame[1][k], frame[2][k]);
         by += glm::dot(direction, right) / a[k][k] * direction;
     }
-    return glm::clamp(middle + by, cell.min, cell.max);
+    return glm::clamp(middle + by, room.min, room.max);
 }
 
 } // namespace core

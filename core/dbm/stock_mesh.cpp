@@ -5,6 +5,7 @@
 
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
+#include "core/geom/nearest_surface.h"
 #include "core/geom/triangle_distance.h"
 
 namespace core {
@@ -73,6 +74,7 @@ private:
     void add_flat_quads(const NodeLayer& nodes, const CellLayer& below, const CellLayer& above);
     void add_upright_quads(const CellLayer& layer);
     int32_t vertex(const CellLayer& layer, int i, int j, size_t edge) const;
+    void measure_error();
     void add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards);
 
     const CutModel& model_;
@@ -82,7 +84,8 @@ private:
     int width_, depth_;
     size_t size_;
     StockMesh result_;
-    size_t taken_ = 0; // boundary points that became part of the surface
+    std::vector<double> from_own_triangles_; // of each sample, mm
+    size_t taken_ = 0;                       // boundary points that became part of the surface
 };
 
 /// Which of the nodes along a line lie in its matter, from node 0 on.
@@ -200,17 +203,20 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
     layer.first_vertex[at(i, j)] = static_cast<int32_t>(result_.mesh.vertices.size());
     const DualCell& pieces = dual_cell(static_cast<uint8_t>(inside));
     const EdgePoints edge_points = points_of(layer, below, above, i, j);
+    // Where a sharp edge leaves its cell through a side that lines pass on both flanks, only the
+    // cell knows of it: vertices may stand in the cell beyond.
     const auto corner = [&](int by) {
         const Vec3 node(grid_.coordinate(0, i - 1 + by), grid_.coordinate(1, j - 1 + by),
                         grid_.coordinate(2, k - 1 + by));
         return glm::clamp(node, bounds_.min, bounds_.max);
     };
+    const Aabb room{corner(-1), corner(2)};
     for (uint8_t piece = 0; piece < pieces.count; ++piece) {
         std::array<SurfacePoint, 12> met;
         size_t count = 0;
         for (size_t e = 0; e < 12; ++e)
             if (pieces.piece[e] == piece) met[count++] = edge_points[e]->surface;
-        result_.mesh.vertices.push_back(feature_point({met.data(), count}, {corner(0), corner(1)}));
+        result_.mesh.vertices.push_back(feature_point({met.data(), count}, room));
     }
 }
 
@@ -264,7 +270,30 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edg
     result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
     result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
     result_.samples.push_back({point, edge.sweep});
-    result_.error = std::max(result_.error, away[k]);
+    from_own_triangles_.push_back(away[k]);
+}
+
+/// The distance of the samples from the mesh: no more than from their own triangles, so those that
+/// are far from these are looked at first.
+void Contouring::measure_error() {
+    std::vector<uint32_t> order;
+    for (uint32_t k = 0; k < from_own_triangles_.size(); ++k)
+        if (from_own_triangles_[k] > slack) order.push_back(k);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return from_own_triangles_[a] > from_own_triangles_[b];
+    });
+    if (!from_own_triangles_.empty())
+        result_.error = std::min(
+            slack, *std::max_element(from_own_triangles_.begin(), from_own_triangles_.end()));
+    if (order.empty()) return;
+    const TriangleBvh triangles = build_bvh(result_.mesh);
+    for (const uint32_t k : order) {
+        if (from_own_triangles_[k] <= result_.error) return;
+        const Vec3& place = result_.samples[k].place;
+        const double limit = from_own_triangles_[k] * (1.0 + 1e-9);
+        result_.error = std::max(
+            result_.error, std::min(limit, nearest_surface(triangles, place, limit).distance));
+    }
 }
 
 StockMesh Contouring::run() {
@@ -278,6 +307,7 @@ StockMesh Contouring::run() {
         below = std::move(above);
         last = std::move(layer);
     }
+    measure_error();
     result_.lost = point_count(model_.lines) - std::min(taken_, point_count(model_.lines));
     return std::move(result_);
 }
