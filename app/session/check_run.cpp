@@ -112,14 +112,15 @@ struct Runner {
         if (lowering.moved_tilted)
             return core::Error{core::ErrorCode::unsupported,
                                {.line = block.line, .column = 1},
-                               "this block moves in a tilted plane or with a tool that is turned "
-                               "(G68.2, G43.5), and machines that tilt are not checked yet",
+                               "this block moves in a tilted plane or with a tool that is turned, "
+                               "and the machine of the set-up has no rotary axes that could: add "
+                               "them as [[axis]]",
                                std::string(block.file)};
         if (!lowering.other_axis) return std::nullopt;
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
-                           fmt::format("this block moves axis {}, and machines with more than X, Y "
-                                       "and Z are not checked yet",
+                           fmt::format("this block moves axis {}, which the machine of the set-up "
+                                       "does not have: add an [[axis]] of that name to its machine",
                                        gcode::axis_letters[*lowering.other_axis]),
                            std::string(block.file)};
     }
@@ -220,7 +221,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup, gcode::linear_axes(file.environment.start));
+    auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     run.times.model = seconds_since(modelling);
 
