@@ -205,12 +205,18 @@ struct Visitor {
     void operator()(const Coolant&) {}
     void operator()(const SelectPlane&) {}
     void operator()(const UseSpindleMode&) {}
-    void operator()(const SetPathMode&) {}
+    void operator()(const SetPathMode& command) {
+        core::PathModeChange change;
+        if (command.mode == PathMode::exact_path) change.blending = core::Blending::exact_path;
+        if (command.mode == PathMode::exact_stop) change.blending = core::Blending::exact_stop;
+        if (command.tolerance > 0.0) change.tolerance = command.tolerance;
+        events.emplace_back(change);
+    }
     void operator()(const EnableOverride&) {}
     void operator()(const SetOutput&) {}
     void operator()(const WaitForInput&) {}
     void operator()(const Message&) {}
-    void operator()(const ProgramStop&) {}
+    void operator()(const ProgramStop&) { events.emplace_back(core::Dwell{}); }
     void operator()(const OptionalStop&) {}
     void operator()(const ProgramEnd&) {}
 };

@@ -17,7 +17,8 @@ struct Lowering {
     bool moved_tilted = false; // moved while the tool is meant to leave the direction of Z, and
                                // nobody knows how
 
-    /// What a command does to the machine, in machine coordinates; empty for modes and messages.
+    /// What a command does to the machine, in machine coordinates; empty for most modes and for
+    /// messages. A program stop is a dwell of no length: the machine comes to rest.
     ///
     /// A motion along an arc keeps its shape; one whose ends are not all known becomes a feed
     /// between the coordinates that are, and one whose plane the offsets tilt or distort becomes

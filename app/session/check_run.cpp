@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include "app/session/digest.h"
+#include "app/session/part_check.h"
+#include "app/session/timing_notes.h"
+#include "core/sim/block_clock.h"
 #include "gcode/lowering.h"
 
 namespace app {
@@ -45,7 +48,7 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
     run.assumptions.push_back(
         fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
                     core::chord_error(setup.mesh_size)));
-    run.assumptions.push_back("feeds and rapids run at full speed: accelerations are not counted");
+    for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
         "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
     if (setup.stock.tolerance == 0.0)
@@ -106,6 +109,7 @@ struct Runner {
     gcode::Interpreter interpreter{library, environment};
     gcode::InterpreterState place = gcode::initial_state(environment);
     gcode::Lowering lowering = gcode::initial_lowering(environment);
+    core::BlockClock clock = core::start_clock(run.setup.machine);
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
@@ -132,7 +136,8 @@ struct Runner {
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),
             block.calls, {}};
-        checked.result = core::run_block(run.setup, {block.block, block.is_cycle, events}, state);
+        const core::BlockEvents of_block{block.block, block.is_cycle, events};
+        checked.result = core::run_block(run.setup, of_block, state);
         for (const gcode::Warning& warning : block.warnings) {
             core::Finding finding = remark(run.setup, warning);
             finding.block = block.block;
@@ -143,10 +148,27 @@ struct Runner {
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
+        std::vector<core::BlockTime> timed;
+        core::add_block(clock, of_block, timed);
+        enter(timed);
         return std::nullopt;
     }
 
+    /// The times of blocks whose place in time has become known.
+    void enter(const std::vector<core::BlockTime>& timed) {
+        for (const core::BlockTime& time : timed)
+            core::settle_time(run.blocks[core::value_of(time.block)].result, time);
+    }
+
     void to_the_end(core::SimulatorState& state) {
+        run_blocks(state);
+        std::vector<core::BlockTime> timed;
+        core::stop_clock(clock, timed);
+        enter(timed);
+        run.cycle_time = clock.time;
+    }
+
+    void run_blocks(core::SimulatorState& state) {
         while (true) {
             const auto next = interpreter.next(place);
             if (!next) {
@@ -185,7 +207,6 @@ void look_for_judged_motions(CheckRun& run) {
 
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
-    run.duration = state.time;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
@@ -229,6 +250,10 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     Runner{*program, file.environment, run}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
+    run.stock = std::move(state->stock);
+    if (!run.stopped && (job.needs_surface || run.setup.part))
+        run.surface = core::stock_mesh(*run.stock);
+    check_part(run);
     return run;
 }
 

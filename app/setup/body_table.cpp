@@ -185,6 +185,29 @@ void read_stock(TableReader& table, BodyContext& context) {
     table.finish();
 }
 
+void read_part(TableReader& table, BodyContext& context) {
+    core::Setup& setup = context.file.setup;
+    const Placement placement = read_placement(table, context);
+    const bool box = table.has("box");
+    if (box == table.has("mesh")) return table.need("one of mesh, box");
+    const core::Transform stock_from_body =
+        setup.stock_mount.link_from_body.inverse() * placement.machine_from_body();
+    core::Mesh mesh =
+        read_polyhedron(table, context.meshes(), box ? "box" : "mesh", stock_from_body);
+    core::Part part;
+    if (const auto tolerance = table.number("tolerance")) {
+        if (!(*tolerance > 0.0)) table.refuse("tolerance", "must be above 0");
+        part.tolerance = *tolerance;
+    } else {
+        context.file.assumptions.push_back(
+            fmt::format("the result may be off the part by {} mm either way", part.tolerance));
+    }
+    table.finish();
+    if (mesh.triangles.empty()) return;
+    part.solid = core::solid_mesh(std::move(mesh));
+    setup.part = std::move(part);
+}
+
 void read_fixture(TableReader& table, BodyContext& context) {
     core::Setup& setup = context.file.setup;
     core::Fixture fixture;

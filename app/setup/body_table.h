@@ -30,6 +30,9 @@ std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSou
 /// Reads `[stock]`: the stock's frame becomes the frame of everything else.
 void read_stock(TableReader& table, BodyContext& context);
 
+/// Reads `[part]`. The stock must have been read.
+void read_part(TableReader& table, BodyContext& context);
+
 /// Reads one `[[fixture]]`. The stock must have been read.
 void read_fixture(TableReader& table, BodyContext& context);
 

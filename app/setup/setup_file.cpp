@@ -201,10 +201,7 @@ void read_bodies(TableReader& root, BodyContext& context) {
     for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
         read_fixture(fixture, context);
     add_machine_bodies(root, context.file.setup);
-    if (root.has("part")) {
-        root.table("part", "[part]");
-        context.file.assumptions.push_back("[part] is not compared with the result yet");
-    }
+    if (auto part = root.table("part", "[part]")) read_part(*part, context);
 }
 
 void read_root(TableReader& root, BodyContext& context, const ProgramSettings& over,

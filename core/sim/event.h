@@ -58,7 +58,19 @@ struct LengthOffsetChange {
     double length = 0.0; // mm
 };
 
+/// What becomes of corners. exact_stop: every motion ends at rest (G61.1). exact_path: the path is
+/// kept, and only what is no corner to the machine is passed without a stop (G61). continuous:
+/// corners are rounded within a tolerance (G64).
+enum class Blending : uint8_t { exact_stop, exact_path, continuous };
+
+/// How corners are passed from now on.
+struct PathModeChange {
+    Blending blending = Blending::continuous;
+    std::optional<double> tolerance; // mm; empty: not stated
+};
+
 /// What a block does to the machine, in order.
-using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange>;
+using Event =
+    std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange, PathModeChange>;
 
 } // namespace core

@@ -8,7 +8,6 @@
 namespace core {
 namespace {
 
-constexpr double assumed_rapid = 10'000.0; // mm/min, where the machine states none
 constexpr double seconds_per_minute = 60.0;
 
 /// The values of a position; empty when an axis of the machine may stand anywhere.

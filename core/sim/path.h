@@ -33,6 +33,9 @@ struct Path {
     bool assumed_speed = false; // a rapid on an axis whose speed is not stated
 };
 
+/// What rapids run at on axes whose speed is not stated, mm/min.
+constexpr double assumed_rapid = 10'000.0;
+
 /// Chords of an arc stay within this of it, mm.
 double chord_error(double mesh_size);
 

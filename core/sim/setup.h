@@ -8,6 +8,7 @@
 #include "core/distance/body_distance.h"
 #include "core/sim/finding.h"
 #include "core/sim/kinematics.h"
+#include "core/sim/part_comparison.h"
 #include "core/sim/tool_assembly.h"
 
 namespace core {
@@ -35,8 +36,9 @@ struct Setup {
     std::optional<double> allowance; // replaces the default against fixtures and of the holder
     std::vector<AllowanceRule> allowances;
     Machine machine;
-    Mount stock_mount; // where the stock's frame stands
-    Solid stock;       // in that frame
+    Mount stock_mount;        // where the stock's frame stands
+    Solid stock;              // in that frame
+    std::optional<Part> part; // what is to be made
     std::vector<Fixture> fixtures;
     std::map<ToolNumber, ToolAssembly> tools;
     std::optional<ToolNumber> tool_at_start;

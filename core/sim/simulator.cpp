@@ -58,6 +58,7 @@ struct BlockRun {
     void carry_out(const SpindleChange& change) { state.spindle = change; }
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
+    void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
@@ -243,17 +244,21 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
+    state.pieces = watch_of(state.stock);
     return state;
 }
 
 BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state) {
     BlockRun run{setup, block, state};
+    const size_t cuts_before = state.stock.log.size();
     run.result.time = state.time;
     run.result.tool = state.tool;
     for (const Event& event : block.events)
         std::visit([&](const auto& e) { run.carry_out(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
+    for (Finding& finding : watch_pieces(setup, state.stock, cuts_before, state.pieces))
+        run.add(std::move(finding));
     run.conclude();
     state.time += run.result.duration;
     return std::move(run.result);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/dbm/stock_mesh.h"
+
+namespace app {
+
+/// The forms in which surfaces are written.
+enum class MeshForm : uint8_t { stl, ply };
+
+/// The form that a file's ending asks for.
+///
+/// Errors: invalid_value for any other ending, naming the file.
+core::Result<MeshForm> mesh_form(const std::string& path);
+
+/// What a saved stock is worth.
+struct SavedStock {
+    std::string file;
+    size_t triangles = 0;
+    double error = 0.0;     // mm: the points of the model are this near to the surface
+    double mesh_size = 0.0; // mm: between lines this far apart the surface is interpolated
+    size_t lost = 0;        // points on details thinner than the mesh size, not in the surface
+};
+
+/// The same in a line of text.
+std::string facts_of(const SavedStock& saved);
+
+struct StockFile {
+    SavedStock facts;
+    std::string bytes;
+};
+
+/// The surface of a stock as a mesh file, in the frame of the stock; its error stands in the file.
+/// Scan lines are `mesh_size` apart.
+///
+/// Errors: those of mesh_form; invalid_value when nothing is left.
+core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
+                                   const std::string& path);
+
+} // namespace app
