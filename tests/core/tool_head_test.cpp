@@ -160,7 +160,7 @@ RevolvedProfile part(const ToolAssembly& tool, PartKind kind) {
 }
 
 TEST(ToolHead, IsTheSolidThatItsSizesDescribe) {
-    constexpr double beside = 0.006; // the sag of roundings made of cones, seen along r
+    constexpr double sag = 0.0025 + 1e-9; // of roundings that are made of cones, inwards
     for (const Described& each : described_tools()) {
         const auto tool = assemble(each.tool);
         ASSERT_TRUE(tool.has_value()) << tool.error().message;
@@ -170,17 +170,15 @@ TEST(ToolHead, IsTheSolidThatItsSizesDescribe) {
         const RevolvedProfile shank = part(*tool, PartKind::shank);
         for (double z = 0.0137; z < each.height; z += 0.0313) {
             const double r = each.radius(z);
-            const auto out = [&](double radius) {
-                const double cutting = outside(flutes, {radius, 0, z});
-                return shank.empty() ? cutting : std::min(cutting, outside(shank, {radius, 0, z}));
-            };
-            EXPECT_GT(out(r + beside), 0.0) << name << " r " << r << " z " << z;
-            EXPECT_LE(out(std::max(0.0, r - beside)), 1e-9) << name << " r " << r << " z " << z;
-            if (z > each.cut_to + beside && r > 3.05) {
-                EXPECT_GT(outside(flutes, {r - beside, 0, z}), 0.0) << name << z;
+            const double cut = outside(flutes, {r, 0, z});
+            const double rest = shank.empty() ? infinity : outside(shank, {r, 0, z});
+            EXPECT_LE(std::min(cut, rest), sag) << name << " r " << r << " z " << z;
+            EXPECT_GT(outside(flutes, {r + 1e-7, 0, z}), 0.0) << name << " r " << r << " z " << z;
+            if (!shank.empty()) {
+                EXPECT_GT(outside(shank, {r + 1e-7, 0, z}), 0.0) << name << z;
             }
-            if (z < each.cut_to && r > beside) {
-                EXPECT_LE(outside(flutes, {r - beside, 0, z}), 1e-9) << name << z;
+            if (z < each.cut_to) {
+                EXPECT_LE(cut, sag) << name << z;
             }
         }
         EXPECT_GT(outside(flutes, {0, 0, -1e-6}), 0.0) << name;
