@@ -204,7 +204,7 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
     if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     place_offsets(context);
-    for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, file);
+    for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, context);
     for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
         read_length_offset(table, file);
     read_bodies(root, context);

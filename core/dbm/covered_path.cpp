@@ -19,7 +19,17 @@ bool widens_upwards(const RevolvedProfile& flutes) {
         if (e.r1 < e.r0 || e.r1 + e.margin < radius) return false;
         radius = e.r1 + e.margin;
     }
-    return is_convex(flutes);
+    // A ball that nothing stands on narrows in its upper half.
+    return is_convex(flutes) && flutes.elements.back().margin == 0.0;
+}
+
+/// Whether the tip at `p` is near enough to a place of the move: all of a tool made smaller by that
+/// much is then within the tool as it stood there.
+bool passes(const LoggedSweep& logged, const Vec3& p, double near) {
+    const Vec3 q = logged.sweep.from, by = logged.sweep.to - logged.sweep.from;
+    const double length = glm::dot(by, by);
+    const double t = length > 0.0 ? std::clamp(glm::dot(p - q, by) / length, 0.0, 1.0) : 0.0;
+    return glm::distance(p, q + t * by) <= near;
 }
 
 /// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
@@ -37,29 +47,49 @@ bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
     return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= sideways;
 }
 
+/// A move that can serve, and whether what it cut is open above.
+struct Move {
+    const LoggedSweep* logged = nullptr;
+    bool open = false;
+};
+
 /// A search among the moves that can serve.
 struct Search {
-    std::vector<const LoggedSweep*> moves;
+    std::vector<Move> moves;
     double sideways;
+
+    bool over(const Move& move, const Vec3& p) const {
+        return passes(*move.logged, p, sideways)
+               || (move.open && covers(*move.logged, p, sideways));
+    }
 
     /// Both ends over one move: then, both being straight, all between is over it too.
     bool covered(const Vec3& a, const Vec3& b, int depth) const {
         bool ends_covered = false;
-        for (const LoggedSweep* move : moves) {
-            const bool at_a = covers(*move, a, sideways), at_b = covers(*move, b, sideways);
-            if (at_a && at_b) return true;
+        for (const Move& move : moves) {
+            const bool at_a = over(move, a), at_b = over(move, b);
+            if (at_a && at_b && one_way(move, a, b)) return true;
             ends_covered = ends_covered || at_a || at_b;
         }
         if (!ends_covered || depth == deepest_division) return false;
         const Vec3 middle = 0.5 * (a + b);
         return covered(a, middle, depth + 1) && covered(middle, b, depth + 1);
     }
+
+    /// Both in the same of two ways: each of them holds between its ends.
+    bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
+        const bool passed = passes(*move.logged, a, sideways) && passes(*move.logged, b, sideways);
+        return passed
+               || (move.open && covers(*move.logged, a, sideways)
+                   && covers(*move.logged, b, sideways));
+    }
 };
 
 } // namespace
 
 bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
-    if (question.sideways <= 0.0 || !widens_upwards(question.flutes)) return false;
+    if (question.sideways <= 0.0) return false;
+    const bool upwards = widens_upwards(question.flutes);
     const double height = bounds(question.flutes).max.z;
     Aabb path;
     path.extend(question.from);
@@ -71,8 +101,10 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
     for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
         const LoggedSweep& logged = stock.log[number];
         const CutterSweep& sweep = logged.sweep;
-        if (std::min(sweep.from.z, sweep.to.z) + height < stock.outer_box.max.z) continue;
-        if (same_profile(sweep.cutter->flutes, question.flutes)) search.moves.push_back(&logged);
+        const double top = std::min(sweep.from.z, sweep.to.z) + height;
+        const bool open = upwards && top >= stock.outer_box.max.z;
+        if (same_profile(sweep.cutter->flutes, question.flutes))
+            search.moves.push_back({&logged, open});
     }
     return search.covered(question.from, question.to, 0);
 }

@@ -79,6 +79,25 @@ Result<void> check_lengths(const ToolDescription& tool, double to_holder, double
     return {};
 }
 
+/// Whether the tool is made to cut under an edge with the upper face of its head, or beside it.
+bool cuts_undercuts(ToolShape shape) {
+    return shape == ToolShape::tslot || shape == ToolShape::dovetail
+           || shape == ToolShape::threadmill;
+}
+
+/// Lets the flutes reach a little into the slender part above them. A contact is told from a crash
+/// by a head that is made smaller, and what shows that its upper face is free and comes down with
+/// it is the narrower piece above.
+void bare_upper_face(const ToolDescription& tool, const RevolvedProfile& above,
+                     RevolvedProfile& flutes) {
+    constexpr double stub = 0.2; // mm; more than twice of what a head is shrunk by
+    const ProfileElement& top = flutes.elements.back();
+    const double usual = tool.neck_diameter.value_or(0.5 * tool.diameter);
+    const double r = above.empty() ? 0.5 * usual : above.elements.front().r0;
+    const double z = bounds(top).max.z;
+    if (r > 0.0 && r < top.r1) flutes.elements.push_back({z, r, z + stub, r, 0.0});
+}
+
 } // namespace
 
 const char* name_of(PartKind kind) {
@@ -106,6 +125,8 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
         return tl::unexpected(wrong.error());
     RevolvedProfile shank = std::move(head.behind);
     shank.elements.insert(shank.elements.end(), steps.elements.begin(), steps.elements.end());
+    if (cuts_undercuts(description.shape))
+        bare_upper_face(description, shank.empty() ? holder : shank, head.flutes);
     tool.parts.push_back({PartKind::flutes, std::move(head.flutes)});
     if (!shank.empty()) tool.parts.push_back({PartKind::shank, std::move(shank)});
     if (!holder.empty()) tool.parts.push_back({PartKind::holder, std::move(holder)});
