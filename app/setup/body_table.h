@@ -18,6 +18,9 @@ struct BodyContext {
 /// Reads `[stock]`: the stock's frame becomes the frame of everything else.
 void read_stock(TableReader& table, BodyContext& context);
 
+/// A stock that is inferred from the program, in the frame of G54.
+void infer_stock(BodyContext& context);
+
 /// Reads one `[[fixture]]`. The stock must have been read.
 void read_fixture(TableReader& table, BodyContext& context);
 
