@@ -150,6 +150,29 @@ std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& 
     return core::solid_mesh(read_polyhedron(table, source, *shape, target_from_body));
 }
 
+bool has_no_shape(const TableReader& table) {
+    for (const char* key : {"box", "cylinder", "mesh", "model"})
+        if (table.has(key)) return false;
+    return true;
+}
+
+/// A stock that is what the cutting moves reach.
+void read_envelope(TableReader& table, BodyContext& context, const Placement& placement) {
+    SetupFile& file = context.file;
+    if (!has_no_shape(table))
+        table.refuse("margin", "is for a stock that is inferred from the program, without a shape");
+    for (const char* key : {"at", "rotate_deg"})
+        if (table.has(key)) table.refuse(key, "means nothing for a stock without a shape");
+    if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= 1000.0))
+        table.refuse("margin", "must lie between 0 and 1000 mm");
+    file.needs_stock = true;
+    file.setup.stock_mount = {file.setup.machine.table, placement.machine_from_frame};
+    file.setup.stock.tolerance = table.number_or("tolerance", 0.0);
+    if (file.setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
+    context.frames.machine_from["stock"] = placement.machine_from_frame;
+    table.finish();
+}
+
 } // namespace
 
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
@@ -169,8 +192,18 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
     }
 }
 
+void infer_stock(BodyContext& context) {
+    context.file.needs_stock = true;
+    const core::Transform frame = context.frames.machine_from.at("G54");
+    context.file.setup.stock_mount = {context.file.setup.machine.table, frame};
+    context.frames.machine_from["stock"] = frame;
+}
+
 void read_stock(TableReader& table, BodyContext& context) {
     const Placement placement = read_placement(table, context);
+    context.file.stock_margin = table.number("margin");
+    if (context.file.stock_margin || has_no_shape(table))
+        return read_envelope(table, context, placement);
     const auto shape = only_shape(table);
     if (!shape) return;
     if (*shape == "model")

@@ -9,6 +9,7 @@
 #include "app/setup/program_table.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/tool_table.h"
+#include "app/tools/tool_library.h"
 
 namespace app {
 namespace {
@@ -48,6 +49,10 @@ void apply_settings(const ProgramSettings& settings, SetupFile& file,
         return;
     }
     file.dialect = settings.dialect;
+    file.tool_table = settings.tool_table;
+    file.setup.tool_at_start = settings.tool_at_start;
+    file.setup.spindle_at_start =
+        settings.spindle_at_start.value_or(core::SpindleDirection::stopped);
     file.assumptions.insert(file.assumptions.end(), notes->begin(), notes->end());
 }
 
@@ -197,7 +202,7 @@ void read_bodies(TableReader& root, BodyContext& context) {
     if (auto stock = root.table("stock", "[stock]"))
         read_stock(*stock, context);
     else
-        root.need("[stock]");
+        infer_stock(context);
     for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
         read_fixture(fixture, context);
     add_machine_bodies(root, context.file.setup);
@@ -217,7 +222,15 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
     if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     place_offsets(context);
-    for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, file);
+    if (const auto library = root.string("tool_library")) {
+        auto tools =
+            read_tool_library((context.folder / *library).string(), file.environment.machine_unit);
+        if (tools)
+            file.library = *std::move(tools);
+        else
+            root.refuse_with(tools.error());
+    }
+    for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, context);
     for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
         read_length_offset(table, file);
     read_bodies(root, context);

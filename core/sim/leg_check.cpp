@@ -116,7 +116,7 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
 bool LegCheck::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                         const Allowance& allowance) const {
     if (tool_.parts.empty() || !body.profile || body.kind == PartKind::holder) return false;
-    if (leg.turns || leg.places.size() > 2 || leg.orientation != Mat3(1.0)) return false;
+    if (leg.turns || leg.places.size() > 2) return false;
     const RevolvedProfile& flutes = tool_.parts[0].profile;
     if (bounds(*body.profile).max.x > bounds(flutes).max.x) return false;
     // Half of the contact depth is for the way, the rest for the errors of both paths.
@@ -124,7 +124,8 @@ bool LegCheck::retraces(const MovingBody& body, const RelativeLeg& leg, const Cu
     return runs_in_own_cut(stock, {.flutes = flutes,
                                    .from = leg.places.front(),
                                    .to = leg.places.back(),
-                                   .sideways = 0.5 * contact_depth(allowance) - path_errors});
+                                   .sideways = 0.5 * contact_depth(allowance) - path_errors,
+                                   .orientation = leg.orientation});
 }
 
 PairClearance LegCheck::clearance(const MovingBody& body, const Leg& leg, double start,

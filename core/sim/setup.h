@@ -42,6 +42,7 @@ struct Setup {
     std::vector<Fixture> fixtures;
     std::map<ToolNumber, ToolAssembly> tools;
     std::optional<ToolNumber> tool_at_start;
+    SpindleDirection spindle_at_start = SpindleDirection::stopped;
     RuleSeverities rules;
     double search_limit = 50.0; // nobody asks beyond it
 };
