@@ -62,13 +62,6 @@ core::Result<void> save_results(const Options& options, CheckRun& run) {
 }
 
 ExitCode check(const Options& options) {
-    if (options.setup.empty()) {
-        print_error({core::ErrorCode::missing_value,
-                     {},
-                     "check needs to know what stands in the machine: --setup FILE.toml (a set-up "
-                     "is not inferred from the program yet; assets/setups holds examples)"});
-        return ExitCode::failed;
-    }
     const auto safe = check_files(options);
     if (!safe) {
         print_error(safe.error());
@@ -106,7 +99,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup, "Set-up file (TOML)");
+    command.add_option("--setup", options->setup, "Set-up file (TOML); else it is inferred from the program, and said");
     command
         .add_option("--allowance", options->allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")

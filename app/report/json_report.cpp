@@ -19,7 +19,8 @@ Json bounds_of(const core::PairClearance& pair) {
 }
 
 Json names_of(const CheckRun& run, const core::PairClearance& pair) {
-    return Json::array({core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair)});
+    return Json::array(
+        {core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair)});
 }
 
 void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, double duration) {

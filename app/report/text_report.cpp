@@ -73,7 +73,7 @@ std::string blocks_text(const CheckRun& run) {
         std::string pair;
         if (result.deciding) {
             const core::PairClearance& near = result.pairs[*result.deciding];
-            pair = fmt::format("{} / {}", core::name_of(near.pair.part),
+            pair = fmt::format("{} / {}", core::part_name(run.setup, near.pair),
                                core::body_name(run.setup, near.pair));
         }
         text += fmt::format("{:>5} {:<5} {:>4} {} {:<17} {:<9} {}\n", block.line,
@@ -116,10 +116,10 @@ std::string summary_text(const CheckRun& run) {
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = nearest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-        text +=
-            fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n", block->line,
-                        core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
-                        trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+        text += fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n",
+                            block->line, core::part_name(run.setup, pair.pair),
+                            core::body_name(run.setup, pair.pair),
+                            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
     }
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
     text += fmt::format("  removed    {:.1f} mm3\n", run.removed);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/session/digest.h"
+#include "app/session/inferred_setup.h"
 #include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
 #include "core/sim/block_clock.h"
@@ -67,7 +68,7 @@ void look_beyond_allowances(core::Setup& setup) {
 }
 
 void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
-    if (program_calls_tools || setup.tools.size() != 1) return;
+    if (program_calls_tools || setup.tool_at_start || setup.tools.size() != 1) return;
     setup.tool_at_start = setup.tools.begin()->first;
     run.assumptions.push_back(fmt::format("the program calls no tool: tool {} is in the spindle",
                                           core::value_of(*setup.tool_at_start)));
@@ -99,6 +100,12 @@ core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     return finding;
 }
 
+/// T0 empties the spindle, unless a tool has that number.
+void take_tool_zero(core::Event& event) {
+    auto* change = std::get_if<core::ToolChange>(&event);
+    if (change && !change->tool) change->tool = core::ToolNumber{0};
+}
+
 /// A run while it goes on.
 struct Runner {
     const gcode::Program& program;
@@ -116,21 +123,24 @@ struct Runner {
         if (lowering.moved_tilted)
             return core::Error{core::ErrorCode::unsupported,
                                {.line = block.line, .column = 1},
-                               "this block moves in a tilted plane or with a tool that is turned "
-                               "(G68.2, G43.5), and machines that tilt are not checked yet",
+                               "this block moves in a tilted plane or with a tool that is turned, "
+                               "and the machine of the set-up has no rotary axes that could: add "
+                               "them as [[axis]]",
                                std::string(block.file)};
         if (!lowering.other_axis) return std::nullopt;
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
-                           fmt::format("this block moves axis {}, and machines with more than X, Y "
-                                       "and Z are not checked yet",
+                           fmt::format("this block moves axis {}, which the machine of the set-up "
+                                       "does not have: add an [[axis]] of that name to its machine",
                                        gcode::axis_letters[*lowering.other_axis]),
                            std::string(block.file)};
     }
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        const std::vector<core::Event> events = gcode::lower(block, lowering);
+        std::vector<core::Event> events = gcode::lower(block, lowering);
+        if (run.setup.tools.contains(core::ToolNumber{0}))
+            for (core::Event& event : events) take_tool_zero(event);
         if (auto refused = refusal(block)) return refused;
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),
@@ -227,22 +237,28 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto program = gcode::read_program(job.program);
     if (!program) return tl::unexpected(named(program.error(), job.program));
     run.sha256 = sha256_of_file(job.program);
-    FEELER_TRY(SetupFile file, read_setup(job.setup, job.settings));
-    run.assumptions = file.assumptions;
+    FEELER_TRY(SetupFile file,
+               job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
+    const auto dialect = choose_dialect(file, *program, run);
+    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    run.dialect = file.environment.dialect = *dialect;
+    if (const auto whole = complete_setup(file, *program); !whole)
+        return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
+    run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
+                           file.assumptions.end());
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     look_beyond_allowances(run.setup);
-    const auto dialect = choose_dialect(file, *program, run);
-    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
-    run.dialect = file.environment.dialect = *dialect;
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup, gcode::linear_axes(file.environment.start));
+    auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
+    state->spindle.direction = run.setup.spindle_at_start;
+    if (state->spindle.direction != core::SpindleDirection::stopped) state->spindle.speed = 1.0;
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();

@@ -57,14 +57,15 @@ struct CheckRun {
 /// What a user asks to be checked.
 struct CheckJob {
     std::string program;
-    std::string setup;
+    std::string setup;               // empty: inferred from the program
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
     bool needs_surface = false; // that of the stock is wanted, also without a part
     ProgramSettings settings;   // replace what the set-up says under [program]
 };
 
-/// Runs a program against its set-up.
+/// Runs a program against its set-up, or against what the program itself tells when `setup` is
+/// empty.
 ///
 /// Errors: files that cannot be read or make no sense. An error inside the program ends the run
 ///         instead: everything before it is in the result.

@@ -8,9 +8,10 @@ namespace app {
 
 std::vector<std::string> timing_notes(const core::Machine& machine) {
     std::string known, unknown;
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        if (!machine.axes[i].present) continue;
         std::string& names = machine.axes[i].acceleration ? known : unknown;
-        names += (names.empty() ? "" : ", ") + std::string(core::axis_names[i]);
+        names += (names.empty() ? "" : ", ") + std::string(1, core::axis_letters[i]);
     }
     if (known.empty()) return {"feeds and rapids run at full speed: accelerations are not counted"};
     std::vector<std::string> notes;

@@ -13,7 +13,9 @@ std::string rule_of(const PairClearance& pair, BlockMotion motion, bool spindle_
         return rapid && fixture ? "rapid-near-clamp" : "near-miss";
     if (!fixture && rapid) return "rapid-in-stock";
     if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs) return "spindle-off";
-    return pair.pair.part == PartKind::holder ? "holder-into-wall" : "collision";
+    return pair.pair.part == PartKind::holder || pair.pair.part == PartKind::nose
+               ? "holder-into-wall"
+               : "collision";
 }
 
 /// The way out of a near miss: along the axis that leads away from the body most directly.
@@ -40,6 +42,8 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
     if (!room.empty()) return fmt::format("{} would do{}.", room, move);
+    if (pair.pair.part == PartKind::machine)
+        return "Move the work, or use a longer tool: a part of the machine comes too near.";
     if (pair.pair.part != PartKind::flutes && !fixture)
         return "A longer stick-out or a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
@@ -52,8 +56,7 @@ std::string range(double low, double high) {
 }
 
 std::string message_of(const PairClearance& pair, const std::string& rule, BlockMotion motion,
-                       const std::string& body, double at) {
-    const char* part = name_of(pair.pair.part);
+                       const std::string& part, const std::string& body, double at) {
     const char* kind = motion == BlockMotion::rapid ? "On a rapid, the" : "The";
     if (rule == "rapid-in-stock")
         return fmt::format("Rapid into material: the {} runs into the stock.", part);
@@ -91,8 +94,9 @@ Severity severity_of(const Setup& setup, const std::string& rule) {
 Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion motion,
                    const SimulatorState& state, double duration) {
     const ToolAssembly* tool = nullptr;
-    if (state.tool) tool = &setup.tools.at(*state.tool);
+    if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
+    const std::string& part = part_name(setup, pair.pair);
     const std::string& body = body_name(setup, pair.pair);
     const double at = duration > 0.0 ? pair.time / duration : 0.0;
     Finding finding;
@@ -100,9 +104,9 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion mo
     // Whatever it is called, a collision is never passed over.
     finding.severity =
         pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, finding.rule);
-    finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
+    finding.message = in_the_plural(message_of(pair, finding.rule, motion, part, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
-    finding.pair = {name_of(pair.pair.part), body};
+    finding.pair = {part, body};
     finding.shortfall =
         pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
     if (!finding.cure.empty())

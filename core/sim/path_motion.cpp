@@ -32,6 +32,14 @@ double programmed_length(const AxisNumbers& by) {
     return 0.0;
 }
 
+/// The same where the control follows the tip: the length of its way, unless it only turns.
+double feed_length(const Motion& motion, const AxisNumbers& by) {
+    if (motion.tip && motion.kind != MotionKind::rapid)
+        if (const double way = glm::distance(motion.tip->from, motion.tip->to); way > 0.0)
+            return way;
+    return programmed_length(by);
+}
+
 double axis_speed(const Machine& machine, size_t axis) {
     return machine.axes[axis].rapid.value_or(assumed_rapid) / seconds_per_minute;
 }
@@ -115,7 +123,7 @@ std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machi
     std::optional<PathMotion> path;
     if (motion.arc)
         path = along_arc(motion, *by);
-    else if (const double length = programmed_length(*by); length > 0.0)
+    else if (const double length = feed_length(motion, *by); length > 0.0)
         path = along_line(*by, length);
     if (path) path->speed = rapid ? rapid_speed(machine, *path) : motion.feed / seconds_per_minute;
     return path;

@@ -24,7 +24,7 @@ struct SimulatorState {
     PieceWatch pieces; // of the stock
     double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
-    StockHints hints;
+    CheckMemory memory;
     std::set<std::string> assumptions; // what had to be taken for granted on the way
     bool told_unknown_start = false;
     bool told_unchecked_tool = false; // of the tool that is in the spindle now

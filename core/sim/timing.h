@@ -13,7 +13,7 @@
 namespace core {
 
 /// A number for each of the axes X, Y, Z, A, B, C, U, V, W.
-using AxisNumbers = std::array<double, 9>;
+using AxisNumbers = AxisValues;
 
 /// How fast an axis may go and how soon it may get there; without a limit unless said. mm/s and
 /// mm/s2, or degrees.
