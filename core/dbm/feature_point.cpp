@@ -35,13 +35,13 @@ void rotate(Matrix& a, Matrix& frame, size_t p, size_t q) {
 
 } // namespace
 
-Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& room) {
+Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
     Vec3 middle(0.0);
-    for (const SurfacePoint& point : points) middle += point.place;
+    for (const TangentPlane& point : points) middle += point.place;
     middle /= static_cast<double>(points.size());
     Matrix a{}, frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Vec3 right(0.0);
-    for (const SurfacePoint& point : points) {
+    for (const TangentPlane& point : points) {
         const Vec3& n = point.normal;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)

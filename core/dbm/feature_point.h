@@ -6,8 +6,8 @@
 
 namespace core {
 
-/// A point of a surface and the direction out of the body there.
-struct SurfacePoint {
+/// The plane on which a surface lies near one of its points: normals are out of the body.
+struct TangentPlane {
     Vec3 place = Vec3(0.0);
     Vec3 normal = Vec3(0.0); // length 1
 };
@@ -17,6 +17,6 @@ struct SurfacePoint {
 /// to the middle of the points as the planes leave it.
 ///
 /// Source: Ju, Losasso, Schaefer, Warren: Dual contouring of Hermite data, 2002.
-Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& room);
+Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room);
 
 } // namespace core

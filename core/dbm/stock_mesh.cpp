@@ -18,7 +18,7 @@ constexpr double slack = 1e-6;
 
 /// Where a line passes the surface between two nodes.
 struct CrossedEdge {
-    SurfacePoint surface;
+    TangentPlane surface;
     std::optional<uint32_t> sweep;
 };
 
@@ -212,7 +212,7 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
     };
     const Aabb room{corner(-1), corner(2)};
     for (uint8_t piece = 0; piece < pieces.count; ++piece) {
-        std::array<SurfacePoint, 12> met;
+        std::array<TangentPlane, 12> met;
         size_t count = 0;
         for (size_t e = 0; e < 12; ++e)
             if (pieces.piece[e] == piece) met[count++] = edge_points[e]->surface;

@@ -235,9 +235,9 @@ TEST(DualCell, GivesEveryPassedEdgeToOnePiece) {
 
 TEST(FeaturePoint, LiesOnTheEdgeOfTwoPlanesAndTheCornerOfThree) {
     const Aabb cell{{0, 0, 0}, {1, 1, 1}};
-    const SurfacePoint x{{0.3, 0.9, 0.5}, {1, 0, 0}}, y{{0.9, 0.7, 0.5}, {0, 1, 0}},
+    const TangentPlane x{{0.3, 0.9, 0.5}, {1, 0, 0}}, y{{0.9, 0.7, 0.5}, {0, 1, 0}},
         z{{0.1, 0.1, 0.2}, {0, 0, 1}};
-    const SurfacePoint edge[] = {x, y, x, y}, all[] = {x, y, z}, one[] = {x, x};
+    const TangentPlane edge[] = {x, y, x, y}, all[] = {x, y, z}, one[] = {x, x};
     EXPECT_LT(glm::distance(feature_point(edge, cell), Vec3(0.3, 0.7, 0.5)), 1e-12);
     EXPECT_LT(glm::distance(feature_point(all, cell), Vec3(0.3, 0.7, 0.2)), 1e-12);
     EXPECT_LT(glm::distance(feature_point(one, cell), x.place), 1e-12);
