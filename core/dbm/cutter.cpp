@@ -4,7 +4,7 @@ namespace core {
 namespace {
 
 /// What a computed end of a stretch may be off by, mm (see line_interval).
-constexpr double rounding = 1e-9;
+constexpr double rounding = 1e-8;
 
 /// The box of a piece about the profile's origin, its axis pointing anywhere.
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
