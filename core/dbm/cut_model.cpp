@@ -31,7 +31,7 @@ LineRange cells_in(const CutModel& model, const Aabb& box) {
 
 Aabb box_of_line(const Dbm& dbm, int axis, int u, int v) {
     Aabb box;
-    const IntervalList& line = dbm.families[static_cast<size_t>(axis)].line(u, v);
+    const LineView line = dbm.families[static_cast<size_t>(axis)].line(u, v);
     if (line.empty()) return box;
     box.extend(point_on_line(dbm.grid, axis, u, v, line[0].lower));
     box.extend(point_on_line(dbm.grid, axis, u, v, line[line.size() - 1].upper));
@@ -39,7 +39,7 @@ Aabb box_of_line(const Dbm& dbm, int axis, int u, int v) {
 }
 
 Aabb box_of_column(const CutModel& model, int i, int j) {
-    const IntervalList& column = model.columns.line(i, j);
+    const LineView column = model.columns.line(i, j);
     if (column.empty()) return {};
     const Square s = cell_square(model, i, j);
     return {{s.x0, s.y0, column[0].lower}, {s.x1, s.y1, column[column.size() - 1].upper}};
@@ -87,7 +87,7 @@ void refit_columns(CutModel& model, const LineRange& touched) {
 }
 
 /// Whether a line or column holds anything within lower .. upper.
-bool reaches_into(const IntervalList& matter, double lower, double upper) {
+bool reaches_into(const LineView& matter, double lower, double upper) {
     return !matter.empty() && matter[0].lower < upper && matter[matter.size() - 1].upper > lower;
 }
 
@@ -100,7 +100,7 @@ double cut_lines(CutModel& model, int axis, const LoggedSweep& logged, const Lin
     for (int v = range.v_first; v < range.v_last; ++v) {
         for (int u = range.u_first; u < range.u_last; ++u) {
             for (const Cutter::Piece& piece : logged.sweep.cutter->pieces) {
-                const IntervalList& line = family.line(u, v);
+                const LineView line = family.line(u, v);
                 if (!reaches_into(line, low, high)) break;
                 const auto gone = line_interval(piece.around, logged.sweep, axis,
                                                 grid.coordinate(u_axis(axis), u),
