@@ -3,9 +3,6 @@
 namespace core {
 namespace {
 
-/// What a computed end of a stretch may be off by, mm (see line_interval).
-constexpr double rounding = 1e-8;
-
 /// The box of a piece about the profile's origin, its axis pointing anywhere.
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
     // Circles about the axis reach as far along X as the axis leans away from X.
@@ -25,7 +22,7 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     else
         for (const ProfileElement& element : flutes.elements)
             convex.push_back(RevolvedProfile{{element}});
-    Cutter cutter{.flutes = flutes};
+    Cutter cutter{.flutes = flutes, .path_error = path_error, .pieces = {}};
     for (const RevolvedProfile& piece : convex) {
         if (path_error == 0.0)
             cutter.pieces.push_back({piece, piece});
@@ -82,8 +79,8 @@ std::optional<Interval> covered_heights(const RevolvedProfile& convex, const Cut
 }
 
 std::optional<Interval> safely_within(std::optional<Interval> swept) {
-    if (!swept || !(swept->lower + rounding < swept->upper - rounding)) return std::nullopt;
-    return Interval{swept->lower + rounding, swept->upper - rounding};
+    if (!swept || !(swept->lower + safely_less < swept->upper - safely_less)) return std::nullopt;
+    return Interval{swept->lower + safely_less, swept->upper - safely_less};
 }
 
 } // namespace core

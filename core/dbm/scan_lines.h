@@ -60,6 +60,8 @@ public:
     const ScanTile* tile(size_t index) const { return tiles_[index].get(); }
     /// The tile, to be changed; the same rule as for lines.
     ScanTile& edit_tile(size_t index);
+    /// Whether a snapshot holds the same tile.
+    bool is_shared(size_t index) const { return tiles_[index].use_count() > 1; }
     size_t tile_of(int u, int v) const {
         assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
         return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
