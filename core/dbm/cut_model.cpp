@@ -100,7 +100,7 @@ LineSums cut_family(CutModel& model, int axis, const ReadySweep& ready) {
     const LineRange range = lines_in(model, axis, ready.front);
     LineSums sums;
     for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
-        const LanePlan plan = lane_plan(piece.around, *ready.sweep, axis);
+        const LanePlan plan = lane_plan(piece.around, *ready.sweep, axis, model.outer_box.max.z);
         for_tiles(range, model.line_boxes[static_cast<size_t>(axis)],
                   [&](size_t tile) { sums.add(cut_lines(model, tile, range, plan, ready)); });
     }
@@ -111,7 +111,7 @@ void cut_all_columns(CutModel& model, const ReadySweep& ready) {
     if (model.columns.u_count() == 0) return;
     const LineRange range = cells_in(model, ready.front);
     for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
-        const LanePlan plan = lane_plan(piece.within, *ready.sweep, 2);
+        const LanePlan plan = lane_plan(piece.within, *ready.sweep, 2, model.outer_box.max.z);
         for_tiles(range, model.column_boxes,
                   [&](size_t tile) { cut_columns(model, tile, range, plan, ready); });
     }
@@ -159,7 +159,9 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
 
 double cut(CutModel& model, const CutterSweep& sweep) {
     const bool on = goes_on(model, sweep);
-    model.last = sweep;
+    if (model.last.cutter != sweep.cutter) model.last.cutter = sweep.cutter;
+    model.last.to = sweep.to;
+    model.last.orientation = sweep.orientation;
     const ReadySweep ready{.sweep = &sweep,
                            .front = on ? front_bounds(sweep, model.outer_box.max.z) : bounds(sweep),
                            .mark = static_cast<uint32_t>(model.log.size() + 1)};

@@ -18,6 +18,7 @@ struct Cutter {
     RevolvedProfile flutes;
     double path_error = 0.0;
     std::vector<Piece> pieces;
+    Aabb body; // round all of what it may cut, when it stands upright, about its tip
 };
 
 /// A cutter for paths that stay within `path_error` mm of the straight moves given for them.

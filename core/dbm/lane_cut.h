@@ -37,26 +37,20 @@ struct alignas(64) RowStretches {
     std::array<double, ScanTile::side> lower, upper;
 };
 
-/// Those of the lines through the corners of a row of cells, on one side of it.
-struct alignas(64) CornerStretches {
-    std::array<double, ScanTile::side + 8> lower, upper; // the last 7 are not used
-};
-
 /// The inner loops of cutting, for the best instruction set of this processor. Each does the same
 /// operations in the same order in every lane, without fused multiply-add: all of them give the
 /// same bits.
 struct LaneCut {
     /// The stretches of a row of lines at `u` and `v` in what the plan sweeps; the ends lie in the
-    /// swept volume up to rounding (1e-9 mm within 2 m).
-    void (*stretches)(const LanePlan& plan, const double* u, double v, RowStretches& out);
+    /// swept volume up to rounding (1e-9 mm within 2 m). Lines that are not `wanted`, bit by bit,
+    /// may come out empty.
+    void (*stretches)(const LanePlan& plan, const double* u, double v, uint32_t wanted,
+                      RowStretches& out);
 
-    /// The same for 17 corners of cells; lanes of which `wanted` holds none come out empty.
-    void (*corners)(const LanePlan& plan, const double* u, double v, uint32_t wanted,
-                    CornerStretches& out);
-
-    /// What each cell's four corners share, shortened at both ends by `less`.
-    void (*shared)(const CornerStretches& front, const CornerStretches& back, double less,
-                   RowStretches& out);
+    /// What the four corners of each cell in a row share, shortened at both ends by `less`: corners
+    /// 0 .. 15 in front and at the back, and the last one of either.
+    void (*shared)(const RowStretches& front, const RowStretches& back, const Interval& front_end,
+                   const Interval& back_end, double less, RowStretches& out);
 
     /// Whether cutting the tile would change it.
     bool (*changes)(const LanePlan& plan, const TileTask& task, const ScanTile& tile);

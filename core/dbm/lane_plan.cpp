@@ -20,7 +20,7 @@ CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radiu
     c.from_v = from[va];
     c.by_a = by[axis];
     c.radius = radius;
-    c.length = std::hypot(by[ua], by[va]);
+    c.length = std::sqrt(by[ua] * by[ua] + by[va] * by[va]);
     c.u_most = c.v_most = infinity;
     if (c.length > least_move) {
         c.cos_u = by[ua] / c.length;
@@ -36,7 +36,7 @@ CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radiu
 /// A ball begins where the cylinder that it sweeps does, at the moment when it touches there.
 CapsuleLanes ball_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e) {
     CapsuleLanes c = capsule(sweep, axis, e.z0, e.margin);
-    const double whole = std::hypot(c.length, c.by_a);
+    const double whole = std::sqrt(c.length * c.length + c.by_a * c.by_a);
     const double lean = whole > 0.0 ? c.by_a / whole * c.per_length : 0.0;
     c.low_by_half = -lean;
     c.high_by_half = lean;
@@ -79,7 +79,8 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
     if (std::abs(by[side]) > least_move) {
         c.per_side = 1.0 / by[side];
         // The circle's foremost points across its own path.
-        const double touching = e.r0 * c.by_a / std::hypot(c.by_a, c.by_side);
+        const double whole = std::sqrt(c.by_a * c.by_a + c.by_side * c.by_side);
+        const double touching = e.r0 * c.by_a / whole;
         const double shift = std::copysign(touching, touching * by[side]) * c.per_side;
         c.low_at = -shift;
         c.high_at = shift;
@@ -94,29 +95,46 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
 bool is_ball(const ProfileElement& e) { return e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0; }
 bool is_cylinder(const ProfileElement& e) { return e.margin == 0.0 && e.r0 == e.r1 && e.z0 < e.z1; }
 
+/// Whether ball `i` has a shaft of its own width from its centre up.
+bool has_shaft(const std::vector<ProfileElement>& all, size_t i) {
+    return i + 1 < all.size() && is_cylinder(all[i + 1]) && all[i + 1].r0 == all[i].margin
+           && all[i + 1].z0 == all[i].z0 && all[i + 1].z1 >= all[i].z0 + all[i].margin;
+}
+
+/// Lets the stretches end at the height up to which the body reaches at every moment, if that is
+/// above all stock.
+bool open_up(CapsuleLanes& c, double reached, double top) {
+    if (reached < top) return false;
+    c.opens_up = true;
+    c.high_end = reached;
+    return true;
+}
+
 } // namespace
 
-LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis) {
+LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis, double top) {
     LanePlan plan;
     plan.axis = axis;
     plan.piece = &convex;
     plan.sweep = &sweep;
     if (!is_upright(sweep.orientation)) return plan;
     const auto& all = convex.elements;
+    const double lowest = std::min(sweep.from.z, sweep.to.z);
+    const double highest = std::max(sweep.from.z, sweep.to.z);
     for (size_t i = 0; i < all.size(); ++i) {
         const ProfileElement& e = all[i];
         if (is_ball(e) && plan.balls < LanePlan::most) {
-            CapsuleLanes c = ball_lanes(sweep, axis, e);
-            // Over its centre, wherever that is, a shaft of its own width holds all of the ball.
-            const bool has_shaft = i + 1 < all.size() && is_cylinder(all[i + 1])
-                                   && all[i + 1].r0 == e.margin && all[i + 1].z0 == e.z0
-                                   && all[i + 1].z1 >= e.z0 + e.margin;
-            const double centre = std::max(sweep.from.z, sweep.to.z) + e.z0;
-            if (has_shaft && axis == 0) c.v_most = centre;
-            if (has_shaft && axis == 1) c.u_most = centre;
-            plan.ball[plan.balls++] = c;
+            CapsuleLanes& c = plan.ball[plan.balls++];
+            c = ball_lanes(sweep, axis, e);
+            if (!has_shaft(all, i)) continue;
+            // Over its centre, wherever that is, the shaft holds all of the ball.
+            if (axis == 0) c.v_most = highest + e.z0;
+            if (axis == 1) c.u_most = highest + e.z0;
+            if (axis == 2 && open_up(c, lowest + all[i + 1].z1, top)) ++i;
         } else if (is_cylinder(e) && axis == 2 && plan.uprights < LanePlan::most) {
-            plan.upright[plan.uprights++] = upright_lanes(sweep, e);
+            CapsuleLanes& c = plan.upright[plan.uprights++];
+            c = upright_lanes(sweep, e);
+            open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.level[plan.across++] = across_lanes(sweep, axis, e);
         } else {

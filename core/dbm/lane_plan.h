@@ -20,6 +20,7 @@ struct CapsuleLanes {
     double cos_u, cos_v, length, per_length;
     double low_by_half, low_at, high_by_half, high_at;
     double low_end, high_end; // added to the ends of a cylinder's stretch: its end faces
+    bool opens_up;            // there is nothing above: every stretch may end at high_end itself
     double u_most, v_most;    // beyond this height another element holds all that this one does
 };
 
@@ -46,7 +47,9 @@ struct LanePlan {
     const CutterSweep* sweep = nullptr;
 };
 
-/// The plan for a convex piece; it points to both arguments.
-LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis);
+/// The plan for a convex piece; it points to both arguments. Stretches along Z need not be true
+/// above `top`, where there is no stock.
+LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis,
+                   double top = infinity);
 
 } // namespace core

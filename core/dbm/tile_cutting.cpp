@@ -1,7 +1,5 @@
 #include "core/dbm/tile_cutting.h"
 
-#include <numeric>
-
 namespace core {
 namespace {
 
@@ -37,10 +35,17 @@ double points_in(const ScanGrid& grid, const LineView& matter) {
     return points;
 }
 
+double sum_of(const std::array<double, ScanTile::side>& lanes) {
+    std::array<double, 8> halves;
+    for (size_t i = 0; i < 8; ++i) halves[i] = lanes[i] + lanes[i + 8];
+    std::array<double, 4> quarters;
+    for (size_t i = 0; i < 4; ++i) quarters[i] = halves[i] + halves[i + 4];
+    return (quarters[0] + quarters[2]) + (quarters[1] + quarters[3]);
+}
+
 /// Does what the lanes have left, and sums up.
 LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
-    LineSums sums{std::accumulate(done.length.begin(), done.length.end(), 0.0),
-                  std::accumulate(done.points.begin(), done.points.end(), 0.0)};
+    LineSums sums{sum_of(done.length), task.count_points ? sum_of(done.points) : 0.0};
     for (size_t i = 0; i < done.by_hand_count; ++i) {
         const auto& [place, lower, upper] = done.by_hand[i];
         const auto points = [&] {
@@ -66,30 +71,41 @@ TilePlace place_of(const TileBoxes& boxes, size_t tile) {
 class CornerRows {
 public:
     CornerRows(const LanePlan& plan, const double* u, const double* v, uint32_t lanes)
-        : loops_(lane_cut()), plan_(plan), u_(u), v_(v), wanted_(lanes | (lanes << 1U)) {}
+        : loops_(lane_cut()), plan_(plan), u_(u), v_(v), lanes_(lanes) {}
 
     void shared(int row, double less, RowStretches& out) {
-        const CornerStretches& front = at(row);
-        loops_.shared(front, at(row + 1), less, out);
+        const Corners& front = at(row);
+        const Corners& back = at(row + 1);
+        loops_.shared(front.row, back.row, front.end, back.end, less, out);
     }
 
 private:
-    const CornerStretches& at(int row) {
-        const auto kept = static_cast<size_t>(row % 2);
-        if (rows_[kept] != row) {
-            loops_.corners(plan_, u_, v_[row], wanted_, stretches_[kept]);
-            rows_[kept] = row;
+    struct Corners {
+        int of = -1;
+        RowStretches row;
+        Interval end; // of the corner after the last one in the row
+    };
+
+    const Corners& at(int row) {
+        Corners& kept = rows_[static_cast<size_t>(row % 2)];
+        if (kept.of == row) return kept;
+        kept.of = row;
+        loops_.stretches(plan_, u_, v_[row], lanes_ | (lanes_ << 1U), kept.row);
+        kept.end = {infinity, -infinity};
+        if (lanes_ >> (side - 1U)) {
+            RowStretches next;
+            loops_.stretches(plan_, u_ + side, v_[row], 1U, next);
+            kept.end = {next.lower[0], next.upper[0]};
         }
-        return stretches_[kept];
+        return kept;
     }
 
     const LaneCut& loops_;
     const LanePlan& plan_;
     const double* u_;
     const double* v_;
-    uint32_t wanted_;
-    std::array<int, 2> rows_ = {-1, -1};
-    std::array<CornerStretches, 2> stretches_;
+    uint32_t lanes_;
+    std::array<Corners, 2> rows_;
 };
 
 } // namespace

@@ -13,7 +13,10 @@ int main(int argc, char** argv) {
     const auto program = test_support::raster_program();
     auto sweeps = test_support::sweeps_of(program, test_support::raster_ball());
     if (sweeps.size() > most) sweeps.resize(most);
-    CutModel model = make_cut_model({SolidBox{program.stock}, 0.0}, h).value();
+    const bool columns = argc > 3 && argv[3][0] == 'c';
+    CutModel model = make_cut_model({SolidBox{program.stock}, 0.0}, h, default_memory_limit,
+                                    columns ? WithColumns::yes : WithColumns::no)
+                         .value();
     const clock_t start = clock();
     double removed = 0.0;
     for (const CutterSweep& sweep : sweeps) removed += cut(model, sweep);
