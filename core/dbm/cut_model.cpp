@@ -1,27 +1,9 @@
 #include "core/dbm/cut_model.h"
 
-#include "core/dbm/sweep_front.h"
 #include "core/dbm/tile_cutting.h"
 
 namespace core {
 namespace {
-
-/// Notes the sweep for all tiles of columns that it may change; false when there are none.
-bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
-    const auto number = static_cast<uint32_t>(model.log.size());
-    bool noted = model.columns.u_count() == 0;
-    const LineRange tiles = tiles_of(cells_in(model, front));
-    for (int v = tiles.v_first; v < tiles.v_last; ++v) {
-        for (int u = tiles.u_first; u < tiles.u_last; ++u) {
-            const auto tile = static_cast<size_t>(v * model.column_boxes.u_tiles + u);
-            if (!overlaps(model.column_boxes.boxes[tile], front)) continue;
-            append(model.history[tile], number);
-            noted = true;
-        }
-    }
-    if (noted) model.log.push_back(sweep);
-    return noted;
-}
 
 /// Runs `act` over the logged sweeps that may reach into a square of cell (i, j).
 template <typename Act>
@@ -57,18 +39,6 @@ std::vector<double> corners_along(const CutModel& model, int axis) {
     return corners;
 }
 
-void fit_lines(CutModel& model, size_t family) {
-    const int axis = static_cast<int>(family);
-    fit(model.line_boxes[family], model.lines.families[family],
-        {model.places[static_cast<size_t>(u_axis(axis))].data(),
-         model.places[static_cast<size_t>(v_axis(axis))].data(), false});
-}
-
-void fit_columns(CutModel& model) {
-    fit(model.column_boxes, model.columns,
-        {model.corners[0].data(), model.corners[1].data(), true});
-}
-
 void add_columns(CutModel& model) {
     const ScanGrid& grid = model.lines.grid;
     model.columns = ScanLines(2, grid.count(0) + 1, grid.count(1) + 1);
@@ -77,60 +47,6 @@ void add_columns(CutModel& model) {
             const IntervalList column = column_of(model.solid, cell_square(model, i, j));
             if (!column.empty()) model.columns.edit(i, j) = column;
         }
-}
-
-/// Whether the cutter stands where the last move left it, having cut there.
-bool goes_on(const CutModel& model, const CutterSweep& sweep) {
-    const CutterSweep& last = model.last;
-    return last.cutter == sweep.cutter && last.to == sweep.from
-           && last.orientation == sweep.orientation;
-}
-
-/// Runs `act` over the tiles that a range of lines touches.
-template <typename Act>
-void for_tiles(const LineRange& lines, const TileBoxes& boxes, const Act& act) {
-    if (lines.empty()) return;
-    const LineRange tiles = tiles_of(lines);
-    for (int v = tiles.v_first; v < tiles.v_last; ++v)
-        for (int u = tiles.u_first; u < tiles.u_last; ++u)
-            act(static_cast<size_t>(v * boxes.u_tiles + u));
-}
-
-LineSums cut_family(CutModel& model, int axis, const ReadySweep& ready) {
-    const LineRange range = lines_in(model, axis, ready.front);
-    LineSums sums;
-    for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
-        const LanePlan plan = lane_plan(piece.around, *ready.sweep, axis, model.outer_box.max.z);
-        for_tiles(range, model.line_boxes[static_cast<size_t>(axis)],
-                  [&](size_t tile) { sums.add(cut_lines(model, tile, range, plan, ready)); });
-    }
-    return sums;
-}
-
-void cut_all_columns(CutModel& model, const ReadySweep& ready) {
-    if (model.columns.u_count() == 0) return;
-    const LineRange range = cells_in(model, ready.front);
-    for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
-        const LanePlan plan = lane_plan(piece.within, *ready.sweep, 2, model.outer_box.max.z);
-        for_tiles(range, model.column_boxes,
-                  [&](size_t tile) { cut_columns(model, tile, range, plan, ready); });
-    }
-}
-
-void fit_when_many_are_stale(CutModel& model) {
-    for (size_t family = 0; family < 3; ++family)
-        if (model.line_boxes[family].stale_tiles.size() >= TileBoxes::most_stale)
-            fit_lines(model, family);
-    if (model.column_boxes.stale_tiles.size() >= TileBoxes::most_stale) fit_columns(model);
-}
-
-/// What is to be reported of a volume that has been removed.
-double reported(CutModel& model, const LineSums& sums) {
-    const double h = model.lines.grid.spacing;
-    model.volume_owed += h * h * sums.length - 2.0 * h * h * h * sums.points;
-    const double now = std::max(0.0, model.volume_owed);
-    model.volume_owed -= now;
-    return now;
 }
 
 } // namespace
@@ -147,31 +63,12 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
     for (int axis = 0; axis < 2; ++axis)
         model.corners[static_cast<size_t>(axis)] = corners_along(model, axis);
     if (with_columns == WithColumns::yes) add_columns(model);
-    for (size_t family = 0; family < 3; ++family) {
+    for (size_t family = 0; family < 3; ++family)
         model.line_boxes[family] = unfitted_boxes(model.lines.families[family]);
-        fit_lines(model, family);
-    }
     model.column_boxes = unfitted_boxes(model.columns);
-    fit_columns(model);
+    fit_boxes(model);
     model.history.resize(model.column_boxes.boxes.size());
     return model;
-}
-
-double cut(CutModel& model, const CutterSweep& sweep) {
-    const bool on = goes_on(model, sweep);
-    if (model.last.cutter != sweep.cutter) model.last.cutter = sweep.cutter;
-    model.last.to = sweep.to;
-    model.last.orientation = sweep.orientation;
-    const ReadySweep ready{.sweep = &sweep,
-                           .front = on ? front_bounds(sweep, model.outer_box.max.z) : bounds(sweep),
-                           .mark = static_cast<uint32_t>(model.log.size() + 1)};
-    if (!overlaps(ready.front, model.outer_box) || !log_sweep(model, sweep, ready.front))
-        return reported(model, {});
-    LineSums sums;
-    for (int axis = 0; axis < 3; ++axis) sums.add(cut_family(model, axis, ready));
-    cut_all_columns(model, ready);
-    fit_when_many_are_stale(model);
-    return reported(model, sums);
 }
 
 std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box) {

@@ -115,6 +115,17 @@ LineRange tiles_of(const LineRange& lines) {
             (lines.v_last + side - 1) / side};
 }
 
+void fit_boxes(CutModel& model) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto family = static_cast<size_t>(axis);
+        fit(model.line_boxes[family], model.lines.families[family],
+            {model.places[static_cast<size_t>(u_axis(axis))].data(),
+             model.places[static_cast<size_t>(v_axis(axis))].data(), false});
+    }
+    fit(model.column_boxes, model.columns,
+        {model.corners[0].data(), model.corners[1].data(), true});
+}
+
 LineRange lines_in(const CutModel& model, int axis, const Aabb& box) {
     const int ua = u_axis(axis), va = v_axis(axis);
     const ScanGrid& grid = model.lines.grid;
@@ -130,11 +141,11 @@ LineRange cells_in(const CutModel& model, const Aabb& box) {
             std::min(lines.v_last + 1, model.columns.v_count())};
 }
 
-LineSums cut_lines(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
-                   const ReadySweep& ready) {
+TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
+                      const ReadySweep& ready) {
     const int axis = plan.axis;
     ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
-    TileBoxes& boxes = model.line_boxes[static_cast<size_t>(axis)];
+    const TileBoxes& boxes = model.line_boxes[static_cast<size_t>(axis)];
     if (family.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
     const auto [u, v] = place_of(boxes, tile);
     const TileTask task{
@@ -154,14 +165,13 @@ LineSums cut_lines(CutModel& model, size_t tile, const LineRange& range, const L
     TileCut done;
     loops.cut(plan, task, own, done);
     if (done.blocks == 0) return {};
-    boxes.note(tile, done.blocks);
-    return finish(task, own, done);
+    return {finish(task, own, done), done.blocks};
 }
 
-void cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
-                 const ReadySweep& ready) {
-    TileBoxes& boxes = model.column_boxes;
-    if (model.columns.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return;
+TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
+                        const ReadySweep& ready) {
+    const TileBoxes& boxes = model.column_boxes;
+    if (model.columns.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
     const auto [u, v] = place_of(boxes, tile);
     const uint32_t lanes = lanes_of(u, range.u_first, range.u_last);
     CornerRows corners(plan, &model.corners[0][static_cast<size_t>(u)],
@@ -180,9 +190,9 @@ void cut_columns(CutModel& model, size_t tile, const LineRange& range, const Lan
         if (own == nullptr) own = &model.columns.edit_tile(tile);
         loops.take(task, row, gone, *own, done);
     }
-    if (own == nullptr) return;
+    if (own == nullptr) return {};
     finish(task, *own, done);
-    boxes.note(tile, done.blocks);
+    return {{}, done.blocks};
 }
 
 } // namespace core
