@@ -1,5 +1,7 @@
 #include "core/sim/simulator.h"
 
+#include <thread>
+
 #include <fmt/format.h>
 
 #include "core/sim/finding_text.h"
@@ -242,8 +244,7 @@ const char* name_of(BlockMotion motion) {
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
     FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
-    if (setup.earlier_cuts)
-        for (const CutterSweep& sweep : *setup.earlier_cuts) cut(stock, sweep);
+    if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
