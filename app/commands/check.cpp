@@ -51,8 +51,11 @@ core::Result<void> save_results(const Options& options, CheckRun& run) {
                  "was not written: the program did not run to its end",
                  name});
     if (!options.stock.empty()) {
+        FEELER_TRY(const MeshForm form, mesh_form(options.stock));
         FEELER_TRY(const StockFile file,
-                   stock_file(*run.surface, run.setup.mesh_size, options.stock));
+                   form == MeshForm::record
+                       ? stock_record_file(*run.stock, options.stock)
+                       : stock_file(*run.surface, run.setup.mesh_size, options.stock));
         if (auto written = write_output(options.stock, file.bytes); !written) return written;
         run.saved_stock = file.facts;
     }
@@ -99,7 +102,8 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup, "Set-up file (TOML); else it is inferred from the program, and said");
+    command.add_option("--setup", options->setup,
+                       "Set-up file (TOML); else it is inferred from the program, and said");
     command
         .add_option("--allowance", options->allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")
@@ -112,7 +116,8 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     command.add_option("--save-stock", options->stock,
-                       "Write what is left of the stock to this file (.stl, .ply)");
+                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
+                       "for a later set-up)");
     command.add_option("--save-comparison", options->comparison,
                        "Write what is left, coloured by its deviation from the part (.ply)");
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");

@@ -136,6 +136,7 @@ Json part_json(const CheckRun& run) {
 }
 
 Json saved_json(const SavedStock& saved) {
+    if (saved.triangles == 0) return {{"file", saved.file}, {"moves", saved.moves}};
     return {{"file", saved.file},
             {"triangles", saved.triangles},
             {"error", saved.error},

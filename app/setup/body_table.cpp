@@ -1,8 +1,13 @@
 #include "app/setup/body_table.h"
 
+#include <fstream>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/dbm/stock_record.h"
+#include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
 
 namespace app {
@@ -77,16 +82,6 @@ CylinderKey read_cylinder(TableReader& table) {
     return cylinder;
 }
 
-core::Mesh mesh_of(const core::Aabb& box) {
-    core::Mesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.emplace_back(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
-                                   i & 4U ? box.max.z : box.min.z);
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
-
 /// The mesh a body names, in the body's frame. Relative paths are relative to the set-up.
 core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
     const std::string name = table.string("mesh").value_or("");
@@ -112,7 +107,8 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
 /// Box or mesh, moved, as a mesh.
 core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
                            const core::Transform& target_from_body) {
-    core::Mesh mesh = shape == "box" ? mesh_of(read_box(table)) : read_mesh_key(table, source);
+    core::Mesh mesh =
+        shape == "box" ? core::mesh_of(read_box(table)) : read_mesh_key(table, source);
     return moved(std::move(mesh), target_from_body);
 }
 
@@ -173,6 +169,31 @@ void read_envelope(TableReader& table, BodyContext& context, const Placement& pl
     table.finish();
 }
 
+core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return core::fail(core::ErrorCode::io, "there is no such file, or it cannot be read");
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return core::stock_record(bytes.str());
+}
+
+/// A stock as an earlier program left it (check --save-stock).
+void read_model(TableReader& table, BodyContext& context, const Placement& placement) {
+    const std::string name = table.string("model").value_or("");
+    auto record = read_record(context.folder / name);
+    if (record) record = core::moved(*std::move(record), placement.frame_from_body);
+    if (!record)
+        return table.refuse("model", fmt::format("= \"{}\": {}", name, record.error().message));
+    core::Setup& setup = context.file.setup;
+    setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
+    setup.stock = std::move(record->solid);
+    setup.earlier_cuts =
+        std::make_shared<const std::vector<core::CutterSweep>>(std::move(record->sweeps));
+    context.frames.machine_from["stock"] = placement.machine_from_body();
+    table.finish();
+}
+
 } // namespace
 
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
@@ -206,9 +227,7 @@ void read_stock(TableReader& table, BodyContext& context) {
         return read_envelope(table, context, placement);
     const auto shape = only_shape(table);
     if (!shape) return;
-    if (*shape == "model")
-        return table.refuse("model", "is not supported by this version; give a box, cylinder or "
-                                     "mesh");
+    if (*shape == "model") return read_model(table, context, placement);
     core::Setup& setup = context.file.setup;
     setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/dbm/stock_record.h"
 #include "core/geom/nearest_surface.h"
 #include "core/sim/verdict.h"
 
@@ -68,7 +69,15 @@ private:
     SolidMesh stock_solid_;
     std::array<std::vector<Worst>, 2> worst_; // of each sample of the stock, by kind
     PartComparison result_;
+
+    std::optional<uint32_t> block_of(size_t sweep) const;
 };
+
+/// The block of this program that made a move.
+std::optional<uint32_t> Comparison::block_of(size_t sweep) const {
+    const uint32_t block = stock_.log[sweep].sweep.block;
+    return block == earlier_block ? std::nullopt : std::optional(block);
+}
 
 /// Nothing is left to measure to: all of the part is missing.
 void Comparison::add_whole_part() {
@@ -76,7 +85,7 @@ void Comparison::add_whole_part() {
     DeviationRegion region;
     region.amount = result_.largest_gouge = glm::length(box.size());
     region.place = box.center();
-    if (stock_.log.size() > 0) region.block = stock_.log[stock_.log.size() - 1].sweep.block;
+    if (stock_.log.size() > 0) region.block = block_of(stock_.log.size() - 1);
     result_.regions.push_back(region);
 }
 
@@ -225,7 +234,7 @@ void Comparison::add_regions(Deviation kind) {
         uint32_t& last = sweeps.try_emplace(at, *sweep).first->second;
         last = std::max(last, *sweep);
     }
-    for (const auto& [at, sweep] : sweeps) regions[at].block = stock_.log[sweep].sweep.block;
+    for (const auto& [at, sweep] : sweeps) regions[at].block = block_of(sweep);
     const size_t first = result_.regions.size();
     for (const auto& [at, region] : regions) result_.regions.push_back(region);
     std::stable_sort(result_.regions.begin() + static_cast<std::ptrdiff_t>(first),

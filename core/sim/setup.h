@@ -38,6 +38,7 @@ struct Setup {
     Machine machine;
     Mount stock_mount;        // where the stock's frame stands
     Solid stock;              // in that frame
+    std::shared_ptr<const std::vector<CutterSweep>> earlier_cuts; // of programs before, in order
     std::optional<Part> part; // what is to be made
     std::vector<Fixture> fixtures;
     std::map<ToolNumber, ToolAssembly> tools;

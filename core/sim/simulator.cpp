@@ -1,5 +1,7 @@
 #include "core/sim/simulator.h"
 
+#include <thread>
+
 #include <fmt/format.h>
 
 #include "core/sim/finding_text.h"
@@ -21,6 +23,7 @@ struct BlockRun {
     SimulatorState& state;
     BlockResult result = {};
     std::vector<TimedLeg> legs = {};
+    bool turns = false; // rotary axes move
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -121,6 +124,7 @@ void BlockRun::carry_out(const Motion& motion) {
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
+    for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
@@ -215,7 +219,7 @@ void BlockRun::conclude() {
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear)
-            add(finding_of(setup, pair, result.motion, state, result.duration));
+            add(finding_of(setup, pair, {result.motion, turns, result.duration}, state));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();
@@ -240,6 +244,7 @@ const char* name_of(BlockMotion motion) {
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
     FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
+    if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
