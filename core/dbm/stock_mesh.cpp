@@ -5,6 +5,7 @@
 
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
+#include "core/dbm/surface_point.h"
 #include "core/geom/nearest_surface.h"
 #include "core/geom/triangle_distance.h"
 
@@ -18,7 +19,7 @@ constexpr double slack = 1e-6;
 
 /// Where a line passes the surface between two nodes.
 struct CrossedEdge {
-    TangentPlane surface;
+    TangentPlane plane;
     std::optional<uint32_t> sweep;
 };
 
@@ -49,7 +50,6 @@ public:
     explicit Contouring(const CutModel& model)
         : model_(model),
           grid_(model.lines.grid),
-          sources_(model),
           bounds_(bounds(model.solid)),
           width_(grid_.count(0) + 2),
           depth_(grid_.count(1) + 2),
@@ -64,6 +64,7 @@ private:
     }
 
     NodeLayer nodes(int k);
+    std::optional<uint32_t> sweep_at(const LineEnd& end) const;
     CellLayer cells(const NodeLayer& below, const NodeLayer& above, int k);
     int32_t cross(int axis, const std::array<int, 3>& node, bool from_inside,
                   std::vector<CrossedEdge>& points);
@@ -79,7 +80,6 @@ private:
 
     const CutModel& model_;
     const ScanGrid& grid_;
-    BoundarySources sources_;
     Aabb bounds_;
     int width_, depth_;
     size_t size_;
@@ -138,28 +138,37 @@ int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_in
     const int v = node[static_cast<size_t>(v_axis(axis))] - 1;
     const int step = node[static_cast<size_t>(axis)] - 1;
     const double low = grid_.coordinate(axis, step), high = grid_.coordinate(axis, step + 1);
-    BoundaryPoint point{axis, u, v, 0.5 * (low + high), from_inside};
-    double best = slack;
+    const auto& matter = line(axis, u, v);
+    LineEnd end{axis, u, v, 0, from_inside};
+    double along = 0.5 * (low + high), best = slack;
     bool found = false;
-    for (const Interval& matter : line(axis, u, v)) {
-        const double end = from_inside ? matter.upper : matter.lower;
-        const double beyond = std::max({low - end, end - high, 0.0});
+    for (size_t i = 0; i < matter.size(); ++i) {
+        const double here = from_inside ? matter[i].upper : matter[i].lower;
+        const double beyond = std::max({low - here, here - high, 0.0});
         if (beyond > best || (found && beyond == best)) continue;
         best = beyond;
-        point.along = end;
+        along = here;
+        end.interval = i;
         found = true;
     }
     CrossedEdge edge;
     if (found) {
-        const BoundarySource source = sources_.at(point);
-        edge = {{Vec3(0.0), source.normal}, source.sweep};
+        edge = {{Vec3(0.0), surface_point(model_, end).normal}, sweep_at(end)};
         ++taken_;
     } else {
-        edge.surface.normal[axis] = from_inside ? 1.0 : -1.0;
+        edge.plane.normal[axis] = from_inside ? 1.0 : -1.0;
     }
-    edge.surface.place = point_on_line(grid_, axis, u, v, std::clamp(point.along, low, high));
+    edge.plane.place = point_on_line(grid_, axis, u, v, std::clamp(along, low, high));
     points.push_back(edge);
     return static_cast<int32_t>(points.size()) - 1;
+}
+
+/// The number of the cut that made an end; empty for raw stock.
+std::optional<uint32_t> Contouring::sweep_at(const LineEnd& end) const {
+    const EndMarks marks =
+        model_.lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
+    const uint32_t mark = end.upper ? marks.upper : marks.lower;
+    return mark > 0 ? std::optional(mark - 1) : std::nullopt;
 }
 
 CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int k) {
@@ -215,7 +224,7 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
         std::array<TangentPlane, 12> met;
         size_t count = 0;
         for (size_t e = 0; e < 12; ++e)
-            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->surface;
+            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->plane;
         result_.mesh.vertices.push_back(feature_point({met.data(), count}, room));
     }
 }
@@ -261,7 +270,7 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edg
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
     const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
-    const Vec3& point = edge.surface.place;
+    const Vec3& point = edge.plane.place;
     double away[2];
     for (size_t k = 0; k < 2; ++k)
         away[k] = std::min(distance_to(point, {place(k), place(k + 1), place(k + 2)}),

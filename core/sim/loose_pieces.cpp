@@ -59,7 +59,7 @@ Finding finding_of(const Setup& setup, const CutModel& stock, const PieceMap& ma
 
 Aabb box_of_cuts(const CutModel& stock, size_t first) {
     Aabb box;
-    for (size_t i = first; i < stock.log.size(); ++i) box.extend(stock.log[i].box);
+    for (size_t i = first; i < stock.log.size(); ++i) box.extend(stock.log.box(i));
     return box;
 }
 

@@ -75,7 +75,7 @@ private:
 
 /// The block of this program that made a move.
 std::optional<uint32_t> Comparison::block_of(size_t sweep) const {
-    const uint32_t block = stock_.log[sweep].sweep.block;
+    const uint32_t block = stock_.log.block(sweep);
     return block == earlier_block ? std::nullopt : std::optional(block);
 }
 
