@@ -52,8 +52,8 @@ struct BlockRun {
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-        const bool turns = tool() && turns_to_cut(state.spindle, *tool());
-        return feeds && turns ? FluteUse::cutting : FluteUse::not_cutting;
+        const bool cuts = tool() && turns_to_cut(state.spindle, *tool());
+        return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
     }
 
     void carry_out(const Motion& motion);
