@@ -7,6 +7,7 @@
 
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
+#include "app/session/m_codes.h"
 #include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
 #include "core/sim/block_clock.h"
@@ -106,6 +107,18 @@ void take_tool_zero(core::Event& event) {
     if (change && !change->tool) change->tool = core::ToolNumber{0};
 }
 
+/// The fixtures that are moved before a block.
+std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+    std::vector<core::Event> events;
+    for (const core::FixtureMove& move : setup.fixture_moves) {
+        const bool here = move.line && block.file.empty() && block.line == *move.line;
+        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
+        events.emplace_back(core::FixtureChange{move.from, false});
+        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
+    }
+    return events;
+}
+
 /// A run while it goes on.
 struct Runner {
     const gcode::Program& program;
@@ -138,7 +151,8 @@ struct Runner {
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        std::vector<core::Event> events = gcode::lower(block, lowering);
+        std::vector<core::Event> events = fixture_events(run.setup, block);
+        for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
         if (run.setup.tools.contains(core::ToolNumber{0}))
             for (core::Event& event : events) take_tool_zero(event);
         if (auto refused = refusal(block)) return refused;
@@ -249,12 +263,15 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     look_beyond_allowances(run.setup);
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    if (job.before_model) job.before_model(run.memory);
     auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     state->spindle.direction = run.setup.spindle_at_start;
