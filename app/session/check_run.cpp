@@ -6,6 +6,10 @@
 #include <fmt/format.h>
 
 #include "app/session/digest.h"
+#include "app/session/inferred_setup.h"
+#include "app/session/part_check.h"
+#include "app/session/timing_notes.h"
+#include "core/sim/block_clock.h"
 #include "gcode/lowering.h"
 
 namespace app {
@@ -45,7 +49,7 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
     run.assumptions.push_back(
         fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
                     core::chord_error(setup.mesh_size)));
-    run.assumptions.push_back("feeds and rapids run at full speed: accelerations are not counted");
+    for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
         "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
     if (setup.stock.tolerance == 0.0)
@@ -64,7 +68,7 @@ void look_beyond_allowances(core::Setup& setup) {
 }
 
 void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
-    if (program_calls_tools || setup.tools.size() != 1) return;
+    if (program_calls_tools || setup.tool_at_start || setup.tools.size() != 1) return;
     setup.tool_at_start = setup.tools.begin()->first;
     run.assumptions.push_back(fmt::format("the program calls no tool: tool {} is in the spindle",
                                           core::value_of(*setup.tool_at_start)));
@@ -96,6 +100,12 @@ core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     return finding;
 }
 
+/// T0 empties the spindle, unless a tool has that number.
+void take_tool_zero(core::Event& event) {
+    auto* change = std::get_if<core::ToolChange>(&event);
+    if (change && !change->tool) change->tool = core::ToolNumber{0};
+}
+
 /// A run while it goes on.
 struct Runner {
     const gcode::Program& program;
@@ -106,32 +116,37 @@ struct Runner {
     gcode::Interpreter interpreter{library, environment};
     gcode::InterpreterState place = gcode::initial_state(environment);
     gcode::Lowering lowering = gcode::initial_lowering(environment);
+    core::BlockClock clock = core::start_clock(run.setup.machine);
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
         if (lowering.moved_tilted)
             return core::Error{core::ErrorCode::unsupported,
                                {.line = block.line, .column = 1},
-                               "this block moves in a tilted plane or with a tool that is turned "
-                               "(G68.2, G43.5), and machines that tilt are not checked yet",
+                               "this block moves in a tilted plane or with a tool that is turned, "
+                               "and the machine of the set-up has no rotary axes that could: add "
+                               "them as [[axis]]",
                                std::string(block.file)};
         if (!lowering.other_axis) return std::nullopt;
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
-                           fmt::format("this block moves axis {}, and machines with more than X, Y "
-                                       "and Z are not checked yet",
+                           fmt::format("this block moves axis {}, which the machine of the set-up "
+                                       "does not have: add an [[axis]] of that name to its machine",
                                        gcode::axis_letters[*lowering.other_axis]),
                            std::string(block.file)};
     }
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        const std::vector<core::Event> events = gcode::lower(block, lowering);
+        std::vector<core::Event> events = gcode::lower(block, lowering);
+        if (run.setup.tools.contains(core::ToolNumber{0}))
+            for (core::Event& event : events) take_tool_zero(event);
         if (auto refused = refusal(block)) return refused;
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),
             block.calls, {}};
-        checked.result = core::run_block(run.setup, {block.block, block.is_cycle, events}, state);
+        const core::BlockEvents of_block{block.block, block.is_cycle, events};
+        checked.result = core::run_block(run.setup, of_block, state);
         for (const gcode::Warning& warning : block.warnings) {
             core::Finding finding = remark(run.setup, warning);
             finding.block = block.block;
@@ -142,10 +157,27 @@ struct Runner {
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
+        std::vector<core::BlockTime> timed;
+        core::add_block(clock, of_block, timed);
+        enter(timed);
         return std::nullopt;
     }
 
+    /// The times of blocks whose place in time has become known.
+    void enter(const std::vector<core::BlockTime>& timed) {
+        for (const core::BlockTime& time : timed)
+            core::settle_time(run.blocks[core::value_of(time.block)].result, time);
+    }
+
     void to_the_end(core::SimulatorState& state) {
+        run_blocks(state);
+        std::vector<core::BlockTime> timed;
+        core::stop_clock(clock, timed);
+        enter(timed);
+        run.cycle_time = clock.time;
+    }
+
+    void run_blocks(core::SimulatorState& state) {
         while (true) {
             const auto next = interpreter.next(place);
             if (!next) {
@@ -184,7 +216,6 @@ void look_for_judged_motions(CheckRun& run) {
 
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
-    run.duration = state.time;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
@@ -206,28 +237,38 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto program = gcode::read_program(job.program);
     if (!program) return tl::unexpected(named(program.error(), job.program));
     run.sha256 = sha256_of_file(job.program);
-    FEELER_TRY(SetupFile file, read_setup(job.setup, job.settings));
-    run.assumptions = file.assumptions;
+    FEELER_TRY(SetupFile file,
+               job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
+    const auto dialect = choose_dialect(file, *program, run);
+    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    run.dialect = file.environment.dialect = *dialect;
+    if (const auto whole = complete_setup(file, *program); !whole)
+        return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
+    run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
+                           file.assumptions.end());
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     look_beyond_allowances(run.setup);
-    const auto dialect = choose_dialect(file, *program, run);
-    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
-    run.dialect = file.environment.dialect = *dialect;
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup, gcode::linear_axes(file.environment.start));
+    auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
+    state->spindle.direction = run.setup.spindle_at_start;
+    if (state->spindle.direction != core::SpindleDirection::stopped) state->spindle.speed = 1.0;
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
     Runner{*program, file.environment, run}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
+    run.stock = std::move(state->stock);
+    if (!run.stopped && (job.needs_surface || run.setup.part))
+        run.surface = core::stock_mesh(*run.stock);
+    check_part(run);
     return run;
 }
 

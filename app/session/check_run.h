@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "app/session/stock_file.h"
 #include "app/setup/setup_file.h"
+#include "core/dbm/stock_mesh.h"
 #include "core/sim/simulator.h"
 #include "gcode/interpreter.h"
 
@@ -39,11 +41,15 @@ struct CheckRun {
     core::Verdict verdict = core::Verdict::clear;
     std::optional<core::Error> stopped; // why the program could not be run to its end
     core::Statistics statistics;
-    size_t points = 0;     // of the stock's model at the end
-    size_t lines = 0;      // scan lines
-    double duration = 0.0; // of the program, seconds
-    double removed = 0.0;  // mm3
+    size_t points = 0;       // of the stock's model at the end
+    size_t lines = 0;        // scan lines
+    double cycle_time = 0.0; // of the program, seconds
+    double removed = 0.0;    // mm3
     CheckTimes times;
+    std::optional<core::CutModel> stock;    // what is left of it
+    std::optional<core::StockMesh> surface; // of it, if it was asked for
+    std::optional<SavedStock> saved_stock;
+    std::optional<core::PartComparison> comparison; // if the set-up has a part
 
     bool has_errors() const;
 };
@@ -51,13 +57,15 @@ struct CheckRun {
 /// What a user asks to be checked.
 struct CheckJob {
     std::string program;
-    std::string setup;
+    std::string setup;               // empty: inferred from the program
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
-    ProgramSettings settings; // replace what the set-up says under [program]
+    bool needs_surface = false; // that of the stock is wanted, also without a part
+    ProgramSettings settings;   // replace what the set-up says under [program]
 };
 
-/// Runs a program against its set-up.
+/// Runs a program against its set-up, or against what the program itself tells when `setup` is
+/// empty.
 ///
 /// Errors: files that cannot be read or make no sense. An error inside the program ends the run
 ///         instead: everything before it is in the result.

@@ -92,6 +92,8 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.tool_table, over.tool_table);
     replace(settings.search_path, over.search_path);
     replace(settings.machine_codes, over.machine_codes);
+    replace(settings.tool_at_start, over.tool_at_start);
+    replace(settings.spindle_at_start, over.spindle_at_start);
     return settings;
 }
 

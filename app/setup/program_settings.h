@@ -23,6 +23,8 @@ struct ProgramSettings {
     std::string ini, parameters, tool_table;   // paths
     std::vector<std::string> search_path;
     std::set<int> machine_codes; // M codes of the machine's builder
+    std::optional<core::ToolNumber> tool_at_start;
+    std::optional<core::SpindleDirection> spindle_at_start;
 };
 
 /// Both together; what `over` says wins.

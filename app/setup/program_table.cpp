@@ -49,6 +49,14 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
         if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
         settings.max_blocks = static_cast<uint64_t>(*blocks);
     }
+    if (const auto tool = table.integer("tool_at_start"))
+        settings.tool_at_start = core::ToolNumber{*tool};
+    if (const auto spindle =
+            table.word("spindle_at_start", {"stopped", "clockwise", "counterclockwise"}))
+        settings.spindle_at_start = *spindle == "clockwise" ? core::SpindleDirection::clockwise
+                                    : *spindle == "stopped"
+                                        ? core::SpindleDirection::stopped
+                                        : core::SpindleDirection::counterclockwise;
     read_machine_codes(table, settings.machine_codes);
     table.finish();
     return settings;

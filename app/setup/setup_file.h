@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "app/setup/program_settings.h"
+#include "app/tools/found_tool.h"
 #include "core/base/result.h"
 #include "core/sim/setup.h"
 #include "gcode/environment.h"
@@ -20,6 +22,11 @@ struct SetupFile {
     std::optional<gcode::DialectId> dialect;  // empty: recognise it
     std::set<int> offsets_set;                // the work offsets that the file states, 0 is G54
     std::set<core::OffsetNumber> lengths_set; // the length offsets that it states
+    std::map<core::ToolNumber, FoundTool> library; // of tool_library, for tools that are not here
+    std::string tool_table;                        // of the control, which knows diameters too
+    bool needs_stock = false;                      // it is to be inferred from the program
+    std::optional<double> stock_margin;            // round what is inferred
+    bool is_inferred = false;                      // no file: everything is
     std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
 };
 

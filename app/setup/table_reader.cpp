@@ -62,6 +62,16 @@ void TableReader::refuse(const char* key, const std::string& why) {
     refuse_at(at ? at->source() : table_.source(), fmt::format("{} {}", key, why));
 }
 
+void TableReader::refuse_with(const core::Error& error) {
+    if (!error_) error_ = error;
+}
+
+size_t TableReader::row_length(const char* key) const {
+    const toml::array* rows = table_.get(key) ? table_.get(key)->as_array() : nullptr;
+    const toml::array* first = rows && !rows->empty() ? rows->get(0)->as_array() : nullptr;
+    return first ? first->size() : 0;
+}
+
 void TableReader::need(const char* key) {
     refuse_at(table_.source(), fmt::format("{} is missing", key));
 }

@@ -26,6 +26,10 @@ public:
 
     bool has(const char* key) const { return table_.contains(key); }
     bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
+    bool is_text(const char* key) const { return table_.get(key) && table_.get(key)->is_string(); }
+
+    /// How long the first row of a list of rows is; 0 when there is none.
+    size_t row_length(const char* key) const;
 
     std::optional<double> number(const char* key);
     double number_or(const char* key, double otherwise) { return number(key).value_or(otherwise); }
@@ -60,6 +64,9 @@ public:
 
     /// Notes a mistake of the table as a whole.
     void refuse_whole(const std::string& why) { refuse_at(table_.source(), why); }
+
+    /// Notes a mistake in another file that this one names.
+    void refuse_with(const core::Error& error);
 
     /// Notes that a key is missing.
     void need(const char* key);

@@ -2,65 +2,80 @@
 
 #include <fmt/format.h>
 
+#include "app/setup/tool_holder.h"
+
 namespace app {
 namespace {
-
-using core::ToolShape;
-
-std::optional<ToolShape> shape_named(const std::string& name) {
-    static const std::map<std::string, ToolShape> shapes = {
-        {"flat", ToolShape::flat},      {"ball", ToolShape::ball},
-        {"bull", ToolShape::bull},      {"drill", ToolShape::drill},
-        {"taper", ToolShape::taper},    {"chamfer", ToolShape::chamfer},
-        {"profile", ToolShape::profile}};
-    const auto found = shapes.find(name);
-    if (found == shapes.end()) return std::nullopt;
-    return found->second;
-}
-
-std::vector<core::ConeStep> cones(TableReader& table, const char* key) {
-    std::vector<core::ConeStep> steps;
-    for (const std::vector<double>& row : table.rows(key, 3))
-        steps.push_back({row[0], row[1], row[2]});
-    return steps;
-}
 
 void read_shape(TableReader& table, core::ToolDescription& tool) {
     const auto shape =
         table.word("shape", {"flat", "ball", "bull", "drill", "taper", "chamfer", "profile",
                              "tslot", "dovetail", "lollipop", "threadmill"});
     if (!shape) return table.need("shape");
-    const auto known = shape_named(*shape);
-    if (!known)
-        return table.refuse("shape", fmt::format("\"{}\" is not supported by this version; give "
-                                                 "the outline as a profile instead",
-                                                 *shape));
-    tool.shape = *known;
+    tool.shape = *core::tool_shape_named(*shape);
     tool.diameter = table.number_or("diameter", 0.0);
     tool.flute_length = table.number_or("flute_length", 0.0);
     tool.corner_radius = table.number("corner_radius");
     tool.point_deg = table.number("point_deg");
     tool.angle_deg = table.number("angle_deg");
     tool.tip_diameter = table.number_or("tip_diameter", 0.0);
+    tool.neck_diameter = table.number("neck_diameter");
+    tool.neck_length = table.number("neck_length");
+    tool.pitch = table.number("pitch");
+    tool.teeth = table.integer("teeth");
+    tool.thread_deg = table.number("thread_deg");
     for (const std::vector<double>& row : table.rows("profile", 2))
         tool.outline.push_back({row[0], row[1]});
 }
 
+/// The share of the diameter that an end mill leaves standing when it cannot plunge and nobody says
+/// how much it is.
+constexpr double usual_centre = 0.5;
+
+void read_centre(TableReader& table, core::ToolDescription& tool) {
+    tool.cuts_at_centre = table.boolean("cuts_at_centre").value_or(true);
+    const auto diameter = table.number("centre_diameter");
+    if (diameter && tool.cuts_at_centre)
+        table.refuse("centre_diameter", "is for tools with cuts_at_centre = false");
+    if (!tool.cuts_at_centre)
+        tool.centre_radius = 0.5 * diameter.value_or(usual_centre * tool.diameter);
+}
+
+void note_what_is_open(const core::ToolDescription& tool, std::vector<std::string>& notes) {
+    const int number = core::value_of(tool.number);
+    if (tool.holder.empty())
+        notes.push_back(fmt::format(
+            "tool {} has no holder in the set-up: only what is described is checked", number));
+    if (!tool.cuts_at_centre)
+        notes.push_back(fmt::format("tool {} does not cut within {:g} mm of its axis; this version "
+                                    "cuts as if it did",
+                                    number, tool.centre_radius));
+    if (tool.shape == core::ToolShape::threadmill && !tool.pitch)
+        notes.push_back(fmt::format("tool {} has no pitch: it cuts as the cylinder round its "
+                                    "crests, so the threads are gone after it",
+                                    number));
+}
+
 } // namespace
 
-void read_tool(TableReader& table, SetupFile& file) {
+void read_tool(TableReader& table, BodyContext& context) {
+    SetupFile& file = context.file;
     core::ToolDescription tool;
     const auto number = table.integer("number");
     if (!number) return table.need("number");
     tool.number = core::ToolNumber{*number};
     tool.name = table.string("name").value_or("");
     read_shape(table, tool);
-    tool.shank = cones(table, "shank");
-    tool.holder = cones(table, "holder");
+    tool.shank = read_steps(table, "shank");
+    tool.shank_diameter = table.number("shank_diameter");
+    tool.stick_out = table.number("stick_out");
+    tool.gauge_length = table.number("gauge_length");
+    tool.touched_off = table.boolean("touched_off").value_or(false);
+    read_holder(table, context, tool);
     const auto spindle = table.word("spindle", {"clockwise", "counterclockwise"});
     tool.cuts = spindle == "counterclockwise" ? core::SpindleDirection::counterclockwise
                                               : core::SpindleDirection::clockwise;
-    tool.cuts_at_centre = table.boolean("cuts_at_centre").value_or(true);
+    read_centre(table, tool);
     table.finish();
 
     const auto assembled = core::assemble(tool);
@@ -68,13 +83,8 @@ void read_tool(TableReader& table, SetupFile& file) {
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
-    if (tool.diameter > 0.0) file.environment.tool_diameters[tool.number] = tool.diameter;
-    if (tool.holder.empty())
-        file.assumptions.push_back(fmt::format(
-            "tool {} has no holder in the set-up: only what is described is checked", *number));
-    if (!tool.cuts_at_centre)
-        file.assumptions.push_back(fmt::format(
-            "tool {} does not cut at its centre; this version cuts as if it did", *number));
+    file.environment.tool_diameters[tool.number] = assembled->description.diameter;
+    note_what_is_open(tool, file.assumptions);
 }
 
 void read_length_offset(TableReader& table, SetupFile& file) {

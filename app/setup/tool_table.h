@@ -1,12 +1,11 @@
 #pragma once
 
-#include "app/setup/setup_file.h"
-#include "app/setup/table_reader.h"
+#include "app/setup/body_table.h"
 
 namespace app {
 
 /// Reads one `[[tool]]` into the set-up and into what the control knows of tool lengths.
-void read_tool(TableReader& table, SetupFile& file);
+void read_tool(TableReader& table, BodyContext& context);
 
 /// Reads one `[[length_offset]]`.
 void read_length_offset(TableReader& table, SetupFile& file);

@@ -19,13 +19,25 @@ bool widens_upwards(const RevolvedProfile& flutes) {
         if (e.r1 < e.r0 || e.r1 + e.margin < radius) return false;
         radius = e.r1 + e.margin;
     }
-    return is_convex(flutes);
+    // A ball that nothing stands on narrows in its upper half.
+    return is_convex(flutes) && flutes.elements.back().margin == 0.0;
 }
 
-/// A straight move of a tip in the tool's frame, where the tool stands upright.
+/// A straight move of a tip in the tool's frame, where the tool stands upright, and whether what it
+/// cut is open above.
 struct Move {
     Vec3 from, to;
+    bool open = false;
 };
+
+/// Whether the tip at `p` is near enough to a place of the move: all of a tool made smaller by that
+/// much is then within the tool as it stood there.
+bool passes(const Move& move, const Vec3& p, double near) {
+    const Vec3 q = move.from, by = move.to - move.from;
+    const double length = glm::dot(by, by);
+    const double t = length > 0.0 ? std::clamp(glm::dot(p - q, by) / length, 0.0, 1.0) : 0.0;
+    return glm::distance(p, q + t * by) <= near;
+}
 
 /// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
 bool covers(const Move& move, const Vec3& p, double sideways) {
@@ -47,17 +59,27 @@ struct Search {
     std::vector<Move> moves;
     double sideways;
 
+    bool over(const Move& move, const Vec3& p) const {
+        return passes(move, p, sideways) || (move.open && covers(move, p, sideways));
+    }
+
     /// Both ends over one move: then, both being straight, all between is over it too.
     bool covered(const Vec3& a, const Vec3& b, int depth) const {
         bool ends_covered = false;
         for (const Move& move : moves) {
-            const bool at_a = covers(move, a, sideways), at_b = covers(move, b, sideways);
-            if (at_a && at_b) return true;
+            const bool at_a = over(move, a), at_b = over(move, b);
+            if (at_a && at_b && one_way(move, a, b)) return true;
             ends_covered = ends_covered || at_a || at_b;
         }
         if (!ends_covered || depth == deepest_division) return false;
         const Vec3 middle = 0.5 * (a + b);
         return covered(a, middle, depth + 1) && covered(middle, b, depth + 1);
+    }
+
+    /// Both in the same of two ways: each of them holds between its ends.
+    bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
+        const bool passed = passes(move, a, sideways) && passes(move, b, sideways);
+        return passed || (move.open && covers(move, a, sideways) && covers(move, b, sideways));
     }
 };
 
@@ -84,7 +106,8 @@ Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb
 } // namespace
 
 bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
-    if (question.sideways <= 0.0 || !widens_upwards(question.flutes)) return false;
+    if (question.sideways <= 0.0) return false;
+    const bool upwards = widens_upwards(question.flutes);
     const double height = bounds(question.flutes).max.z;
     const Vec3 up = question.orientation[2];
     const Mat3 tool_from_stock = glm::transpose(question.orientation);
@@ -96,8 +119,9 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
         const CutterSweep& sweep = stock.log[number].sweep;
         if (sweep.orientation[2] != up) continue;
         if (!same_profile(sweep.cutter->flutes, question.flutes)) continue;
-        const Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to};
-        if (std::min(move.from.z, move.to.z) + height >= top) search.moves.push_back(move);
+        Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to};
+        move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
+        search.moves.push_back(move);
     }
     return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
 }

@@ -54,15 +54,42 @@ bool faces_down(const RevolvedProfile& profile, size_t i) {
     return e.r0 > below.r1 + below.margin;
 }
 
+/// Whether the element shows a flat face upwards, round a narrower piece above.
+bool faces_up(const RevolvedProfile& profile, size_t i) {
+    if (i + 1 == profile.elements.size()) return false;
+    const ProfileElement& above = profile.elements[i + 1];
+    return above.margin == 0.0 && above.r0 < profile.elements[i].r1;
+}
+
 /// What joins a piece, raised by `by`, to the narrower one below: the points that deep lie within
 /// the chord of the circle round the inner edge of the step.
-std::optional<ProfileElement> inner_collar(const ProfileElement& e, const ProfileElement& below,
+std::optional<ProfileElement> lower_collar(const ProfileElement& e, const ProfileElement& below,
                                            double by) {
     const double rim = below.r1 + below.margin;
     const double top = std::min(e.z0 + by, e.z1);
     if (!(e.z0 < top) || e.margin > 0.0) return std::nullopt;
     return ProfileElement{e.z0, std::max(0.0, rim - by), top, std::min(rim, radius_at(e, top)),
                           0.0};
+}
+
+/// The same between a piece, lowered by `by`, and the narrower one above.
+std::optional<ProfileElement> upper_collar(const ProfileElement& e, const ProfileElement& above,
+                                           double by) {
+    const double foot = std::max(e.z1 - by, e.z0);
+    if (!(foot < e.z1) || e.margin > 0.0) return std::nullopt;
+    return ProfileElement{foot, std::min(above.r0, radius_at(e, foot)), e.z1,
+                          std::max(0.0, above.r0 - by), 0.0};
+}
+
+/// Whether a cone takes up where a rounding below it has its direction, and reaches over its top.
+bool continues_round(const ProfileElement& round, const ProfileElement& cone) {
+    constexpr double rounding = 1e-11; // mm; what is computed by sine and cosine meets no better
+    const double out = cone.r0 - round.r0, up = cone.z0 - round.z0;
+    const double along = std::hypot(cone.r1 - cone.r0, cone.z1 - cone.z0);
+    const double turned = out * (cone.r1 - cone.r0) + up * (cone.z1 - cone.z0);
+    return cone.margin == 0.0 && cone.z1 >= round.z0 + round.margin && out > 0.0
+           && std::abs(std::hypot(out, up) - round.margin) <= rounding
+           && std::abs(turned) <= rounding * along;
 }
 
 } // namespace
@@ -81,7 +108,8 @@ Aabb bounds(const RevolvedProfile& profile) {
 bool is_convex(const RevolvedProfile& profile) {
     // Walking up the outline, the angle from the axis may only turn inwards.
     double last_slope = infinity, last_r = 0.0, last_z = -infinity;
-    for (const ProfileElement& e : profile.elements) {
+    for (size_t i = 0; i < profile.elements.size(); ++i) {
+        const ProfileElement& e = profile.elements[i];
         if (e.margin > 0.0) { // from the flat or the tip tangentially to upright
             if (last_z != -infinity) return false;
             last_slope = 0.0;
@@ -89,7 +117,10 @@ bool is_convex(const RevolvedProfile& profile) {
             last_z = e.z1;
             continue;
         }
-        if (last_z != -infinity && (e.z0 != last_z || e.r0 != last_r)) return false;
+        const bool tangent = i > 0 && profile.elements[i - 1].margin > 0.0
+                             && continues_round(profile.elements[i - 1], e);
+        if (tangent) last_slope = infinity;
+        if (!tangent && last_z != -infinity && (e.z0 != last_z || e.r0 != last_r)) return false;
         const double slope = e.z1 > e.z0 ? (e.r1 - e.r0) / (e.z1 - e.z0) : infinity;
         if (slope > last_slope) return false;
         last_slope = slope;
@@ -118,13 +149,19 @@ RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by) {
         const ProfileElement& e = profile.elements[i];
         const bool raised = faces_down(profile, i);
         const double z0 = raised ? e.z0 + by : e.z0;
+        const bool lowered = faces_up(profile, i);
+        const double z1 = lowered ? e.z1 - by : e.z1;
         const double narrower = convex ? by * widening(e) : by;
-        const auto kept = e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, narrower, z0, e.z1);
+        const auto kept = e.margin > 0.0 ? inner_round(e, by) : inner_cone(e, narrower, z0, z1);
         if (i > 0 && raised) {
-            const auto collar = inner_collar(e, profile.elements[i - 1], by);
+            const auto collar = lower_collar(e, profile.elements[i - 1], by);
             if (collar) inner.elements.push_back(*collar);
         }
         if (kept) inner.elements.push_back(*kept);
+        if (lowered) {
+            const auto collar = upper_collar(e, profile.elements[i + 1], by);
+            if (collar) inner.elements.push_back(*collar);
+        }
     }
     return inner;
 }

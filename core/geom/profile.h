@@ -32,7 +32,8 @@ bool is_convex(const RevolvedProfile& profile);
 RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by);
 
 /// A profile that holds every point deeper than `by` in the given one, and none outside it: its
-/// sides and its faces seen from below are moved inwards, its upper face is left alone.
+/// sides, its faces seen from below and the upper faces of its steps are moved inwards; the face at
+/// its top is left alone.
 RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by);
 
 /// A profile that holds every point nearer than `by` to the given one.

@@ -7,6 +7,7 @@
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
 #include "core/sim/leg_check.h"
+#include "core/sim/loose_pieces.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
@@ -20,9 +21,10 @@ struct SimulatorState {
     AxisPosition position;          // where the last motion ended
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    double time = 0.0; // seconds since the program's start
+    PieceWatch pieces; // of the stock
+    double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
-    StockHints hints;
+    CheckMemory memory;
     std::set<std::string> assumptions; // what had to be taken for granted on the way
     bool told_unknown_start = false;
     bool told_unchecked_tool = false; // of the tool that is in the spindle now
@@ -42,8 +44,8 @@ const char* name_of(BlockMotion motion);
 struct BlockResult {
     BlockMotion motion = BlockMotion::none;
     std::optional<ToolNumber> tool;
-    double time = 0.0;     // of its start, seconds
-    double duration = 0.0; // seconds
+    double time = 0.0;     // of its start, seconds, at full speed unless settle_time was called
+    double duration = 0.0; // seconds, likewise
     double removed = 0.0;  // mm3
     bool checked = true;   // false: it moves, but nothing can be said about its clearance
     Verdict verdict = Verdict::clear;

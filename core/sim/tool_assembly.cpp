@@ -1,121 +1,19 @@
 #include "core/sim/tool_assembly.h"
 
-#include <numbers>
+#include <cmath>
 
 #include <fmt/format.h>
+
+#include "core/sim/tool_head.h"
 
 namespace core {
 namespace {
 
-tl::unexpected<Error> refuse(const ToolDescription& tool, const std::string& why) {
-    return fail(ErrorCode::invalid_value, fmt::format("tool {}: {}", value_of(tool.number), why));
-}
+constexpr double same_length = 0.001; // mm; catalogues round
 
 bool is_size(double value) { return std::isfinite(value) && value > 0.0; }
 
-/// The upright side of the flutes, from `z0` to their end.
-ProfileElement side(const ToolDescription& tool, double z0) {
-    return {z0, 0.5 * tool.diameter, tool.flute_length, 0.5 * tool.diameter, 0.0};
-}
-
-/// A point or flank from radius `tip` at z = 0 out to the full radius, then the upright side.
-Result<RevolvedProfile> coned(const ToolDescription& tool, double tip, double from_axis_deg) {
-    if (!(from_axis_deg > 0.0 && from_axis_deg < 90.0))
-        return refuse(tool, "the flank's angle must lie between 0 and 90 degrees");
-    const double r = 0.5 * tool.diameter;
-    if (!(tip >= 0.0 && tip < r)) return refuse(tool, "tip_diameter must be below diameter");
-    const double steep = std::tan(from_axis_deg * std::numbers::pi / 180.0);
-    const double height = (r - tip) / steep;
-    // A flank longer than the flutes ends with them, before it reaches the full diameter.
-    if (height >= tool.flute_length)
-        return RevolvedProfile{
-            {{0.0, tip, tool.flute_length, tip + tool.flute_length * steep, 0.0}}};
-    return RevolvedProfile{{{0.0, tip, height, r, 0.0}, side(tool, height)}};
-}
-
-/// How far a rounding made of cones stands off the round, mm.
-constexpr double rounding_sag = 0.0025;
-
-/// A rounded edge: a ball of radius `corner` about a circle of radius `disc`, up to the end of the
-/// flutes. Where they end below the ball's upper half, the lower one is made of cones.
-RevolvedProfile rounded(const ToolDescription& tool, double disc, double corner) {
-    RevolvedProfile profile;
-    if (tool.flute_length >= 2.0 * corner) {
-        profile.elements.push_back({corner, disc, corner, disc, corner});
-    } else {
-        const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / corner));
-        const int cones = std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::pi / step)));
-        double z = 0.0, r = disc;
-        for (int i = 1; i <= cones; ++i) {
-            const double angle = 0.5 * std::numbers::pi * i / cones;
-            const double above = i == cones ? corner : corner * (1.0 - std::cos(angle));
-            const double out = i == cones ? disc + corner : disc + corner * std::sin(angle);
-            profile.elements.push_back({z, r, above, out, 0.0});
-            z = above, r = out;
-        }
-    }
-    if (tool.flute_length > corner) profile.elements.push_back(side(tool, corner));
-    return profile;
-}
-
-Result<RevolvedProfile> ball(const ToolDescription& tool) {
-    const double r = 0.5 * tool.diameter;
-    if (tool.flute_length < r)
-        return refuse(tool, "flute_length is shorter than the ball's radius");
-    return rounded(tool, 0.0, r);
-}
-
-Result<RevolvedProfile> bull(const ToolDescription& tool) {
-    if (!tool.corner_radius) return refuse(tool, "shape \"bull\" needs corner_radius");
-    const double corner = *tool.corner_radius;
-    const double disc = 0.5 * tool.diameter - corner;
-    if (corner == 0.0) return RevolvedProfile{{side(tool, 0.0)}};
-    if (!is_size(corner) || disc < 0.0)
-        return refuse(tool, "corner_radius must lie between 0 and half the diameter");
-    if (tool.flute_length <= corner)
-        return refuse(tool, "flute_length is shorter than corner_radius");
-    return rounded(tool, disc, corner);
-}
-
-Result<RevolvedProfile> outlined(const ToolDescription& tool) {
-    if (tool.outline.size() < 2) return refuse(tool, "profile needs at least two [r, z] points");
-    RevolvedProfile profile;
-    for (size_t i = 0; i < tool.outline.size(); ++i) {
-        const auto [r, z] = tool.outline[i];
-        if (!std::isfinite(r) || !std::isfinite(z) || r < 0.0)
-            return refuse(tool, "profile points need a finite z and an r that is not negative");
-        if (i == 0) {
-            if (z != 0.0) return refuse(tool, "profile must begin at the tip, z = 0");
-            continue;
-        }
-        const auto [r_below, z_below] = tool.outline[i - 1];
-        if (z < z_below) return refuse(tool, "profile must go from the tip up");
-        if (z > z_below && (r > 0.0 || r_below > 0.0))
-            profile.elements.push_back({z_below, r_below, z, r, 0.0});
-    }
-    if (profile.empty()) return refuse(tool, "profile encloses nothing");
-    return profile;
-}
-
-Result<RevolvedProfile> flutes(const ToolDescription& tool) {
-    if (tool.shape == ToolShape::profile) return outlined(tool);
-    if (!is_size(tool.diameter)) return refuse(tool, "diameter must be above 0");
-    if (!is_size(tool.flute_length)) return refuse(tool, "flute_length must be above 0");
-    switch (tool.shape) {
-    case ToolShape::ball:
-        return ball(tool);
-    case ToolShape::bull:
-        return bull(tool);
-    case ToolShape::drill:
-        return coned(tool, 0.0, 0.5 * tool.point_deg.value_or(118.0));
-    case ToolShape::taper:
-    case ToolShape::chamfer:
-        if (!tool.angle_deg) return refuse(tool, "taper and chamfer tools need angle_deg");
-        return coned(tool, 0.5 * tool.tip_diameter, *tool.angle_deg);
-    default:
-        return RevolvedProfile{{side(tool, 0.0)}};
-    }
-}
+bool differ(double a, double b) { return std::abs(a - b) > same_length; }
 
 /// Stacks cones upwards from `z`, which is left at their top.
 Result<RevolvedProfile> stack(const ToolDescription& tool, const std::vector<ConeStep>& steps,
@@ -124,14 +22,80 @@ Result<RevolvedProfile> stack(const ToolDescription& tool, const std::vector<Con
     for (const ConeStep& step : steps) {
         if (!is_size(step.length) || !is_size(std::max(step.lower_diameter, step.upper_diameter))
             || !(std::min(step.lower_diameter, step.upper_diameter) >= 0.0))
-            return refuse(tool, fmt::format("{} needs [lower diameter, upper diameter, length], "
-                                            "all above 0",
-                                            key));
+            return tool_error(tool, fmt::format("{} needs [lower diameter, upper diameter, "
+                                                "length], all above 0",
+                                                key));
         profile.elements.push_back(
             {z, 0.5 * step.lower_diameter, z + step.length, 0.5 * step.upper_diameter, 0.0});
         z += step.length;
     }
     return profile;
+}
+
+double height(const std::vector<ConeStep>& steps) {
+    double sum = 0.0;
+    for (const ConeStep& step : steps) sum += step.length;
+    return sum;
+}
+
+/// The tip's distance from the holder's face, if anything says it besides the shank itself.
+std::optional<double> stated_stick_out(const ToolDescription& tool) {
+    if (tool.stick_out) return tool.stick_out;
+    if (tool.gauge_length && !tool.holder.empty()) return *tool.gauge_length - height(tool.holder);
+    return std::nullopt;
+}
+
+/// The cylinder between the head and the holder's face when no shank is described.
+Result<std::vector<ConeStep>> filling_shank(const ToolDescription& tool, const ToolHead& head) {
+    const auto stick_out = stated_stick_out(tool);
+    if (!stick_out || !differ(*stick_out, head.length)) return std::vector<ConeStep>{};
+    if (*stick_out < head.length)
+        return tool_error(tool,
+                          fmt::format("flutes and neck are {:g} mm long, but {} leaves {:g} "
+                                      "mm below the holder",
+                                      head.length, tool.stick_out ? "stick_out" : "gauge_length",
+                                      *stick_out));
+    double diameter = tool.diameter > 0.0 ? tool.diameter : head.top_diameter;
+    if (tool.neck_diameter && !tool.neck_length) diameter = *tool.neck_diameter;
+    if (tool.shank_diameter) diameter = *tool.shank_diameter;
+    return std::vector<ConeStep>{{diameter, diameter, *stick_out - head.length}};
+}
+
+/// Compares what is said twice.
+Result<void> check_lengths(const ToolDescription& tool, double to_holder, double to_gauge_line) {
+    if (tool.stick_out && differ(*tool.stick_out, to_holder))
+        return tool_error(tool, fmt::format("stick_out is {:g} mm, but flutes, neck and shank are "
+                                            "{:g} mm long",
+                                            *tool.stick_out, to_holder));
+    if (!tool.gauge_length) return {};
+    if (!tool.holder.empty() && differ(*tool.gauge_length, to_gauge_line))
+        return tool_error(tool, fmt::format("gauge_length is {:g} mm, but flutes, shank and holder "
+                                            "are {:g} mm long",
+                                            *tool.gauge_length, to_gauge_line));
+    if (*tool.gauge_length < to_gauge_line - same_length)
+        return tool_error(tool, fmt::format("gauge_length is {:g} mm, but flutes and shank alone "
+                                            "are {:g} mm long",
+                                            *tool.gauge_length, to_gauge_line));
+    return {};
+}
+
+/// Whether the tool is made to cut under an edge with the upper face of its head, or beside it.
+bool cuts_undercuts(ToolShape shape) {
+    return shape == ToolShape::tslot || shape == ToolShape::dovetail
+           || shape == ToolShape::threadmill;
+}
+
+/// Lets the flutes reach a little into the slender part above them. A contact is told from a crash
+/// by a head that is made smaller, and what shows that its upper face is free and comes down with
+/// it is the narrower piece above.
+void bare_upper_face(const ToolDescription& tool, const RevolvedProfile& above,
+                     RevolvedProfile& flutes) {
+    constexpr double stub = 0.2; // mm; more than twice of what a head is shrunk by
+    const ProfileElement& top = flutes.elements.back();
+    const double usual = tool.neck_diameter.value_or(0.5 * tool.diameter);
+    const double r = above.empty() ? 0.5 * usual : above.elements.front().r0;
+    const double z = bounds(top).max.z;
+    if (r > 0.0 && r < top.r1) flutes.elements.push_back({z, r, z + stub, r, 0.0});
 }
 
 } // namespace
@@ -142,21 +106,38 @@ const char* name_of(PartKind kind) {
         return "flutes";
     case PartKind::shank:
         return "shank";
-    default:
+    case PartKind::holder:
         return "holder";
+    case PartKind::nose:
+        return "nose";
+    default:
+        return "machine";
     }
 }
 
 Result<ToolAssembly> assemble(const ToolDescription& description) {
+    FEELER_TRY(ToolHead head, tool_head(description));
     ToolAssembly tool{.description = description, .parts = {}, .length = 0.0};
-    FEELER_TRY(RevolvedProfile cutting, flutes(description));
-    double z = bounds(cutting).max.z;
-    tool.parts.push_back({PartKind::flutes, std::move(cutting)});
-    FEELER_TRY(RevolvedProfile shank, stack(description, description.shank, "shank", z));
+    if (description.shank.empty()) {
+        FEELER_TRY(tool.description.shank, filling_shank(description, head));
+    }
+    double z = head.length;
+    FEELER_TRY(RevolvedProfile steps, stack(description, tool.description.shank, "shank", z));
+    const double to_holder = z;
     FEELER_TRY(RevolvedProfile holder, stack(description, description.holder, "holder", z));
+    if (auto wrong = check_lengths(description, to_holder, z); !wrong)
+        return tl::unexpected(wrong.error());
+    RevolvedProfile shank = std::move(head.behind);
+    shank.elements.insert(shank.elements.end(), steps.elements.begin(), steps.elements.end());
+    if (cuts_undercuts(description.shape))
+        bare_upper_face(description, shank.empty() ? holder : shank, head.flutes);
+    tool.parts.push_back({PartKind::flutes, std::move(head.flutes)});
     if (!shank.empty()) tool.parts.push_back({PartKind::shank, std::move(shank)});
     if (!holder.empty()) tool.parts.push_back({PartKind::holder, std::move(holder)});
-    tool.length = z;
+    tool.length = holder.empty() ? description.gauge_length.value_or(z) : z;
+    if (description.touched_off) tool.length = 0.0;
+    if (tool.description.diameter == 0.0)
+        tool.description.diameter = 2.0 * bounds(tool.parts[0].profile).max.x;
     return tool;
 }
 

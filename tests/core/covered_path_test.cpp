@@ -8,6 +8,7 @@ namespace {
 const RevolvedProfile end_mill{{{0.0, 5.0, 20.0, 5.0, 0.0}}};
 const RevolvedProfile slimmer{{{0.0, 4.9, 20.0, 4.9, 0.0}}};
 const RevolvedProfile dovetail{{{0.0, 5.0, 20.0, 2.0, 0.0}}};
+const RevolvedProfile bare_ball{{{4.0, 0.0, 4.0, 0.0, 4.0}}};
 
 /// A block of 100 x 100 x 30 with its top at Z 0, cut along a slot from X-20 to X60 at Y50, Z-5.
 struct Slot {
@@ -33,7 +34,7 @@ TEST(OwnCut, HoldsTheWayBackAndUp) {
 TEST(OwnCut, EndsWhereTheCutEnded) {
     const Slot slot;
     EXPECT_FALSE(slot.holds({60, 50, -5}, {60.1, 50, -5}));
-    EXPECT_FALSE(slot.holds({60, 50, -5}, {60, 50, -5.001}));
+    EXPECT_FALSE(slot.holds({60, 50, -5}, {60, 50, -5.03}));
     EXPECT_FALSE(slot.holds({60, 50, -5}, {20, 50.1, -5}));
     EXPECT_FALSE(slot.holds({60, 49.9, -5}, {60, 49.9, 30}));
 }
@@ -56,8 +57,22 @@ TEST(OwnCut, IsNoneForFlutesThatGetSlimmerUpwards) {
     EXPECT_FALSE(Slot(dovetail).holds({60, 50, -5}, {60, 50, 10}, dovetail));
 }
 
+TEST(OwnCut, IsClosedAboveABallThatNothingStandsOn) {
+    EXPECT_FALSE(Slot(bare_ball, -8.0).holds({60, 50, -8}, {60, 50, 10}, bare_ball));
+}
+
 TEST(OwnCut, IsClosedAboveWhereTheFlutesEndBelowTheTop) {
-    EXPECT_FALSE(Slot(end_mill, -25.0).holds({60, 50, -25}, {0, 50, -25}));
+    EXPECT_FALSE(Slot(end_mill, -25.0).holds({60, 50, -25}, {60, 50, 0}));
+    EXPECT_FALSE(Slot(end_mill, -25.0).holds({60, 50, -24.97}, {0, 50, -24.97}));
+}
+
+TEST(OwnCut, HoldsTheWayBackOfAnyFlutes) {
+    for (const RevolvedProfile& flutes : {dovetail, bare_ball, end_mill}) {
+        const Slot slot(flutes, -25.0);
+        EXPECT_TRUE(slot.holds({60, 50, -25}, {-20, 50.01, -25.01}, flutes));
+        EXPECT_FALSE(slot.holds({60, 50, -25}, {-20, 50, -25.03}, flutes));
+        EXPECT_FALSE(slot.holds({60, 50, -25}, {-20, 50, -24.97}, flutes));
+    }
 }
 
 } // namespace

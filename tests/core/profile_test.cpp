@@ -24,8 +24,21 @@ const RevolvedProfile short_pieces{
     {{0, 4, 1, 4, 0}, {1, 4, 1.02, 5, 0}, {1.02, 5, 1.05, 3, 0}, {1.05, 3, 8, 3.5, 0}}};
 const RevolvedProfile dovetail{{{0, 10, 5, 6, 0}, {5, 4, 20, 4, 0}}};
 
-const std::vector<RevolvedProfile> convex_ones = {flat, ball, bull, drill, taper, chamfer};
-const std::vector<RevolvedProfile> others = {slot, steps, waist, short_pieces, dovetail};
+// A ball of 1 mm whose flank leaves it as a tangent at 3-4-5, 0.4 mm above the tip.
+const RevolvedProfile round_taper{
+    {{1, 0, 1, 0, 1}, {0.4, 0.8, 12.4, 9.8, 0}, {12.4, 9.8, 20, 9.8, 0}}};
+const RevolvedProfile round_bull{{{1, 2, 1, 2, 1}, {0.2, 2.6, 3.2, 6.6, 0}}};
+const RevolvedProfile thin_disc{{{0, 2, 3, 2, 0}, {3, 8, 3.08, 8, 0}, {3.08, 2, 9, 2, 0}}};
+const RevolvedProfile teeth{{{0, 4, 0.5, 4, 0},
+                             {0.5, 4, 1, 5, 0},
+                             {1, 5, 1.25, 5, 0},
+                             {1.25, 5, 1.75, 4, 0},
+                             {1.75, 4, 2.25, 4, 0}}};
+
+const std::vector<RevolvedProfile> convex_ones = {flat,  ball,    bull,        drill,
+                                                  taper, chamfer, round_taper, round_bull};
+const std::vector<RevolvedProfile> others = {slot,     steps,     waist, short_pieces,
+                                             dovetail, thin_disc, teeth};
 
 std::vector<RevolvedProfile> all() {
     std::vector<RevolvedProfile> profiles = convex_ones;
@@ -67,6 +80,9 @@ TEST(Profile, IsConvexOnlyWithoutSeamsThatTurnOutwards) {
     EXPECT_FALSE(is_convex({{{0, 2, 5, 3, 0}, {5, 3, 9, 5, 0}}})); // steeper above
     EXPECT_FALSE(is_convex({{{0, 2, 5, 3, 0}, {9, 1, 9, 1, 1}}})); // a ball above a cone
     EXPECT_TRUE(is_convex({{{0, 2, 5, 3, 0}, {5, 3, 9, 1, 0}}}));
+    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.8, 12.4, 9.9, 0}}}));   // no tangent
+    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.81, 12.4, 9.81, 0}}})); // beside the round
+    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.8, 1.9, 1.925, 0}}}));  // the ball is higher
 }
 
 TEST(ProfileShrunkWithin, KeepsItsDistanceFromTheSurface) {
@@ -121,6 +137,12 @@ TEST(ProfileShrunkAround, ClearsTheWallsAndTheFloorThatItTouched) {
         for (const Vec3& q : outline(profile, 0.1))
             EXPECT_GE(q.z < top ? outside(inner, q) : 1.0, 0.03) << q.x << ' ' << q.z;
     }
+}
+
+TEST(ProfileShrunkAround, ClearsTheCeilingOfAnUndercut) {
+    const RevolvedProfile inner = shrunk_around(slot, 0.05);
+    for (double r = 4.1; r < 10.0; r += 0.1) EXPECT_GE(outside(inner, {r, 0, 4}), 0.04) << r;
+    EXPECT_LE(outside(inner, {3.9, 0, 4}), 0.0); // the neck goes through
 }
 
 TEST(ProfileGrown, HoldsWhatIsNearer) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "app/setup/setup_file.h"
+#include "gcode/interpreter.h"
+
+namespace app {
+
+/// A set-up for a program about which nothing else is known: no fixtures, a machine without limits,
+/// its zero high above the program's, all work offsets at one place.
+///
+/// Errors: of the files that the settings name.
+core::Result<SetupFile> bare_setup(const ProgramSettings& settings);
+
+/// Adds what a set-up leaves open and the program tells: tools from its comments and from the
+/// set-up's library, the stock from the cutting moves; of a bare set-up also tools of which nothing
+/// is known, and a spindle that is switched on by hand. What is there stays. Every guess becomes an
+/// assumption.
+///
+/// Errors: invalid_value when there is no stock and the program cuts nothing that it could be
+///         inferred from; a tool table that cannot be read.
+core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program);
+
+} // namespace app

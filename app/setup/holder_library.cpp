@@ -1,0 +1,104 @@
+#include "app/setup/holder_library.h"
+
+#include <cassert>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/setup/outline.h"
+#include "app/setup/shipped_holders.h"
+#include "app/setup/table_reader.h"
+
+namespace app {
+namespace {
+
+std::vector<core::ConeStep> read_cones(TableReader& table) {
+    std::vector<core::ConeStep> cones;
+    for (const std::vector<double>& row : table.rows("cones", 3)) {
+        const double wide = std::max(row[0], row[1]), narrow = std::min(row[0], row[1]);
+        if (!(row[2] > 0.0 && wide > 0.0 && narrow >= 0.0))
+            table.refuse("cones", "needs [lower diameter, upper diameter, length], all above 0");
+        cones.push_back({row[0], row[1], row[2]});
+    }
+    return cones;
+}
+
+std::vector<core::ConeStep> read_profile(TableReader& table) {
+    auto cones = cones_of_outline(table.rows("profile", 2));
+    if (cones) return *std::move(cones);
+    table.refuse("profile", cones.error().message);
+    return {};
+}
+
+void read_holder(TableReader& table, HolderLibrary& library) {
+    const std::string name = table.string("name").value_or("");
+    table.string("description");
+    if (name.empty()) return table.need("name");
+    if (table.has("cones") == table.has("profile"))
+        return table.refuse_whole("needs either cones or profile");
+    std::vector<core::ConeStep> cones =
+        table.has("cones") ? read_cones(table) : read_profile(table);
+    if (cones.empty()) table.refuse_whole("has no height");
+    table.finish();
+    if (!library.emplace(name, std::move(cones)).second)
+        table.refuse("name", fmt::format("\"{}\" is there twice", name));
+}
+
+core::Result<HolderLibrary> read_library(const toml::table& parsed) {
+    HolderLibrary library;
+    std::optional<core::Error> error;
+    TableReader root(parsed, "holder library", error);
+    for (TableReader& table : root.tables("holder", "[[holder]]")) read_holder(table, library);
+    root.finish();
+    if (error) return tl::unexpected(*error);
+    return library;
+}
+
+core::Result<HolderLibrary> parsed_library(const std::string& path) {
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path, failure))
+        return core::fail(core::ErrorCode::io, "there is no such file");
+    try {
+        return read_library(toml::parse_file(path));
+    } catch (const toml::parse_error& error) {
+        const toml::source_position at = error.source().begin;
+        return core::fail(core::ErrorCode::syntax, std::string(error.description()),
+                          {at.line, at.column, 0});
+    }
+}
+
+HolderLibrary shipped() {
+    HolderLibrary all;
+    for (const ShippedFile& file : shipped_holders()) {
+        auto library = read_library(toml::parse(file.text));
+        assert(library); // a test reads every one of them
+        if (library) all.merge(*library);
+    }
+    return all;
+}
+
+} // namespace
+
+core::Result<HolderLibrary> read_holder_library(const std::string& path) {
+    auto library = parsed_library(path);
+    if (!library && library.error().file.empty()) library.error().file = path;
+    return library;
+}
+
+const HolderLibrary& shipped_holder_library() {
+    static const HolderLibrary library = shipped();
+    return library;
+}
+
+std::string names_like(const HolderLibrary& library, const std::string& name) {
+    std::vector<std::string> like, all;
+    const std::string start = name.substr(0, name.find('-'));
+    for (const auto& [known, cones] : library) {
+        all.push_back(known);
+        if (known.starts_with(start)) like.push_back(known);
+    }
+    return fmt::format("{}", fmt::join(like.empty() ? all : like, " "));
+}
+
+} // namespace app

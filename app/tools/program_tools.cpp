@@ -1,0 +1,222 @@
+#include "app/tools/program_tools.h"
+
+#include <charconv>
+#include <deque>
+
+#include <fmt/format.h>
+
+#include "app/tools/line_comments.h"
+#include "app/tools/tool_comment.h"
+#include "gcode/axes.h"
+
+namespace app {
+namespace {
+
+using core::ToolNumber;
+using core::ToolShape;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The whole number that begins at a place of a text.
+std::optional<int> whole_at(const std::string& text, size_t at) {
+    int value = 0;
+    const auto [behind, failure] =
+        std::from_chars(text.data() + at, text.data() + text.size(), value);
+    if (failure != std::errc() || behind == text.data() + at) return std::nullopt;
+    return value;
+}
+
+/// The tool that a block of code calls or defines.
+std::optional<int> tool_called(const std::string& code) {
+    for (const char* words : {"TOOLCALL", "TOOLDEF"})
+        if (const size_t at = code.find(words); at != std::string::npos)
+            return whole_at(code, at + std::string(words).size());
+    for (size_t at = code.find('T'); at != std::string::npos; at = code.find('T', at + 1)) {
+        if (at > 0 && !is_digit(code[at - 1]) && code[at - 1] != '.') continue;
+        const size_t value = at + 1 + (at + 1 < code.size() && code[at + 1] == '=');
+        if (value < code.size() && is_digit(code[value])) return whole_at(code, value);
+    }
+    return std::nullopt;
+}
+
+/// The radius in Klartext's TOOL DEF 3 L+0 R+5, if it is there and above 0.
+std::optional<double> radius_defined(const std::string& code) {
+    const size_t tool = code.find("TOOLDEF");
+    if (tool == std::string::npos) return std::nullopt;
+    size_t at = code.find('R', tool);
+    if (at == std::string::npos) return std::nullopt;
+    at += 1 + (at + 1 < code.size() && code[at + 1] == '+');
+    double radius = 0.0;
+    std::from_chars(code.data() + at, code.data() + code.size(), radius);
+    return radius > 0.0 ? std::optional(radius) : std::nullopt;
+}
+
+bool moves(const std::string& code) {
+    return code.find_first_of("XYZ") != std::string::npos
+           && code.find_first_of("0123456789") != std::string::npos;
+}
+
+/// Comments on the way to the tool that they describe.
+struct Scan {
+    gcode::LengthUnit unit;
+    ProgramTools found{};
+    std::deque<std::pair<ToolComment, size_t>> waiting{}; // since the last motion
+    std::optional<int> selected{};
+    bool calls_tools = false;
+    size_t moves_since_call = 0;
+
+    void comment(const std::string& words, size_t line);
+    void code(const std::string& code, size_t line);
+    void note(int number, const ToolComment& comment, size_t line);
+    std::optional<FoundTool> tool_of(const ToolComment& comment, size_t line) const;
+    std::optional<FoundTool> best_waiting() const;
+};
+
+/// Whether a comment without the form of a list is a tool's name and no sentence about something.
+bool is_name(const ToolText& text) {
+    constexpr size_t longest = 14, longest_without_unit = 5;
+    if (text.words > longest || text.prose) return false;
+    if (text.shape == ToolShape::chamfer && text.angle_deg && !text.diameter) return true;
+    return text.sized || (text.pointed && text.words <= longest_without_unit);
+}
+
+std::optional<FoundTool> Scan::tool_of(const ToolComment& comment, size_t line) const {
+    if (!comment.whole && !is_name(comment.text)) return std::nullopt;
+    FoundTool named;
+    named.source = fmt::format("the comment in line {}", line);
+    ToolText text = comment.text;
+    named.has_shape = text.shape.has_value();
+    if (!text.shape && (text.stated || comment.whole)) text.shape = ToolShape::flat;
+    // A V-bit is known by its angle; how wide it is at the top matters little.
+    constexpr double usual_bit = 6.0;
+    if (text.shape == ToolShape::chamfer && text.angle_deg && !text.diameter) {
+        text.diameter = usual_bit;
+        named.has_diameter = false;
+    }
+    const auto tool = tool_of_text(text);
+    if (!tool) return std::nullopt;
+    named.tool = *tool;
+    if (comment.flank_angle && tool->shape == ToolShape::chamfer)
+        named.tool.angle_deg = text.angle_deg;
+    return named;
+}
+
+/// The best of the comments before a call: the last that says it all, else two that do together.
+std::optional<FoundTool> Scan::best_waiting() const {
+    std::optional<FoundTool> weak;
+    for (auto it = waiting.rbegin(); it != waiting.rend(); ++it) {
+        if (it->first.number) continue;
+        const auto tool = tool_of(it->first, it->second);
+        if (tool && tool->has_shape) return tool;
+        if (tool && !weak) weak = tool;
+    }
+    for (size_t i = waiting.size(); i-- > 1;) {
+        ToolComment both = waiting[i].first;
+        const ToolText& before = waiting[i - 1].first.text;
+        constexpr size_t most_words = 4; // of each
+        if (both.number || waiting[i - 1].first.number) continue;
+        if (std::max(both.text.words, before.words) > most_words) continue;
+        if (!both.text.shape) both.text.shape = before.shape;
+        if (!both.text.diameter) both.text.diameter = before.diameter;
+        if (const auto tool = tool_of(both, waiting[i].second)) return tool;
+    }
+    return weak;
+}
+
+void Scan::note(int number, const ToolComment& comment, size_t line) {
+    auto tool = tool_of(comment, line);
+    if (!tool || number < 0) return;
+    tool->tool.number = ToolNumber{number};
+    const auto known = found.tools.find(ToolNumber{number});
+    const bool better = known == found.tools.end() || (tool->has_shape && !known->second.has_shape);
+    if (better) found.tools.insert_or_assign(ToolNumber{number}, *tool);
+}
+
+void Scan::comment(const std::string& words, size_t line) {
+    ToolComment read = read_tool_comment(words, unit);
+    const bool says_something = read.number || read.text.shape || read.text.diameter;
+    if (!says_something) return;
+    if (read.number && read.text.diameter) {
+        note(*read.number, read, line);
+        return;
+    }
+    // A number alone belongs to the sizes beside it, in whatever order they come.
+    if (read.number && !read.text.shape) {
+        for (const auto& [other, place] : waiting)
+            if (other.text.diameter && !other.number) note(*read.number, other, place);
+        return;
+    }
+    if (selected && moves_since_call == 0 && waiting.empty()
+        && !found.tools.contains(ToolNumber{*selected}) && tool_of(read, line)) {
+        note(*selected, read, line);
+        return;
+    }
+    constexpr size_t most = 12;
+    waiting.emplace_back(std::move(read), line);
+    if (waiting.size() > most) waiting.pop_front();
+}
+
+void Scan::code(const std::string& code, size_t line) {
+    if (const auto number = tool_called(code)) {
+        selected = *number;
+        calls_tools = calls_tools || *number != 0;
+        moves_since_call = 0;
+        auto tool = best_waiting();
+        if (tool && !found.tools.contains(ToolNumber{*number})) {
+            tool->tool.number = ToolNumber{*number};
+            found.tools.emplace(tool->tool.number, *tool);
+        }
+        if (const auto radius = radius_defined(code)) {
+            FoundTool& defined = found.tools[ToolNumber{*number}];
+            if (defined.source.empty()) {
+                defined.source = fmt::format("TOOL DEF in line {}", line);
+                defined.tool.number = ToolNumber{*number};
+                defined.tool.diameter = 2.0 * gcode::to_mm(*radius, unit);
+            }
+        }
+        if (tool) waiting.clear();
+        return;
+    }
+    if (!moves(code)) return;
+    if (!calls_tools && !found.in_spindle) found.in_spindle = best_waiting();
+    ++moves_since_call;
+    if (calls_tools) waiting.clear();
+}
+
+/// G20, G70, G700 and the like in a block of code, or the unit of a Klartext program.
+std::optional<gcode::LengthUnit> unit_in(const std::string& code) {
+    using gcode::LengthUnit;
+    if (code.find("BEGINPGM") != std::string::npos)
+        return code.ends_with("INCH") ? LengthUnit::inch : LengthUnit::mm;
+    for (size_t at = code.find('G'); at != std::string::npos; at = code.find('G', at + 1)) {
+        if (at > 0 && !is_digit(code[at - 1]) && code[at - 1] != '.') continue;
+        const auto value = whole_at(code, at + 1);
+        if (value == 20 || value == 70 || value == 700) return LengthUnit::inch;
+        if (value == 21 || value == 71 || value == 710) return LengthUnit::mm;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+gcode::LengthUnit unit_of_program(const gcode::Program& program, gcode::LengthUnit otherwise) {
+    for (size_t line = 1; line <= program.line_count(); ++line)
+        if (const auto unit = unit_in(parts_of_line(program.line(line)).code)) return *unit;
+    return otherwise;
+}
+
+ProgramTools tools_of_program(const gcode::Program& program, gcode::LengthUnit unit) {
+    Scan scan{unit};
+    for (size_t line = 1; line <= program.line_count(); ++line) {
+        const LineParts parts = parts_of_line(program.line(line));
+        for (const std::string& comment : parts.comments) scan.comment(comment, line);
+        if (!parts.code.empty()) scan.code(parts.code, line);
+    }
+    if (!scan.calls_tools && !scan.found.in_spindle) scan.found.in_spindle = scan.best_waiting();
+    if (!scan.calls_tools && !scan.found.in_spindle && scan.found.tools.size() == 1)
+        scan.found.in_spindle = scan.found.tools.begin()->second;
+    if (scan.calls_tools) scan.found.in_spindle.reset();
+    return scan.found;
+}
+
+} // namespace app

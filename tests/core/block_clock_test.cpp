@@ -1,0 +1,201 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/sim/block_clock.h"
+
+namespace core {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Machine mill(double acceleration, double rapid = 12'000.0) {
+    Machine machine;
+    for (size_t i = 0; i < 3; ++i) {
+        machine.axes[i].rapid = rapid;
+        machine.axes[i].acceleration = acceleration;
+    }
+    return machine;
+}
+
+AxisPosition at(const Vec3& p) {
+    AxisPosition position{};
+    for (int i = 0; i < 3; ++i) position[static_cast<size_t>(i)] = p[i];
+    return position;
+}
+
+Motion feed(const Vec3& from, const Vec3& to, double rate) {
+    return {.kind = MotionKind::feed, .from = at(from), .to = at(to), .arc = {}, .feed = rate};
+}
+
+Motion rapid(const Vec3& from, const Vec3& to) {
+    return {.kind = MotionKind::rapid, .from = at(from), .to = at(to), .arc = {}};
+}
+
+std::vector<BlockTime> times_of(const Machine& machine,
+                                const std::vector<std::vector<Event>>& blocks) {
+    BlockClock clock = start_clock(machine);
+    std::vector<BlockTime> done;
+    for (size_t i = 0; i < blocks.size(); ++i)
+        add_block(clock, {BlockIndex{static_cast<uint32_t>(i)}, false, blocks[i]}, done);
+    stop_clock(clock, done);
+    return done;
+}
+
+TEST(BlockClock, GivesEveryBlockAPlaceInTime) {
+    const auto times = times_of(mill(1000), {{},
+                                             {feed({0, 0, 0}, {100, 0, 0}, 6000)},
+                                             {},
+                                             {Dwell{2.5}},
+                                             {rapid({100, 0, 0}, {100, 0, 40})},
+                                             {SpindleChange{}}});
+    ASSERT_EQ(times.size(), 6u);
+    const double expected[] = {0.0, 1.1, 0.0, 2.5, 0.2 + 0.2, 0.0};
+    double now = 0.0;
+    for (size_t i = 0; i < times.size(); ++i) {
+        EXPECT_EQ(times[i].block, BlockIndex{static_cast<uint32_t>(i)});
+        EXPECT_NEAR(times[i].duration, expected[i], 1e-12) << i;
+        EXPECT_NEAR(times[i].start, now, 1e-12) << i;
+        now += expected[i];
+    }
+}
+
+TEST(BlockClock, StopsForDwellsToolsAndTheSpindle) {
+    const Motion first = feed({0, 0, 0}, {10, 0, 0}, 6000),
+                 second = feed({10, 0, 0}, {20, 0, 0}, 6000);
+    const auto duration = [&](const std::vector<Event>& between) {
+        double sum = 0.0;
+        for (const BlockTime& time : times_of(mill(1000), {{first}, between, {second}}))
+            sum += time.duration;
+        return sum;
+    };
+    EXPECT_NEAR(duration({}), 0.2 + 0.1, 1e-12);
+    EXPECT_NEAR(duration({LengthOffsetChange{}}), 0.2 + 0.1, 1e-12);
+    EXPECT_NEAR(duration({ToolChange{}}), 0.4, 1e-12);
+    EXPECT_NEAR(duration({SpindleChange{}}), 0.4, 1e-12);
+    EXPECT_NEAR(duration({Dwell{1.0}}), 1.4, 1e-12);
+    EXPECT_NEAR(duration({PathModeChange{Blending::exact_stop, {}}}), 0.4, 1e-12);
+    EXPECT_NEAR(duration({PathModeChange{Blending::exact_path, {}}}), 0.3, 1e-12);
+}
+
+TEST(BlockClock, RoundsCornersByTheStatedTolerance) {
+    const auto duration = [&](std::optional<double> tolerance) {
+        return times_of(mill(1000), {{PathModeChange{Blending::continuous, tolerance}},
+                                     {feed({0, 0, 0}, {10, 0, 0}, 6000)},
+                                     {feed({10, 0, 0}, {10, 10, 0}, 6000)}})[1]
+            .duration;
+    };
+    // v^2 = 8 P a / sqrt 2 at a right angle of axes alike, from 100 mm/s.
+    const auto expected = [](double tolerance) {
+        const double v = std::sqrt(8.0 * tolerance * 1000.0 / std::sqrt(2.0));
+        return 0.1 + (100.0 - v) / 1000.0 + (10.0 - 5.0 - (10'000.0 - v * v) / 2000.0) / 100.0;
+    };
+    EXPECT_NEAR(duration(0.01), expected(0.01), 1e-9);
+    EXPECT_NEAR(duration({}), expected(default_blend_tolerance), 1e-9);
+}
+
+TEST(BlockClock, CountsFullSpeedWhereNoAccelerationIsStated) {
+    const auto times =
+        times_of({}, {{feed({0, 0, 0}, {30, 40, 0}, 600)}, {rapid({30, 40, 0}, {30, 40, 100})}});
+    EXPECT_NEAR(times[0].duration, 5.0, 1e-12);
+    EXPECT_NEAR(times[1].duration, 100.0 / assumed_rapid * 60.0, 1e-12);
+}
+
+TEST(BlockClock, RunsTheAxesOfADogLegOneByOne) {
+    Machine machine = mill(1000);
+    machine.rapid = RapidStyle::dogleg;
+    const auto times = times_of(machine, {{rapid({0, 0, 0}, {100, 3, 0})}});
+    EXPECT_NEAR(times[0].duration, 100.0 / 200.0 + 200.0 / 1000.0, 1e-12);
+    const auto both =
+        times_of(machine, {{feed({0, 0, 0}, {100, 0, 0}, 6000)}, {rapid({100, 0, 0}, {0, 0, 0})}});
+    EXPECT_NEAR(both[0].duration, 1.1, 1e-12);
+}
+
+TEST(BlockClock, PutsWitnessesWhereTheyArePassed) {
+    const auto times = times_of(mill(1000), {{feed({0, 0, 0}, {100, 0, 0}, 6000), Dwell{1.0},
+                                              feed({100, 0, 0}, {0, 0, 0}, 12'000)}});
+    // At full speed: 1 s there, 1 s of waiting, half a second back; then 1.1, 1 and 0.7.
+    const BlockTime& time = times[0];
+    EXPECT_NEAR(time.duration, 1.1 + 1.0 + 0.7, 1e-12);
+    EXPECT_NEAR(time.moment(0.5 / 2.5), 0.55, 1e-12);
+    EXPECT_NEAR(time.moment(1.5 / 2.5), 1.6, 1e-12);
+    EXPECT_NEAR(time.moment(2.25 / 2.5), 2.1 + 0.35, 1e-12);
+    EXPECT_NEAR(time.moment(1.0), 2.8, 1e-12);
+    BlockResult result;
+    result.duration = 2.5;
+    result.pairs.push_back({.time = 1.5});
+    settle_time(result, time);
+    EXPECT_NEAR(result.pairs[0].time, 1.6, 1e-12);
+    EXPECT_NEAR(result.duration, 2.8, 1e-12);
+}
+
+/// The way of the axes over time, with which a random arc is driven, sampled finely: no axis is
+/// faster or accelerates more than it may, and the whole length is covered.
+TEST(PathMotion, DrivesArcsWithinTheLimitsOfEveryAxis) {
+    std::mt19937_64 random(11);
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);
+    };
+    double tightest = 0.0;
+    for (int round = 0; round < 200; ++round) {
+        Machine machine = mill(1000);
+        for (size_t i = 0; i < 3; ++i) {
+            machine.axes[i].acceleration = between(300, 3000);
+            machine.axes[i].rapid = between(3000, 20'000);
+        }
+        const int normal = static_cast<int>(random() % 3);
+        const double radius = between(0.5, 40), angle = between(-7, 7), start = between(-4, 4);
+        const double growth = round % 4 == 0 ? between(0.7, 1.4) : 1.0, rise = between(-5, 5);
+        const auto place = [&](double share) {
+            Vec3 p(1, 2, 3);
+            const double r = radius * (1.0 + share * (growth - 1.0));
+            p[(normal + 1) % 3] += r * std::cos(start + share * angle);
+            p[(normal + 2) % 3] += r * std::sin(start + share * angle);
+            p[normal] += share * rise;
+            return p;
+        };
+        Motion motion = feed(place(0), place(1), between(500, 20'000));
+        motion.kind = MotionKind::arc;
+        motion.arc = ArcPath{normal, {1, 2, 3}, angle};
+        const auto path = path_motion(motion, machine);
+        ASSERT_TRUE(path);
+        TimePlan plan{.limits = limits_of(machine), .waiting = {}, .last = {}};
+        std::vector<MotionTime> done;
+        add_motion(plan, *path, 0, done);
+        come_to_rest(plan, done);
+        constexpr int steps = 2000;
+        std::vector<double> when;
+        std::vector<Vec3> where;
+        for (int k = 0; k <= steps; ++k) {
+            const double share = 0.5 * (1.0 - std::cos(pi * k / steps)); // finer at the ends
+            when.push_back(done[0].moment(share * path->length));
+            where.push_back(place(share));
+        }
+        for (size_t k = 2; k < when.size(); ++k) {
+            const double t1 = when[k - 1] - when[k - 2], t2 = when[k] - when[k - 1];
+            const Vec3 v1 = (where[k - 1] - where[k - 2]) / t1, v2 = (where[k] - where[k - 1]) / t2;
+            for (int i = 0; i < 3; ++i) {
+                const MachineAxis& axis = machine.axes[static_cast<size_t>(i)];
+                const double a = std::abs(v2[i] - v1[i]) / (0.5 * (t1 + t2));
+                ASSERT_LE(a, *axis.acceleration * 1.01) << round << ' ' << k;
+                ASSERT_LE(std::abs(v2[i]), *axis.rapid / 60.0 * (1.0 + 1e-6)) << round;
+                tightest = std::max(tightest, a / *axis.acceleration);
+            }
+        }
+        ASSERT_NEAR(done[0].moment(path->length), done[0].duration, 1e-9);
+    }
+    EXPECT_GT(tightest, 0.95);
+}
+
+TEST(PathMotion, KnowsNothingOfAMotionFromAnywhere) {
+    Motion motion = feed({0, 0, 0}, {1, 0, 0}, 100);
+    motion.from[0].reset();
+    EXPECT_FALSE(path_motion(motion, mill(1000)));
+    motion = feed({0, 0, 0}, {0, 0, 0}, 100);
+    EXPECT_FALSE(path_motion(motion, mill(1000)));
+}
+
+} // namespace
+} // namespace core
