@@ -59,7 +59,7 @@ Finding finding_of(const Setup& setup, const CutModel& stock, const PieceMap& ma
 
 Aabb box_of_cuts(const CutModel& stock, size_t first) {
     Aabb box;
-    for (size_t i = first; i < stock.log.size(); ++i) box.extend(stock.log[i].box);
+    for (size_t i = first; i < stock.log.size(); ++i) box.extend(stock.log.box(i));
     return box;
 }
 
@@ -69,9 +69,7 @@ PieceWatch watch_of(const CutModel& stock) {
     PieceWatch watch;
     // A box or a cylinder is one piece; a mesh may be several.
     if (!std::holds_alternative<SolidMesh>(stock.solid.shape)) return watch;
-    const std::vector<StockPiece> pieces = watch.map.pieces(stock);
-    watch.known = pieces.size();
-    for (size_t i = 1; i < pieces.size(); ++i) watch.loose.push_back(pieces[i].box);
+    watch.known = watch.map.pieces(stock).size();
     return watch;
 }
 
@@ -82,15 +80,11 @@ std::vector<Finding> watch_pieces(const Setup& setup, const CutModel& stock, siz
         return findings;
     const Aabb box = box_of_cuts(stock, first);
     watch.map.note_cut(stock, box);
-    const Aabb near = box.grown(2.0 * stock.lines.grid.spacing);
-    const bool touches_loose = std::any_of(watch.loose.begin(), watch.loose.end(),
-                                           [&](const Aabb& b) { return overlaps(b, near); });
-    if (!touches_loose && cannot_have_parted(stock, box)) return findings;
+    if (cannot_have_parted(stock, box)) return findings;
     const std::vector<StockPiece> pieces = watch.map.pieces(stock);
     size_t fresh = pieces.size() > watch.known ? pieces.size() - watch.known : 0;
     watch.known = pieces.size();
-    watch.loose.clear();
-    for (size_t i = 1; i < pieces.size(); ++i) watch.loose.push_back(pieces[i].box);
+    const Aabb near = box.grown(2.0 * stock.lines.grid.spacing);
     // What a cut parts lies beside it; the smaller pieces are the ones that come loose.
     for (size_t i = pieces.size(); i-- > 1 && fresh > 0;) {
         if (!overlaps(pieces[i].box, near)) continue;

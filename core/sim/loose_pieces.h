@@ -11,8 +11,7 @@ namespace core {
 /// What is known about the pieces of a stock while it is cut. A plain value.
 struct PieceWatch {
     PieceMap map;
-    size_t known = 1;             // pieces, without crumbs
-    std::vector<Aabb> loose = {}; // boxes of all but the largest
+    size_t known = 1; // pieces, without crumbs
 };
 
 /// The watch over an uncut stock.
