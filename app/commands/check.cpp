@@ -61,7 +61,8 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup, "Set-up file (TOML); else it is inferred from the program, and said");
+    command.add_option("--setup", options->setup,
+                       "Set-up file (TOML); else it is inferred from the program, and said");
     command
         .add_option("--allowance", options->allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")

@@ -195,6 +195,19 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     return file;
 }
 
+core::Result<SetupFile> infer_setup(const gcode::Program& program,
+                                    const ProgramSettings& settings) {
+    FEELER_TRY(SetupFile file, bare_setup(settings));
+    if (!file.dialect) file.dialect = gcode::recognise(program).dialect;
+    if (!gcode::dialect(*file.dialect).supported)
+        return core::fail(core::ErrorCode::unsupported,
+                          fmt::format("the dialect {} is not supported by this version",
+                                      gcode::dialect(*file.dialect).name));
+    file.environment.dialect = *file.dialect;
+    if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
+    return file;
+}
+
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
     const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));

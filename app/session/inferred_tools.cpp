@@ -69,9 +69,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                                     assembled.error().message, tool.diameter);
         assembled = plain_tool(tool);
     }
-    const bool in_table = file.is_inferred && entry != file.environment.length_offsets.end();
-    if (!in_table)
-        file.environment.tool_lengths[tool.number] = file.is_inferred ? 0.0 : assembled->length;
+    file.environment.tool_lengths[tool.number] = assembled->length;
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
     file.setup.tools.insert_or_assign(tool.number, *std::move(assembled));
     return whole.assumed;
