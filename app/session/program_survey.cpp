@@ -71,13 +71,15 @@ double size_of(const std::map<core::ToolNumber, double>& sizes,
     return found == sizes.end() ? 0.0 : found->second;
 }
 
-/// The height at which rapids travel farthest in all; to 0.1 mm.
+/// The highest plane, to 0.1 mm, in which rapids travel much: a fifth of the way of the busiest
+/// one.
 std::optional<double> plane_of(const std::map<long, double>& travel) {
-    const auto most =
-        std::max_element(travel.begin(), travel.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == travel.end()) return std::nullopt;
-    return 0.1 * static_cast<double>(most->first);
+    constexpr double much = 0.2;
+    double most = 0.0;
+    for (const auto& [height, way] : travel) most = std::max(most, way);
+    for (auto plane = travel.rbegin(); plane != travel.rend(); ++plane)
+        if (plane->second >= much * most) return 0.1 * static_cast<double>(plane->first);
+    return std::nullopt;
 }
 
 /// What a program says beside its motions.
@@ -143,13 +145,20 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         }
     });
     result.retract = plane_of(travel);
-    visit_events(program, environment, [&](const ProgramEvent& event) {
-        const auto* motion = std::get_if<Motion>(&event.event);
-        if (!motion || motion->kind == MotionKind::rapid) return;
-        const auto path = path_of(*motion, size_of(tools.lengths, event.tool));
-        if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
-        note_cut(*path, size_of(tools.radii, event.tool), result);
-    });
+    const auto look_at_cuts = [&] {
+        visit_events(program, environment, [&](const ProgramEvent& event) {
+            const auto* motion = std::get_if<Motion>(&event.event);
+            if (!motion || motion->kind == MotionKind::rapid) return;
+            const auto path = path_of(*motion, size_of(tools.lengths, event.tool));
+            if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
+            note_cut(*path, size_of(tools.radii, event.tool), result);
+        });
+    };
+    look_at_cuts();
+    if (!result.feeds && result.retract) { // rapids travel at the depth of the cuts
+        result.retract.reset();
+        look_at_cuts();
+    }
     return result;
 }
 
