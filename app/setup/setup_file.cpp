@@ -51,6 +51,7 @@ void apply_settings(const ProgramSettings& settings, SetupFile& file,
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
     file.setup.tool_at_start = settings.tool_at_start;
+    file.speed_by_hand = settings.speed_by_hand.value_or(false);
     file.setup.spindle_at_start =
         settings.spindle_at_start.value_or(core::SpindleDirection::stopped);
     file.assumptions.insert(file.assumptions.end(), notes->begin(), notes->end());
