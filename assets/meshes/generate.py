@@ -92,9 +92,9 @@ def write_roughed(name):
 def write_vise6():
     """Origin: on the bed, at the fixed jaw's face, in the middle of the jaws' width."""
     width, front, back = 152.0, 330.0, 75.0
-    foot = [(-76, -73), (76, -73), (76, -48), (60, -48), (60, 0), (-60, 0), (-60, -48), (-76, -48)]
+    foot = [(-76, -73), (76, -73), (76, -45), (60, -45), (60, 0), (-60, 0), (-60, -45), (-76, -45)]
     body = prism(foot, front + back, lambda u, v, w: (u, back - w, v))
-    write_checked("vise6-body.stl", body, (152 * 25 + 120 * 48) * (front + back))
+    write_checked("vise6-body.stl", body, (152 * 28 + 120 * 45) * (front + back))
     fixed = [(0, 0), (60, 0), (60, 25), (45, 45), (0, 45)]
     write_checked("vise6-fixed-jaw.stl", along_x(fixed, width), (60 * 45 - 15 * 20 / 2) * width)
     moving = [(-85, 0), (0, 0), (0, 45), (-45, 45), (-85, 25)]
