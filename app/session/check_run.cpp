@@ -107,7 +107,6 @@ void take_tool_zero(core::Event& event) {
     if (change && !change->tool) change->tool = core::ToolNumber{0};
 }
 
-<<<<<<< HEAD
 /// The fixtures that are moved before a block.
 std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
     std::vector<core::Event> events;
@@ -118,11 +117,11 @@ std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::B
         if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
     }
     return events;
-=======
+}
+
 void take_any_speed(core::Event& event) {
     auto* spindle = std::get_if<core::SpindleChange>(&event);
     if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
->>>>>>> tools
 }
 
 /// A run while it goes on.
@@ -158,18 +157,12 @@ struct Runner {
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-<<<<<<< HEAD
         std::vector<core::Event> events = fixture_events(run.setup, block);
         for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
-        if (run.setup.tools.contains(core::ToolNumber{0}))
-            for (core::Event& event : events) take_tool_zero(event);
-=======
-        std::vector<core::Event> events = gcode::lower(block, lowering);
         for (core::Event& event : events) {
             if (run.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
             if (speed_by_hand) take_any_speed(event);
         }
->>>>>>> tools
         if (auto refused = refusal(block)) return refused;
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),

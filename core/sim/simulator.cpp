@@ -53,13 +53,8 @@ struct BlockRun {
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-<<<<<<< HEAD
-        const bool runs = tool() && turns_to_cut(state.spindle, *tool());
-        return feeds && runs ? FluteUse::cutting : FluteUse::not_cutting;
-=======
         const bool cuts = tool() && turns_to_cut(state.spindle, *tool());
         return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
->>>>>>> timing
     }
 
     void carry_out(const Motion& motion);
