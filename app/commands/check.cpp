@@ -17,7 +17,7 @@ struct Options {
     std::string program, setup, output, stock, comparison;
     ProgramArguments reading;
     std::string format = "text";
-    std::optional<double> allowance, mesh_size;
+    std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
 };
@@ -64,6 +64,15 @@ core::Result<void> save_results(const Options& options, CheckRun& run) {
     return write_output(options.comparison, bytes);
 }
 
+/// Before much memory is taken it is said how much.
+void say_memory(double bytes) {
+    constexpr double much = 1e9;
+    if (bytes >= much)
+        std::fputs(
+            fmt::format("the model of the stock takes about {:.1f} GB\n", 1e-9 * bytes).c_str(),
+            stderr);
+}
+
 ExitCode check(const Options& options) {
     const auto safe = check_files(options);
     if (!safe) {
@@ -76,8 +85,16 @@ ExitCode check(const Options& options) {
         return ExitCode::failed;
     }
     const bool needs_surface = !options.stock.empty() || !options.comparison.empty();
-    auto run = run_check({options.program, options.setup, options.allowance, options.mesh_size,
-                          needs_surface, *settings});
+    std::optional<double> memory_limit;
+    if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
+    auto run = run_check({.program = options.program,
+                          .setup = options.setup,
+                          .allowance = options.allowance,
+                          .mesh_size = options.mesh_size,
+                          .memory_limit = memory_limit,
+                          .needs_surface = needs_surface,
+                          .before_model = say_memory,
+                          .settings = *settings});
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
@@ -110,6 +127,10 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300));
+    command
+        .add_option("--memory-limit", options->memory_limit,
+                    "What the model of the stock may take, MB (8590 unless said)")
+        ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))

@@ -1,11 +1,13 @@
 #include "app/setup/body_table.h"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/text_lines.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
@@ -169,6 +171,41 @@ void read_envelope(TableReader& table, BodyContext& context, const Placement& pl
     table.finish();
 }
 
+core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
+    if (const auto* shape = std::get_if<core::ConvexShape>(&body)) return core::posed(*shape, by);
+    return core::solid_mesh(moved(*std::get<core::SolidMesh>(body).mesh, by));
+}
+
+/// The number of an M code such as "M61"; empty for a text that is none.
+std::optional<int> m_code(const std::string& text) {
+    if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != 'M') return {};
+    const auto number = number_in(std::string_view(text).substr(1));
+    if (!number || *number < 0.0 || *number > 99999.0 || *number != std::floor(*number)) return {};
+    return static_cast<int>(*number);
+}
+
+/// A `[[fixture.move]]` of the fixture that stands last; where it goes, if it is not taken away.
+std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last) {
+    core::FixtureMove move{.from = last};
+    if (const auto line = table.integer("line")) {
+        if (*line < 1) table.refuse("line", "counts from 1");
+        move.line = static_cast<uint32_t>(std::max(*line, 1));
+    }
+    if (const auto code = table.string("code")) {
+        move.code = m_code(*code);
+        if (!move.code) table.refuse("code", "must be an M code, as in \"M61\"");
+    }
+    if (table.has("line") == table.has("code")) table.need("one of line, code");
+    const bool removed = table.boolean("remove").value_or(false);
+    if (removed && (table.has("at") || table.has("rotate_deg")))
+        table.refuse("remove", "takes the fixture away: it has no place then");
+    if (!removed) move.to = setup.fixtures.size();
+    const core::Transform to = read_pose(table);
+    table.finish();
+    setup.fixture_moves.push_back(move);
+    return removed ? std::nullopt : std::optional(to);
+}
+
 core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file)
@@ -282,8 +319,20 @@ void read_fixture(TableReader& table, BodyContext& context) {
     if (!body) return;
     fixture.body = *body;
     context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
+    std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
     table.finish();
-    setup.fixtures.push_back(std::move(fixture));
+    setup.fixtures.push_back(fixture);
+    const core::Transform body_from_stock = (stock_from_frame * frame_from_body).inverse();
+    size_t last = setup.fixtures.size() - 1;
+    for (TableReader& move : moves) {
+        const auto to = read_move(move, setup, last);
+        if (!to) continue;
+        core::Fixture there = fixture;
+        there.is_there = false;
+        there.body = moved(fixture.body, stock_from_frame * *to * body_from_stock);
+        last = setup.fixtures.size();
+        setup.fixtures.push_back(std::move(there));
+    }
 }
 
 } // namespace app

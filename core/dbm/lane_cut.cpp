@@ -134,7 +134,7 @@ HWY_INLINE void unite(Stretch& all, const RowMask& valid, const Row& lower, cons
 
 /// Where lines lie, seen along them, from the path of a capsule.
 struct Beside {
-    Row g, beyond, half; // along the path; w^2; nearly w, as it only says which moment to look at
+    Row g, beyond; // along the path; w^2
     RowMask met;
 };
 
@@ -145,11 +145,12 @@ HWY_INLINE Beside beside(const CapsuleLanes& c, const Row& u, double v) {
     const Row e = ou * c.cos_v - ov * c.cos_u;
     const Row beyond = (row_of(c.radius) - e) * (e + c.radius);
     const Row past = g - within_move(g * c.per_length) * c.length;
-    return {g, beyond, rough_root(beyond), at_most(past * past, beyond)};
+    return {g, beyond, at_most(past * past, beyond)};
 }
 
-HWY_INLINE Row moment(const CapsuleLanes& c, const Beside& at, double by_half, double offset) {
-    return within_move(at.g * c.per_length + at.half * by_half + offset);
+HWY_INLINE Row moment(const CapsuleLanes& c, const Beside& at, const Row& half, double by_half,
+                      double offset) {
+    return within_move(at.g * c.per_length + half * by_half + offset);
 }
 
 HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Stretch& all) {
@@ -158,24 +159,27 @@ HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Stretch&
         const Row past = at.g - t * c.length;
         return root(at.beyond - past * past);
     };
-    const Row t = moment(c, at, c.low_by_half, c.low_at);
+    // Where the surface is lowest or highest, a little off in time is nothing in height.
+    const Row half = rough_root(at.beyond);
+    const Row t = moment(c, at, half, c.low_by_half, c.low_at);
     const Row low = t * c.by_a + c.from_a - deep(t);
     if (c.opens_up) {
         unite(all, at.met, low, row_of(c.high_end));
         return;
     }
-    const Row last = moment(c, at, c.high_by_half, c.high_at);
+    const Row last = moment(c, at, half, c.high_by_half, c.high_at);
     unite(all, at.met, low, last * c.by_a + c.from_a + deep(last));
 }
 
 HWY_INLINE void add_upright(const CapsuleLanes& c, const Row& u, double v, Stretch& all) {
     const Beside at = beside(c, u, v);
-    const Row low = moment(c, at, c.low_by_half, c.low_at) * c.by_a + (c.from_a + c.low_end);
+    const Row half = root(at.beyond);
+    const Row low = moment(c, at, half, c.low_by_half, c.low_at) * c.by_a + (c.from_a + c.low_end);
     if (c.opens_up) {
         unite(all, at.met, low, row_of(c.high_end));
         return;
     }
-    const Row last = moment(c, at, c.high_by_half, c.high_at);
+    const Row last = moment(c, at, half, c.high_by_half, c.high_at);
     unite(all, at.met, low, last * c.by_a + (c.from_a + c.high_end));
 }
 
@@ -227,10 +231,17 @@ Stretch stretches_one_by_one(const LanePlan& plan, const double* u, double v, ui
     return {load(out.lower.data()), load(out.upper.data())};
 }
 
+/// Ends are put on a lattice of 2.3e-10 mm: two moves that leave the same surface then leave the
+/// same bits, and neither cuts a rounding error from the other's.
+HWY_INLINE Row on_lattice(const Row& x) {
+    constexpr double per_mm = 4294967296.0; // 2^32
+    const Row scaled = x * per_mm;
+    return each<Row>([&](size_t k) HWY_ATTR { return hn::Round(scaled.part[k]); }) * (1.0 / per_mm);
+}
+
 /// What the plan sweeps on a row of lines; those that are not wanted may come out empty.
 HWY_INLINE Stretch stretches_of(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
-    if (!plan.by_lanes) return stretches_one_by_one(plan, u, v, wanted);
-    Stretch all = no_stretch();
+    Stretch all = plan.by_lanes ? no_stretch() : stretches_one_by_one(plan, u, v, wanted);
     const Row at_u = load(u);
     for (size_t i = 0; i < plan.balls; ++i) {
         const CapsuleLanes& c = plan.ball[i];
@@ -238,7 +249,7 @@ HWY_INLINE Stretch stretches_of(const LanePlan& plan, const double* u, double v,
     }
     for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
     for (size_t i = 0; i < plan.across; ++i) add_across(plan.level[i], at_u, v, all);
-    return all;
+    return {on_lattice(all.lower), on_lattice(all.upper)};
 }
 
 HWY_ATTR void stretches(const LanePlan& plan, const double* u, double v, uint32_t wanted,

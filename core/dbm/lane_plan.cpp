@@ -138,6 +138,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.level[plan.across++] = across_lanes(sweep, axis, e);
         } else {
+            plan.balls = plan.uprights = plan.across = 0;
             return plan;
         }
     }

@@ -46,7 +46,8 @@ struct BlockRun {
     /// What checks the legs of a motion, with whatever is in the spindle.
     LegCheck leg_check(FluteUse use) {
         static const ToolAssembly nothing;
-        return {setup,           tool() ? *tool() : nothing, use, block.block, state.memory,
+        return {setup,           tool() ? *tool() : nothing, use,
+                block.block,     state.fixtures_there,       state.memory,
                 state.statistics};
     }
 
@@ -62,6 +63,7 @@ struct BlockRun {
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
     void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
+    void carry_out(const FixtureChange& change);
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
@@ -175,6 +177,13 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
 }
 
+void BlockRun::carry_out(const FixtureChange& change) {
+    state.fixtures_there[change.fixture] = change.is_there;
+    const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
+    if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, result.pairs);
+}
+
 void BlockRun::check_tool_change() {
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, setup.machine, 0.0);
@@ -243,12 +252,13 @@ const char* name_of(BlockMotion motion) {
 }
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
-    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
+    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
     if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
+    for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
     state.pieces = watch_of(state.stock);
     return state;
 }
