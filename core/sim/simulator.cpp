@@ -272,7 +272,8 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
         std::visit([&](const auto& e) { run.carry_out(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
-    for (Finding& finding : watch_pieces(setup, state.stock, cuts_before, state.pieces))
+    for (Finding& finding :
+         watch_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
         run.add(std::move(finding));
     run.conclude();
     state.time += run.result.duration;

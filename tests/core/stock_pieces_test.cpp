@@ -245,7 +245,12 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
     saw.setup.fixtures.push_back({"near", clamp({-10, 10, -20}, {0, 30, -10})});
-    found = saw.run(sawing);
+    saw.setup.fixtures.back().is_there = false;
+    found = saw.run(stepped);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
+    saw.setup.fixtures.back().is_there = true;
+    found = saw.run(stepped);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NE(found[0].message.find("near still touches it"), std::string::npos);
 }
