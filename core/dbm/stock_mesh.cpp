@@ -6,7 +6,6 @@
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
 #include "core/dbm/surface_point.h"
-#include "core/geom/nearest_surface.h"
 #include "core/geom/triangle_distance.h"
 
 namespace core {
@@ -282,26 +281,45 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edg
     from_own_triangles_.push_back(away[k]);
 }
 
-/// The distance of the samples from the mesh: no more than from their own triangles, so those that
-/// are far from these are looked at first.
+/// The quads at each vertex, one after the other.
+struct QuadsAtVertices {
+    std::vector<uint32_t> first, quads;
+
+    explicit QuadsAtVertices(const Mesh& mesh) : first(mesh.vertices.size() + 1, 0) {
+        const auto for_corners = [&](const auto& act) {
+            for (size_t t = 0; t < mesh.triangles.size(); ++t)
+                for (const uint32_t corner : mesh.triangles[t])
+                    act(corner, static_cast<uint32_t>(t / 2));
+        };
+        for_corners([&](uint32_t corner, uint32_t) { ++first[corner + 1]; });
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        quads.resize(first.back());
+        std::vector<uint32_t> next(first.begin(), first.end() - 1);
+        for_corners([&](uint32_t corner, uint32_t quad) { quads[next[corner]++] = quad; });
+    }
+};
+
+/// How far the samples are from the mesh at most: no more than from their own triangles, or from
+/// those that touch these; where a vertex stands outside of its cell, the sample lies on the
+/// latter.
 void Contouring::measure_error() {
     std::vector<uint32_t> order;
-    for (uint32_t k = 0; k < from_own_triangles_.size(); ++k)
-        if (from_own_triangles_[k] > slack) order.push_back(k);
+    for (uint32_t k = 0; k < from_own_triangles_.size(); ++k) order.push_back(k);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return from_own_triangles_[a] > from_own_triangles_[b];
     });
-    if (!from_own_triangles_.empty())
-        result_.error = std::min(
-            slack, *std::max_element(from_own_triangles_.begin(), from_own_triangles_.end()));
-    if (order.empty()) return;
-    const TriangleBvh triangles = build_bvh(result_.mesh);
+    const Mesh& mesh = result_.mesh;
+    const QuadsAtVertices near(mesh);
     for (const uint32_t k : order) {
-        if (from_own_triangles_[k] <= result_.error) return;
-        const Vec3& place = result_.samples[k].place;
-        const double limit = from_own_triangles_[k] * (1.0 + 1e-9);
-        result_.error = std::max(
-            result_.error, std::min(limit, nearest_surface(triangles, place, limit).distance));
+        double away = from_own_triangles_[k];
+        if (away <= result_.error) return;
+        for (const uint32_t t : {2 * k, 2 * k + 1})
+            for (const uint32_t corner : mesh.triangles[t])
+                for (uint32_t i = near.first[corner]; i < near.first[corner + 1]; ++i)
+                    for (const uint32_t other : {2 * near.quads[i], 2 * near.quads[i] + 1})
+                        away = std::min(
+                            away, distance_to(result_.samples[k].place, mesh.triangle(other)));
+        result_.error = std::max(result_.error, away);
     }
 }
 
