@@ -49,7 +49,8 @@ void note_clock(const Block& block, InterpreterState& state, BlockResult& result
 void announce_offsets(const Offsets& before, const ModalState& modal, BlockResult& result) {
     if (before == modal.offsets) return;
     if (before.tool != modal.offsets.tool) {
-        result.commands.emplace_back(UseToolLengthOffset{modal.length_number, modal.offsets.tool});
+        result.commands.emplace_back(UseToolLengthOffset{modal.length_number, modal.offsets.tool,
+                                                         modal.offsets.follows_tip});
         result.columns.push_back(1);
     }
     if (before.work != modal.offsets.work) {

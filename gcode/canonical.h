@@ -70,6 +70,7 @@ struct SetOffset {
 struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
     AxisValues offset;                        // mm and degrees; the length is along Z
+    bool follows_tip = false;                 // G43.4, G43.5
 };
 struct UseSpindleMode {
     bool surface_speed;   // G96, else G97

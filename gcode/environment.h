@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,6 +39,7 @@ struct Environment {
     std::vector<std::string> search_path{};     // folders of subprograms; else the program's own
     std::set<int> known_m_codes{};              // of the machine's builder, passed over in silence
     Limits limits{};
+    std::shared_ptr<const core::Machine> machine{}; // where it has rotary axes
 };
 
 } // namespace gcode

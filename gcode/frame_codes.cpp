@@ -190,6 +190,7 @@ void use_transforms(Execution& execution, const ProgramTransforms& transforms) {
     Offsets offsets = modal.offsets;
     offsets.frame = frame_of(transforms);
     offsets.has_frame = offsets.frame != ProgramFrame{};
+    offsets.tilted_plane = transforms.tilt.has_value();
     if (offsets == modal.offsets) return;
     change_offsets(execution, offsets);
     execution.emit(SetOffset{offsets});

@@ -26,8 +26,17 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Tilted working plane command".
 core::Result<void> set_tilted_plane(Execution& execution);
 
-/// G53.1.
+/// G53.1: rotary axes turn until the tool stands upright on the tilted plane, as far as the machine
+/// is known.
+///
+/// Errors: invalid_value without a plane, and for one to which no rotary axes can turn the tool
+///         within their limits.
 core::Result<void> turn_tool_to_plane(Execution& execution);
+
+/// Under G43.5, the rotary axes of a target by the direction of the tool in I, J and K.
+///
+/// Errors: as turn_tool_to_plane, and a direction of no length.
+core::Result<void> point_by_vector(const Execution& execution, Position& target);
 
 /// The axis of the plane that the first absolute motion after G68 does not name. Its coordinate is
 /// what the program called it before.

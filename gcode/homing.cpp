@@ -54,7 +54,7 @@ core::Result<void> go_home(Execution& execution) {
     }
     // In a turned frame a motion along one axis of the machine changes all three coordinates. Where
     // a work offset is turned, LinuxCNC goes along the axes of the program instead.
-    const bool turned = modal.offsets.has_frame;
+    const bool turned = modal.offsets.has_frame || is_fixed_to_work(modal.offsets);
     const Position place =
         program_from_machine(without_rotary_tool(modal.offsets), turned ? machine : home);
     Position end = modal.position;

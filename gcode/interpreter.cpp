@@ -336,6 +336,8 @@ InterpreterState initial_state(const Environment& environment) {
     tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
+    if (environment.machine && environment.machine->has_rotary())
+        modal.offsets.machine = environment.machine.get();
     begin_with_kept_offsets(state, environment);
     Position start = environment.start;
     // Axes beyond X, Y and Z that nobody speaks of stand at zero, or are not there.

@@ -49,7 +49,7 @@ void use_length(Execution& execution, int number, const Word& tool) {
     offsets.tool[normal] = length.value_or(0.0) + (longer ? length_of(execution, *longer) : 0.0);
     change_offsets(execution, offsets);
     execution.modal().length_number = OffsetNumber(number);
-    execution.emit(UseToolLengthOffset{OffsetNumber(number), offsets.tool});
+    execution.emit(UseToolLengthOffset{OffsetNumber(number), offsets.tool, offsets.follows_tip});
     const double radius =
         radius_of(execution, number) + (wider ? length_of(execution, *wider) : 0.0);
     const LengthUnit unit = execution.modal().unit;

@@ -23,7 +23,7 @@ struct ArcAxis {
 };
 
 std::optional<ArcAxis> arc_axis(const Offsets& offsets, const PlaneAxes& axes) {
-    if (axes.first >= 3) return std::nullopt;
+    if (axes.first >= 3 || is_fixed_to_work(offsets)) return std::nullopt;
     const auto normal = static_cast<int>(axes.normal);
     if (!offsets.has_frame && (offsets.work.rotation_deg == 0.0 || normal == 2))
         return ArcAxis{normal, false};
@@ -95,23 +95,58 @@ struct Visitor {
     Lowering& lowering;
     std::vector<core::Event> events;
 
+    void note_axis(size_t axis) {
+        const core::Machine* machine = lowering.offsets.machine;
+        const bool is_there = machine ? machine->axes[axis].present : axis < 3;
+        if (!is_there && !lowering.other_axis) lowering.other_axis = axis;
+    }
+
+    void turn_the_short_way(Position& there) const {
+        if (!lowering.offsets.machine) return;
+        for (size_t axis = 3; axis < 6; ++axis) {
+            if (!lowering.offsets.machine->axes[axis].shortest_way) continue;
+            const auto& here = lowering.machine[axis];
+            if (here && there[axis])
+                there[axis] = *here + std::remainder(*there[axis] - *here, 360.0);
+        }
+    }
+
+    /// The way of the tip seen from the work, where both of its ends are known.
+    void follow_tip(core::Motion& motion) const {
+        const Offsets& offsets = lowering.offsets;
+        if (!offsets.machine) return;
+        AxisValues from{}, to{};
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            if (offsets.machine->axes[axis].present && (!motion.from[axis] || !motion.to[axis]))
+                return;
+            from[axis] = motion.from[axis].value_or(0.0);
+            to[axis] = motion.to[axis].value_or(0.0);
+        }
+        const double length = offsets.tool[2];
+        motion.tip = core::TipPath{core::tip_place(*offsets.machine, from, length),
+                                   core::tip_place(*offsets.machine, to, length), length};
+    }
+
     core::Motion motion_to(const Position& end, core::MotionKind kind, double feed) {
         core::Motion motion;
         motion.kind = kind;
-        motion.from = linear_axes(lowering.machine);
+        motion.from = lowering.machine;
         Position there = machine_from_program(lowering.offsets, end);
         // An axis that was not told to move is where it was, to the last bit.
         const Position here = program_from_machine(lowering.offsets, lowering.machine);
         for (size_t axis = 0; axis < axis_count; ++axis) {
-            if (here[axis] == end[axis] && here[axis] && there[axis]
+            const bool stays = here[axis] == end[axis] || is_fixed_to_work(lowering.offsets);
+            if (stays && here[axis] && there[axis]
                 && std::abs(*there[axis] - *lowering.machine[axis]) < 1e-9)
                 there[axis] = lowering.machine[axis];
-            if (axis >= 3 && there[axis] != lowering.machine[axis] && !lowering.other_axis)
-                lowering.other_axis = axis;
+            if (there[axis] != lowering.machine[axis]) note_axis(axis);
         }
-        lowering.moved_tilted |= lowering.offsets.frame.tilts_tool;
-        motion.to = linear_axes(there);
+        turn_the_short_way(there);
+        lowering.moved_tilted |=
+            lowering.offsets.frame.tilts_tool && !is_fixed_to_work(lowering.offsets);
+        motion.to = there;
         motion.feed = feed;
+        if (lowering.offsets.follows_tip) follow_tip(motion);
         lowering.machine = there;
         return motion;
     }
@@ -125,8 +160,8 @@ struct Visitor {
     void operator()(const ArcFeed& command) {
         const Position from = program_from_machine(lowering.offsets, lowering.machine);
         const PlaneAxes axes = axes_of(command.plane);
-        const bool known = is_known(linear_axes(from)) && is_known(linear_axes(command.end))
-                           && from[axes.first] && from[axes.second];
+        const bool known =
+            is_known(from) && is_known(command.end) && from[axes.first] && from[axes.second];
         const auto axis = arc_axis(lowering.offsets, axes);
         if (known && !axis) {
             for (const Position& end : chords_of(command, from))
@@ -162,6 +197,7 @@ struct Visitor {
     }
     void operator()(const UseToolLengthOffset& command) {
         lowering.offsets.tool = command.offset;
+        lowering.offsets.follows_tip = command.follows_tip;
         events.emplace_back(core::LengthOffsetChange{command.number, command.offset[2]});
     }
     void operator()(const SetOffset& command) { lowering.offsets = command.offsets; }
@@ -169,12 +205,18 @@ struct Visitor {
     void operator()(const Coolant&) {}
     void operator()(const SelectPlane&) {}
     void operator()(const UseSpindleMode&) {}
-    void operator()(const SetPathMode&) {}
+    void operator()(const SetPathMode& command) {
+        core::PathModeChange change;
+        if (command.mode == PathMode::exact_path) change.blending = core::Blending::exact_path;
+        if (command.mode == PathMode::exact_stop) change.blending = core::Blending::exact_stop;
+        if (command.tolerance > 0.0) change.tolerance = command.tolerance;
+        events.emplace_back(change);
+    }
     void operator()(const EnableOverride&) {}
     void operator()(const SetOutput&) {}
     void operator()(const WaitForInput&) {}
     void operator()(const Message&) {}
-    void operator()(const ProgramStop&) {}
+    void operator()(const ProgramStop&) { events.emplace_back(core::Dwell{}); }
     void operator()(const OptionalStop&) {}
     void operator()(const ProgramEnd&) {}
 };

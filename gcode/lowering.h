@@ -13,15 +13,17 @@ struct Lowering {
     Offsets offsets;
     Position machine;                   // gauge line
     double spindle_speed = 0.0;         // rev/min
-    std::optional<size_t> other_axis{}; // the first axis beyond X, Y and Z that was moved
-    bool moved_tilted = false;          // moved while the tool is meant to leave the direction of Z
+    std::optional<size_t> other_axis{}; // the first axis that moved and that the machine lacks
+    bool moved_tilted = false; // moved while the tool is meant to leave the direction of Z, and
+                               // nobody knows how
 
-    /// What a command does to the machine, in machine coordinates; empty for modes and messages.
+    /// What a command does to the machine, in machine coordinates; empty for most modes and for
+    /// messages. A program stop is a dwell of no length: the machine comes to rest.
     ///
     /// A motion along an arc keeps its shape; one whose ends are not all known becomes a feed
     /// between the coordinates that are, and one whose plane the offsets tilt or distort becomes
-    /// chords within 0.001 mm of it. Axes beyond X, Y and Z are followed, but have no part in the
-    /// motions.
+    /// chords within 0.001 mm of it. Where the machine is known, a rotary axis that takes the
+    /// short way does, and a control that follows the tip gives paths of the tip.
     std::vector<core::Event> lower(const CanonicalCommand& command);
 };
 

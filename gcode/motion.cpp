@@ -321,7 +321,7 @@ core::Result<Position> target_of(const Execution& execution) {
                     + (execution.dialect.machine_places_are_of_tip ? modal.offsets.tool[axis]
                                                                    : 0.0);
         const Position place = program_from_machine(without_rotary_tool(modal.offsets), machine);
-        const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
+        const bool turned = mixes_axes(modal.offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
                 target[axis] = place[axis];
@@ -346,6 +346,8 @@ core::Result<Position> target_of(const Execution& execution) {
         else if (target[axis])
             *target[axis] += value;
     }
+    if (auto pointed = point_by_vector(execution, target); !pointed)
+        return tl::unexpected(std::move(pointed).error());
     if (auto placed = place_by_angle(execution, target); !placed)
         return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))

@@ -169,10 +169,7 @@ void change_offsets(Execution& execution, const Offsets& offsets) {
 }
 
 void change_offsets(ModalState& modal, const Offsets& offsets) {
-    const auto turns = [](const Offsets& some) {
-        return some.has_frame || some.work.rotation_deg != 0.0;
-    };
-    if (turns(modal.offsets) || turns(offsets)) {
+    if (mixes_axes(modal.offsets) || mixes_axes(offsets)) {
         modal.position =
             program_from_machine(offsets, machine_from_program(modal.offsets, modal.position));
         modal.offsets = offsets;

@@ -51,7 +51,62 @@ AxisValues shift_of(const ProgramFrame& frame) {
     return {frame.shift.x, frame.shift.y, frame.shift.z};
 }
 
+/// The machine with its rotary axes as the work offset has them: as the work lies in its
+/// coordinates.
+core::Transform machine_from_table(const Offsets& offsets) {
+    AxisValues rotary{};
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis)) rotary[axis] = offsets.work.origin[axis];
+    return core::machine_from_link(*offsets.machine, offsets.machine->table, rotary);
+}
+
+/// The values of a position as far as the machine has axes; empty if one of them is unknown.
+std::optional<AxisValues> known_values(const Offsets& offsets, const Position& position) {
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (offsets.machine->axes[axis].present && !position[axis]) return std::nullopt;
+        values[axis] = position[axis].value_or(0.0);
+    }
+    return values;
+}
+
+void forget_linear(Position& position) {
+    for (size_t axis = 0; axis < 3; ++axis) position[axis].reset();
+}
+
+/// From places of the tip in the coordinates of the work to the axes that bring it there.
+void reach_from_work(const Offsets& offsets, Position& place) {
+    const auto values = known_values(offsets, place);
+    std::optional<AxisValues> reached;
+    if (values)
+        reached = core::reach_tip(
+            *offsets.machine, *values,
+            table_from_work(offsets, {(*values)[0], (*values)[1], (*values)[2]}), offsets.tool[2]);
+    if (!reached) return forget_linear(place);
+    for (size_t axis = 0; axis < 3; ++axis) place[axis] = (*reached)[axis];
+}
+
+/// The other way.
+void place_in_work(const Offsets& offsets, Position& place) {
+    const auto values = known_values(offsets, place);
+    if (!values) return forget_linear(place);
+    const core::Vec3 tip =
+        machine_from_table(offsets) * core::tip_place(*offsets.machine, *values, offsets.tool[2]);
+    for (size_t axis = 0; axis < 3; ++axis)
+        place[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
+}
+
+/// What a tool adds beside its length, where that counts along the tool.
+AxisValues without_length(AxisValues tool) {
+    tool[2] = 0.0;
+    return tool;
+}
+
 } // namespace
+
+core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work) {
+    return machine_from_table(offsets).inverse() * offsets.machine->place({work.x, work.y, work.z});
+}
 
 Position machine_minus_program(const Offsets& offsets) {
     Position total = offsets.axis;
@@ -63,7 +118,7 @@ Position machine_minus_program(const Offsets& offsets) {
 
 Position machine_from_program(const Offsets& offsets, const Position& program) {
     Position place = program;
-    if (!offsets.has_frame && offsets.work.rotation_deg == 0.0) {
+    if (!mixes_axes(offsets)) {
         add(place, machine_minus_program(offsets), +1.0);
         return place;
     }
@@ -75,17 +130,27 @@ Position machine_from_program(const Offsets& offsets, const Position& program) {
     add(place, offsets.local, +1.0);
     if (offsets.work.rotation_deg != 0.0) map(turned_about_z(offsets.work.rotation_deg), place);
     add(place, offsets.work.origin, +1.0);
-    add(place, offsets.tool, +1.0);
+    if (is_fixed_to_work(offsets)) {
+        add(place, without_length(offsets.tool), +1.0);
+        reach_from_work(offsets, place);
+    } else {
+        add(place, offsets.tool, +1.0);
+    }
     return place;
 }
 
 Position program_from_machine(const Offsets& offsets, const Position& machine) {
     Position place = machine;
-    if (!offsets.has_frame && offsets.work.rotation_deg == 0.0) {
+    if (!mixes_axes(offsets)) {
         add(place, machine_minus_program(offsets), -1.0);
         return place;
     }
-    add(place, offsets.tool, -1.0);
+    if (is_fixed_to_work(offsets)) {
+        place_in_work(offsets, place);
+        add(place, without_length(offsets.tool), -1.0);
+    } else {
+        add(place, offsets.tool, -1.0);
+    }
     add(place, offsets.work.origin, -1.0);
     if (offsets.work.rotation_deg != 0.0) map(turned_about_z(-offsets.work.rotation_deg), place);
     add(place, offsets.local, -1.0);
@@ -101,10 +166,6 @@ Offsets without_rotary_tool(Offsets offsets) {
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (is_rotary(axis)) offsets.tool[axis] = 0.0;
     return offsets;
-}
-
-core::AxisPosition linear_axes(const Position& position) {
-    return {position[0], position[1], position[2]};
 }
 
 } // namespace gcode

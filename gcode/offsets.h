@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/transform.h"
-#include "core/sim/event.h"
+#include "core/sim/kinematics.h"
 #include "gcode/axes.h"
 
 namespace gcode {
@@ -39,10 +39,27 @@ struct Offsets {
     Position axis = zero_position; // G92; empty when set from an unknown place
     AxisValues tool{};             // length along Z, and along the other axes
     ProgramFrame frame;
-    bool has_frame = false; // whether `frame` is more than the identity
+    bool has_frame = false;    // whether `frame` is more than the identity
+    bool tilted_plane = false; // G68.2
+    bool follows_tip = false;  // G43.4, G43.5: the tip goes straight, seen from the work
+    const core::Machine* machine = nullptr; // where the rotary axes are known; outlives all states
 
     bool operator==(const Offsets&) const = default;
 };
+
+/// Whether coordinates are those of the work as it is turned by the rotary axes, and the tool's
+/// length counts along the tool.
+inline bool is_fixed_to_work(const Offsets& offsets) {
+    return offsets.machine && (offsets.follows_tip || offsets.tilted_plane);
+}
+
+/// Whether a coordinate of the machine depends on more than one of the program.
+inline bool mixes_axes(const Offsets& offsets) {
+    return offsets.has_frame || offsets.work.rotation_deg != 0.0 || is_fixed_to_work(offsets);
+}
+
+/// Where the tip stands, in the frame of the table's link; the coordinates of work offsets, mm.
+core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work);
 
 /// What to add to program coordinates to reach machine coordinates of the gauge line, where nothing
 /// is turned.
@@ -54,8 +71,5 @@ Position program_from_machine(const Offsets& offsets, const Position& machine);
 /// The offsets that G28, G30 and G53 count: what a tool is offset by along rotary axes does not
 /// shift where these go.
 Offsets without_rotary_tool(Offsets offsets);
-
-/// The first three axes, as the simulator has them.
-core::AxisPosition linear_axes(const Position& position);
 
 } // namespace gcode

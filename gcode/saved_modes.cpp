@@ -102,7 +102,8 @@ void announce_modes(BlockResult& result, uint32_t column, const ModalState& befo
         say(Spindle{after.spindle, turns ? after.speed : 0.0});
     if (before.plane != after.plane) say(SelectPlane{after.plane});
     if (before.offsets.tool != after.offsets.tool)
-        say(UseToolLengthOffset{after.length_number, after.offsets.tool});
+        say(UseToolLengthOffset{after.length_number, after.offsets.tool,
+                                after.offsets.follows_tip});
     Offsets without_tool = before.offsets;
     without_tool.tool = after.offsets.tool;
     if (without_tool != after.offsets) say(SetOffset{after.offsets});

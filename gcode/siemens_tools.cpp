@@ -57,7 +57,7 @@ void use_length(Execution& execution, core::SourceSpan where) {
     if (offsets == modal.offsets && modal.length_number == number) return;
     change_offsets(execution, offsets);
     modal.length_number = number;
-    execution.emit(UseToolLengthOffset{number, offsets.tool});
+    execution.emit(UseToolLengthOffset{number, offsets.tool, offsets.follows_tip});
 }
 
 void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {

@@ -192,7 +192,7 @@ core::Result<void> go_to_fixed_place(Execution& execution) {
         if (execution.statement.word(axis_letters[axis])) machine[axis] = place[axis].value_or(0.0);
     const Position end = program_from_machine(modal.offsets, machine);
     Position target = modal.position;
-    const bool turned = modal.offsets.has_frame || modal.offsets.work.rotation_deg != 0.0;
+    const bool turned = mixes_axes(modal.offsets);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
             target[axis] = end[axis];

@@ -27,6 +27,8 @@ void add(Digest& digest, const Offsets& offsets) {
     add_all(digest, offsets.local);
     add_all(digest, offsets.axis);
     add_all(digest, offsets.tool);
+    digest.add(uint64_t{offsets.tilted_plane});
+    digest.add(uint64_t{offsets.follows_tip});
     digest.add(uint64_t{offsets.has_frame});
     if (!offsets.has_frame) return;
     for (int row = 0; row < 3; ++row) {

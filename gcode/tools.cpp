@@ -12,13 +12,14 @@ using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 
-void use_offset(Execution& execution, std::optional<OffsetNumber> number,
-                const AxisValues& offset) {
+void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
+                bool follows_tip = false) {
     Offsets offsets = execution.modal().offsets;
     offsets.tool = offset;
+    offsets.follows_tip = follows_tip;
     change_offsets(execution, offsets);
     execution.modal().length_number = number;
-    execution.emit(UseToolLengthOffset{number, offset});
+    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
 }
 
 /// The offset under a number: along Z its length, else as the table says.
@@ -43,7 +44,8 @@ core::Result<std::optional<int>> length_number(const Execution& execution) {
     return modal.length_number ? std::optional(value_of(*modal.length_number)) : std::nullopt;
 }
 
-core::Result<void> use_table_length(Execution& execution, const Word& word, double sign) {
+core::Result<void> use_table_length(Execution& execution, const Word& word, double sign,
+                                    bool follows_tip = false) {
     FEELER_TRY(const std::optional<int> number, length_number(execution));
     execution.modal().length_sign = sign;
     const core::SourceSpan where = word.span;
@@ -51,7 +53,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
         execution.warn(where, fmt::format("{} has no H word and no tool to take it from: no length "
                                           "offset is applied",
                                           written(word)));
-        use_offset(execution, std::nullopt, {});
+        use_offset(execution, std::nullopt, {}, follows_tip);
         return {};
     }
     const std::optional<double> length =
@@ -61,7 +63,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
                                           "0",
                                           written(word), *number));
     use_offset(execution, OffsetNumber(*number),
-               offset_under(execution, *number, sign * length.value_or(0.0)));
+               offset_under(execution, *number, sign * length.value_or(0.0)), follows_tip);
     const auto& tool = execution.modal().tool;
     if (tool && *number != 0 && *number != value_of(*tool))
         execution.result.warnings.push_back(
@@ -110,18 +112,18 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
     return {};
 }
 
-/// G43.4 and G43.5: the length is as under G43; what rotary axes do to the way of the tool is left
-/// to those who know the machine.
+/// G43.4 and G43.5: the control keeps the tip where the program says, seen from the work.
 core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
     ProgramTransforms transforms = execution.modal().transforms;
     transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
     use_transforms(execution, transforms);
-    execution.warn(entry.word->span,
-                   fmt::format("{}: taken as G43; rotary axes are followed in the program's "
-                               "coordinates, not in those of the machine",
-                               written(*entry.word)),
-                   Severity::note);
-    return use_table_length(execution, *entry.word, +1.0);
+    if (!execution.modal().offsets.machine)
+        execution.warn(entry.word->span,
+                       fmt::format("{}: taken as G43; rotary axes are followed in the program's "
+                                   "coordinates, not in those of the machine",
+                                   written(*entry.word)),
+                       Severity::note);
+    return use_table_length(execution, *entry.word, +1.0, true);
 }
 
 /// Once a plain length offset or none is on, motions do not say where the tool points to.
@@ -182,7 +184,8 @@ core::Result<void> set_tool_length(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
     ModalState& modal = execution.modal();
     if (!entry && changes_length_alone(execution))
-        return use_table_length(execution, *execution.statement.word('H'), modal.length_sign);
+        return use_table_length(execution, *execution.statement.word('H'), modal.length_sign,
+                                modal.offsets.follows_tip);
     if (!entry) return {};
     leave_vectors(execution);
     switch (entry->code->tenths) {

@@ -109,6 +109,7 @@ struct Details {
             if (axis != 2 && command.offset[axis] != 0.0)
                 others +=
                     fmt::format(" {}={}", lower(axis_letters[axis]), number(command.offset[axis]));
+        if (command.follows_tip) others += " follows_tip";
         return name + " length=" + number(command.offset[2]) + others;
     }
     std::string operator()(const UseSpindleMode& command) const {

@@ -8,15 +8,16 @@
 #include "app/commands/program_arguments.h"
 #include "app/report/json_report.h"
 #include "app/report/text_report.h"
+#include "app/session/part_check.h"
 
 namespace app {
 namespace {
 
 struct Options {
-    std::string program, setup, output;
+    std::string program, setup, output, stock, comparison;
     ProgramArguments reading;
     std::string format = "text";
-    std::optional<double> allowance, mesh_size;
+    std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
 };
@@ -26,8 +27,54 @@ std::string report(const Options& options, const CheckRun& run) {
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
 
+/// Whether what is to be written can be, as far as that is known beforehand.
+core::Result<void> check_files(const Options& options) {
+    if (auto safe = check_output(options.output, {options.program, options.setup}); !safe)
+        return safe;
+    for (const std::string& name : {options.stock, options.comparison}) {
+        if (name.empty()) continue;
+        if (auto safe = check_output(name, {options.program, options.setup, options.output}); !safe)
+            return safe;
+        if (auto form = mesh_form(name); !form) return tl::unexpected(form.error());
+    }
+    if (options.stock.empty()) return {};
+    return check_output(options.stock, {options.comparison});
+}
+
+/// Writes what was asked for beside the report.
+core::Result<void> save_results(const Options& options, CheckRun& run) {
+    for (const std::string& name : {options.stock, options.comparison})
+        if (!name.empty() && run.stopped)
+            return tl::unexpected<core::Error>(
+                {core::ErrorCode::invalid_value,
+                 {},
+                 "was not written: the program did not run to its end",
+                 name});
+    if (!options.stock.empty()) {
+        FEELER_TRY(const MeshForm form, mesh_form(options.stock));
+        FEELER_TRY(const StockFile file,
+                   form == MeshForm::record
+                       ? stock_record_file(*run.stock, options.stock)
+                       : stock_file(*run.surface, run.setup.mesh_size, options.stock));
+        if (auto written = write_output(options.stock, file.bytes); !written) return written;
+        run.saved_stock = file.facts;
+    }
+    if (options.comparison.empty()) return {};
+    FEELER_TRY(const std::string bytes, comparison_file(run, options.comparison));
+    return write_output(options.comparison, bytes);
+}
+
+/// Before much memory is taken it is said how much.
+void say_memory(double bytes) {
+    constexpr double much = 1e9;
+    if (bytes >= much)
+        std::fputs(
+            fmt::format("the model of the stock takes about {:.1f} GB\n", 1e-9 * bytes).c_str(),
+            stderr);
+}
+
 ExitCode check(const Options& options) {
-    const auto safe = check_output(options.output, {options.program, options.setup});
+    const auto safe = check_files(options);
     if (!safe) {
         print_error(safe.error());
         return ExitCode::failed;
@@ -37,13 +84,24 @@ ExitCode check(const Options& options) {
         print_error(settings.error());
         return ExitCode::failed;
     }
-    const auto run = run_check(
-        {options.program, options.setup, options.allowance, options.mesh_size, *settings});
+    const bool needs_surface = !options.stock.empty() || !options.comparison.empty();
+    std::optional<double> memory_limit;
+    if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
+    auto run = run_check({.program = options.program,
+                          .setup = options.setup,
+                          .allowance = options.allowance,
+                          .mesh_size = options.mesh_size,
+                          .memory_limit = memory_limit,
+                          .needs_surface = needs_surface,
+                          .before_model = say_memory,
+                          .settings = *settings});
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
     }
     if (run->stopped) print_error(*run->stopped);
+    const auto saved = save_results(options, *run);
+    if (!saved) print_error(saved.error());
     // A run that did not come to its end goes to standard output: a file would look like a whole
     // one.
     const auto written = write_output(run->stopped ? "" : options.output, report(options, *run));
@@ -51,7 +109,7 @@ ExitCode check(const Options& options) {
         print_error(written.error());
         return ExitCode::failed;
     }
-    if (run->stopped) return ExitCode::failed;
+    if (run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 
@@ -69,11 +127,20 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300));
+    command
+        .add_option("--memory-limit", options->memory_limit,
+                    "What the model of the stock may take, MB (8590 unless said)")
+        ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
+    command.add_option("--save-stock", options->stock,
+                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
+                       "for a later set-up)");
+    command.add_option("--save-comparison", options->comparison,
+                       "Write what is left, coloured by its deviation from the part (.ply)");
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");
     command.add_flag("--pairs", options->pairs, "JSON: add every pair of bodies to every block");
     command.callback([options, &exit_code] { exit_code = check(*options); });

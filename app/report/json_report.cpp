@@ -19,7 +19,8 @@ Json bounds_of(const core::PairClearance& pair) {
 }
 
 Json names_of(const CheckRun& run, const core::PairClearance& pair) {
-    return Json::array({core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair)});
+    return Json::array(
+        {core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair)});
 }
 
 void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, double duration) {
@@ -101,15 +102,46 @@ Json statistics_json(const CheckRun& run) {
     json["lines"] = run.lines;
     json["sphere_tests"] = 0; // this engine compares boxes and exact shapes instead
     json["point_tests"] = 0;
+    json["model_bytes"] = run.memory;
     json["box_tests"] = run.statistics.box_tests;
     json["shape_tests"] = run.statistics.shape_tests;
     json["refined"] = run.statistics.refined;
     json["sweeps"] = run.statistics.sweeps;
     json["removed"] = run.removed;
-    json["duration"] = run.duration;
+    json["duration"] = run.cycle_time;
     json["seconds"] = {
         {"read", run.times.read}, {"model", run.times.model}, {"check", run.times.check}};
     return json;
+}
+
+Json part_json(const CheckRun& run) {
+    const core::PartComparison& comparison = *run.comparison;
+    Json json;
+    json["tolerance"] = run.setup.part->tolerance;
+    json["largest_gouge"] = comparison.largest_gouge;
+    json["largest_excess"] = comparison.largest_excess;
+    json["between_samples"] = comparison.between_samples;
+    json["samples"] = comparison.samples;
+    json["regions"] = Json::array();
+    for (const core::DeviationRegion& region : comparison.regions) {
+        Json entry;
+        entry["kind"] = core::name_of(region.kind);
+        entry["amount"] = region.amount;
+        entry["at"] = array_of(region.place);
+        entry["area"] = region.area;
+        entry["block"] = region.block ? Json(*region.block) : Json(nullptr);
+        entry["line"] = region.block ? Json(run.blocks[*region.block].line) : Json(nullptr);
+        json["regions"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+Json saved_json(const SavedStock& saved) {
+    if (saved.triangles == 0) return {{"file", saved.file}, {"moves", saved.moves}};
+    return {{"file", saved.file},
+            {"triangles", saved.triangles},
+            {"error", saved.error},
+            {"lost_points", saved.lost}};
 }
 
 } // namespace
@@ -126,6 +158,7 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["mesh_size"] = run.setup.mesh_size;
     json["assumptions"] = run.assumptions;
     json["verdict"] = core::name_of(run.verdict);
+    json["cycle_time"] = run.cycle_time;
     if (run.stopped) json["error"] = error_json(*run.stopped);
     json["blocks"] = Json::array();
     for (const CheckedBlock& block : run.blocks)
@@ -133,6 +166,8 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["findings"] = Json::array();
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
+    if (run.comparison) json["part"] = part_json(run);
+    if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
     json["statistics"] = statistics_json(run);
     // Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

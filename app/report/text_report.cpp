@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/report/text_layout.h"
+#include "app/session/part_check.h"
 
 namespace app {
 namespace {
@@ -72,7 +73,7 @@ std::string blocks_text(const CheckRun& run) {
         std::string pair;
         if (result.deciding) {
             const core::PairClearance& near = result.pairs[*result.deciding];
-            pair = fmt::format("{} / {}", core::name_of(near.pair.part),
+            pair = fmt::format("{} / {}", core::part_name(run.setup, near.pair),
                                core::body_name(run.setup, near.pair));
         }
         text += fmt::format("{:>5} {:<5} {:>4} {} {:<17} {:<9} {}\n", block.line,
@@ -115,17 +116,21 @@ std::string summary_text(const CheckRun& run) {
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = nearest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-        text +=
-            fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n", block->line,
-                        core::name_of(pair.pair.part), core::body_name(run.setup, pair.pair),
-                        trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+        text += fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n",
+                            block->line, core::part_name(run.setup, pair.pair),
+                            core::body_name(run.setup, pair.pair),
+                            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
     }
-    text += fmt::format("  removed    {:.1f} mm3 in {} of machine time\n", run.removed,
-                        duration_text(run.duration));
+    text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
+    text += fmt::format("  removed    {:.1f} mm3\n", run.removed);
     text +=
-        fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
-                    run.setup.mesh_size, run.lines, run.points,
+        fmt::format("  model      mesh size {} mm, {} scan lines, {} points, {:.0f} MB; {:.2f} s\n",
+                    run.setup.mesh_size, run.lines, run.points, std::ceil(1e-6 * run.memory),
                     run.times.read + run.times.model + run.times.check);
+    if (run.comparison)
+        text +=
+            fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
+    if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
     text += "  assuming\n";
     for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);
     return text;

@@ -82,6 +82,7 @@ struct Keys {
         add_number("number", c.number);
         json.add("length", c.offset[2]);
         json.add_numbers("tool_offset", c.offset.data(), c.offset.size());
+        if (c.follows_tip) json.add("follows_tip", true);
     }
     void operator()(const gcode::StraightProbe& c) const {
         json.add_position("end", c.end);

@@ -7,6 +7,10 @@
 
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
+#include "app/session/m_codes.h"
+#include "app/session/part_check.h"
+#include "app/session/timing_notes.h"
+#include "core/sim/block_clock.h"
 #include "gcode/lowering.h"
 
 namespace app {
@@ -46,7 +50,7 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
     run.assumptions.push_back(
         fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
                     core::chord_error(setup.mesh_size)));
-    run.assumptions.push_back("feeds and rapids run at full speed: accelerations are not counted");
+    for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
         "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
     if (setup.stock.tolerance == 0.0)
@@ -103,6 +107,18 @@ void take_tool_zero(core::Event& event) {
     if (change && !change->tool) change->tool = core::ToolNumber{0};
 }
 
+/// The fixtures that are moved before a block.
+std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+    std::vector<core::Event> events;
+    for (const core::FixtureMove& move : setup.fixture_moves) {
+        const bool here = move.line && block.file.empty() && block.line == *move.line;
+        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
+        events.emplace_back(core::FixtureChange{move.from, false});
+        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
+    }
+    return events;
+}
+
 void take_any_speed(core::Event& event) {
     auto* spindle = std::get_if<core::SpindleChange>(&event);
     if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
@@ -119,27 +135,30 @@ struct Runner {
     gcode::Interpreter interpreter{library, environment};
     gcode::InterpreterState place = gcode::initial_state(environment);
     gcode::Lowering lowering = gcode::initial_lowering(environment);
+    core::BlockClock clock = core::start_clock(run.setup.machine);
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
         if (lowering.moved_tilted)
             return core::Error{core::ErrorCode::unsupported,
                                {.line = block.line, .column = 1},
-                               "this block moves in a tilted plane or with a tool that is turned "
-                               "(G68.2, G43.5), and machines that tilt are not checked yet",
+                               "this block moves in a tilted plane or with a tool that is turned, "
+                               "and the machine of the set-up has no rotary axes that could: add "
+                               "them as [[axis]]",
                                std::string(block.file)};
         if (!lowering.other_axis) return std::nullopt;
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
-                           fmt::format("this block moves axis {}, and machines with more than X, Y "
-                                       "and Z are not checked yet",
+                           fmt::format("this block moves axis {}, which the machine of the set-up "
+                                       "does not have: add an [[axis]] of that name to its machine",
                                        gcode::axis_letters[*lowering.other_axis]),
                            std::string(block.file)};
     }
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        std::vector<core::Event> events = gcode::lower(block, lowering);
+        std::vector<core::Event> events = fixture_events(run.setup, block);
+        for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
         for (core::Event& event : events) {
             if (run.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
             if (speed_by_hand) take_any_speed(event);
@@ -148,7 +167,8 @@ struct Runner {
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),
             block.calls, {}};
-        checked.result = core::run_block(run.setup, {block.block, block.is_cycle, events}, state);
+        const core::BlockEvents of_block{block.block, block.is_cycle, events};
+        checked.result = core::run_block(run.setup, of_block, state);
         for (const gcode::Warning& warning : block.warnings) {
             core::Finding finding = remark(run.setup, warning);
             finding.block = block.block;
@@ -159,10 +179,27 @@ struct Runner {
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
+        std::vector<core::BlockTime> timed;
+        core::add_block(clock, of_block, timed);
+        enter(timed);
         return std::nullopt;
     }
 
+    /// The times of blocks whose place in time has become known.
+    void enter(const std::vector<core::BlockTime>& timed) {
+        for (const core::BlockTime& time : timed)
+            core::settle_time(run.blocks[core::value_of(time.block)].result, time);
+    }
+
     void to_the_end(core::SimulatorState& state) {
+        run_blocks(state);
+        std::vector<core::BlockTime> timed;
+        core::stop_clock(clock, timed);
+        enter(timed);
+        run.cycle_time = clock.time;
+    }
+
+    void run_blocks(core::SimulatorState& state) {
         while (true) {
             const auto next = interpreter.next(place);
             if (!next) {
@@ -201,7 +238,6 @@ void look_for_judged_motions(CheckRun& run) {
 
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
-    run.duration = state.time;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
@@ -235,13 +271,16 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     look_beyond_allowances(run.setup);
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
-    auto state = core::start_of_run(run.setup, gcode::linear_axes(file.environment.start));
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    if (job.before_model) job.before_model(run.memory);
+    auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     state->spindle.direction = run.setup.spindle_at_start;
     if (state->spindle.direction != core::SpindleDirection::stopped) state->spindle.speed = 1.0;
@@ -251,6 +290,10 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     Runner{*program, file.environment, run, file.speed_by_hand}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
+    run.stock = std::move(state->stock);
+    if (!run.stopped && (job.needs_surface || run.setup.part))
+        run.surface = core::stock_mesh(*run.stock);
+    check_part(run);
     return run;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/session/stock_file.h"
 #include "app/setup/setup_file.h"
+#include "core/dbm/stock_mesh.h"
 #include "core/sim/simulator.h"
 #include "gcode/interpreter.h"
 
@@ -39,11 +42,16 @@ struct CheckRun {
     core::Verdict verdict = core::Verdict::clear;
     std::optional<core::Error> stopped; // why the program could not be run to its end
     core::Statistics statistics;
-    size_t points = 0;     // of the stock's model at the end
-    size_t lines = 0;      // scan lines
-    double duration = 0.0; // of the program, seconds
-    double removed = 0.0;  // mm3
+    size_t points = 0;       // of the stock's model at the end
+    size_t lines = 0;        // scan lines
+    double cycle_time = 0.0; // of the program, seconds
+    double removed = 0.0;    // mm3
     CheckTimes times;
+    double memory = 0.0;                 // bytes that the model of the stock was expected to take
+    std::optional<core::CutModel> stock; // what is left of it
+    std::optional<core::StockMesh> surface; // of it, if it was asked for
+    std::optional<SavedStock> saved_stock;
+    std::optional<core::PartComparison> comparison; // if the set-up has a part
 
     bool has_errors() const;
 };
@@ -54,7 +62,10 @@ struct CheckJob {
     std::string setup;               // empty: inferred from the program
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
-    ProgramSettings settings; // replace what the set-up says under [program]
+    std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
+    bool needs_surface = false; // that of the stock is wanted, also without a part
+    std::function<void(double)> before_model = {}; // told the bytes that the model will take
+    ProgramSettings settings;                      // replace what the set-up says under [program]
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

@@ -124,7 +124,7 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file, const Pro
         return core::fail(core::ErrorCode::invalid_value,
                           "[stock] is missing, and the program has no cutting move that it could "
                           "be inferred from");
-    const Vec3 origin = file.setup.stock_origin;
+    const Vec3 origin = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
     Aabb box{{-5, -5, -5}, {5, 5, 0}};
     std::string why = "the program cuts nothing, so the stock is a cube of 10 mm at its zero";
@@ -183,7 +183,7 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     file.tool_table = settings.tool_table;
     for (gcode::AxisValues& offset : file.environment.work_offsets)
         offset = {0.0, 0.0, -zero_above_program};
-    file.setup.stock_origin = Vec3(0.0, 0.0, -zero_above_program);
+    file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
     for (size_t axis = 0; axis < 3; ++axis)
         if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
     file.assumptions = notes;

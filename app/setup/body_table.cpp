@@ -1,8 +1,15 @@
 #include "app/setup/body_table.h"
 
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/text_lines.h"
+#include "core/dbm/stock_record.h"
+#include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
 
 namespace app {
@@ -23,21 +30,23 @@ struct Placement {
     core::Transform machine_from_body() const { return machine_from_frame * frame_from_body; }
 };
 
-Placement read_placement(TableReader& table, const BodyContext& context) {
-    Placement placement;
-    placement.frame_from_body = {
-        core::rotation_xyz_deg(table.vector("rotate_deg").value_or(core::Vec3(0.0))),
-        table.vector("at").value_or(core::Vec3(0.0))};
+core::Transform read_pose(TableReader& table) {
+    return {core::rotation_xyz_deg(table.vector("rotate_deg").value_or(core::Vec3(0.0))),
+            table.vector("at").value_or(core::Vec3(0.0))};
+}
+
+core::Transform read_frame(TableReader& table, const BodyContext& context) {
     const std::string frame = table.string("frame").value_or("G54");
-    if (const auto found = context.frames.find(frame)) {
-        placement.machine_from_frame = *found;
-        return placement;
-    }
+    if (const auto found = context.frames.find(frame)) return *found;
     std::vector<std::string> known;
     for (const auto& [name, transform] : context.frames.machine_from) known.push_back(name);
     table.refuse("frame",
                  fmt::format("\"{}\" is not known; frames here: {}", frame, fmt::join(known, " ")));
-    return placement;
+    return {};
+}
+
+Placement read_placement(TableReader& table, const BodyContext& context) {
+    return {read_frame(table, context), read_pose(table)};
 }
 
 /// Exactly one of the shapes must be given.
@@ -75,30 +84,20 @@ CylinderKey read_cylinder(TableReader& table) {
     return cylinder;
 }
 
-core::Mesh mesh_of(const core::Aabb& box) {
-    core::Mesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.emplace_back(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
-                                   i & 4U ? box.max.z : box.min.z);
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
-
 /// The mesh a body names, in the body's frame. Relative paths are relative to the set-up.
-core::Mesh read_mesh_key(TableReader& table, BodyContext& context) {
+core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
     const std::string name = table.string("mesh").value_or("");
     if (name.empty()) {
         table.refuse("mesh", "must name a file");
         return {};
     }
-    auto read = core::read_mesh(context.folder / name);
+    auto read = core::read_mesh(source.folder / name);
     if (!read) {
         table.refuse("mesh", fmt::format("= \"{}\": {}", name, read.error().message));
         return {};
     }
     for (const std::string& repair : read->repairs)
-        context.file.assumptions.push_back(fmt::format("{}: {}", name, repair));
+        source.assumptions.push_back(fmt::format("{}: {}", name, repair));
     return std::move(read->mesh);
 }
 
@@ -108,9 +107,10 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
 }
 
 /// Box or mesh, moved, as a mesh.
-core::Mesh read_polyhedron(TableReader& table, BodyContext& context, const std::string& shape,
+core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
                            const core::Transform& target_from_body) {
-    core::Mesh mesh = shape == "box" ? mesh_of(read_box(table)) : read_mesh_key(table, context);
+    core::Mesh mesh =
+        shape == "box" ? core::mesh_of(read_box(table)) : read_mesh_key(table, source);
     return moved(std::move(mesh), target_from_body);
 }
 
@@ -127,7 +127,8 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
         const core::Vec3 at = frame_from_body.translation;
         return {core::SolidBox{{box.min + at, box.max + at}}, 0.0};
     }
-    return {core::solid_mesh(read_polyhedron(table, context, shape, frame_from_body)), 0.0};
+    return {core::solid_mesh(read_polyhedron(table, context.meshes(), shape, frame_from_body)),
+            0.0};
 }
 
 /// A cylinder along one of its body's axes, standing on the body's origin.
@@ -137,6 +138,14 @@ core::ConvexShape standing(const CylinderKey& cylinder) {
     if (cylinder.axis == 2) return upright;
     const core::Vec3 turn = cylinder.axis == 0 ? core::Vec3(0, 90, 0) : core::Vec3(-90, 0, 0);
     return core::posed(upright, {core::rotation_xyz_deg(turn), core::Vec3(0.0)});
+}
+
+std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& source,
+                                          const core::Transform& target_from_body) {
+    const auto shape = only_shape(table);
+    if (!shape) return std::nullopt;
+    if (*shape == "cylinder") return core::posed(standing(read_cylinder(table)), target_from_body);
+    return core::solid_mesh(read_polyhedron(table, source, *shape, target_from_body));
 }
 
 bool has_no_shape(const TableReader& table) {
@@ -155,19 +164,96 @@ void read_envelope(TableReader& table, BodyContext& context, const Placement& pl
     if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= 1000.0))
         table.refuse("margin", "must lie between 0 and 1000 mm");
     file.needs_stock = true;
-    file.setup.stock_origin = placement.machine_from_frame.translation;
+    file.setup.stock_mount = {file.setup.machine.table, placement.machine_from_frame};
     file.setup.stock.tolerance = table.number_or("tolerance", 0.0);
     if (file.setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
     context.frames.machine_from["stock"] = placement.machine_from_frame;
     table.finish();
 }
 
+core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
+    if (const auto* shape = std::get_if<core::ConvexShape>(&body)) return core::posed(*shape, by);
+    return core::solid_mesh(moved(*std::get<core::SolidMesh>(body).mesh, by));
+}
+
+/// The number of an M code such as "M61"; empty for a text that is none.
+std::optional<int> m_code(const std::string& text) {
+    if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != 'M') return {};
+    const auto number = number_in(std::string_view(text).substr(1));
+    if (!number || *number < 0.0 || *number > 99999.0 || *number != std::floor(*number)) return {};
+    return static_cast<int>(*number);
+}
+
+/// A `[[fixture.move]]` of the fixture that stands last; where it goes, if it is not taken away.
+std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last) {
+    core::FixtureMove move{.from = last};
+    if (const auto line = table.integer("line")) {
+        if (*line < 1) table.refuse("line", "counts from 1");
+        move.line = static_cast<uint32_t>(std::max(*line, 1));
+    }
+    if (const auto code = table.string("code")) {
+        move.code = m_code(*code);
+        if (!move.code) table.refuse("code", "must be an M code, as in \"M61\"");
+    }
+    if (table.has("line") == table.has("code")) table.need("one of line, code");
+    const bool removed = table.boolean("remove").value_or(false);
+    if (removed && (table.has("at") || table.has("rotate_deg")))
+        table.refuse("remove", "takes the fixture away: it has no place then");
+    if (!removed) move.to = setup.fixtures.size();
+    const core::Transform to = read_pose(table);
+    table.finish();
+    setup.fixture_moves.push_back(move);
+    return removed ? std::nullopt : std::optional(to);
+}
+
+core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return core::fail(core::ErrorCode::io, "there is no such file, or it cannot be read");
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return core::stock_record(bytes.str());
+}
+
+/// A stock as an earlier program left it (check --save-stock).
+void read_model(TableReader& table, BodyContext& context, const Placement& placement) {
+    const std::string name = table.string("model").value_or("");
+    auto record = read_record(context.folder / name);
+    if (record) record = core::moved(*std::move(record), placement.frame_from_body);
+    if (!record)
+        return table.refuse("model", fmt::format("= \"{}\": {}", name, record.error().message));
+    core::Setup& setup = context.file.setup;
+    setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
+    setup.stock = std::move(record->solid);
+    setup.earlier_cuts =
+        std::make_shared<const std::vector<core::CutterSweep>>(std::move(record->sweeps));
+    context.frames.machine_from["stock"] = placement.machine_from_body();
+    table.finish();
+}
+
 } // namespace
+
+std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
+                                               const core::Transform& target_from_frame) {
+    return exact_body(table, source, target_from_frame * read_pose(table));
+}
+
+void add_machine_bodies(TableReader& table, core::Setup& setup) {
+    for (const core::MachineBody& body : setup.machine.bodies) {
+        for (const core::Fixture& other : setup.fixtures)
+            if (other.name == body.name)
+                table.refuse("fixture",
+                             fmt::format("\"{}\" is the name of a body of the machine", body.name));
+        if (body.link == core::LinkId::base || core::is_on_table_side(setup.machine, body.link))
+            setup.fixtures.push_back(
+                {body.name, body.body, false, {body.link, {}}, /*is_machine=*/true});
+    }
+}
 
 void infer_stock(BodyContext& context) {
     context.file.needs_stock = true;
     const core::Transform frame = context.frames.machine_from.at("G54");
-    context.file.setup.stock_origin = frame.translation;
+    context.file.setup.stock_mount = {context.file.setup.machine.table, frame};
     context.frames.machine_from["stock"] = frame;
 }
 
@@ -178,16 +264,37 @@ void read_stock(TableReader& table, BodyContext& context) {
         return read_envelope(table, context, placement);
     const auto shape = only_shape(table);
     if (!shape) return;
-    if (*shape == "model")
-        return table.refuse("model", "is not supported by this version; give a box, cylinder or "
-                                     "mesh");
+    if (*shape == "model") return read_model(table, context, placement);
     core::Setup& setup = context.file.setup;
-    setup.stock_origin = placement.machine_from_frame.translation;
+    setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
     setup.stock.tolerance = table.number_or("tolerance", 0.0);
     if (setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
     context.frames.machine_from["stock"] = placement.machine_from_body();
     table.finish();
+}
+
+void read_part(TableReader& table, BodyContext& context) {
+    core::Setup& setup = context.file.setup;
+    const Placement placement = read_placement(table, context);
+    const bool box = table.has("box");
+    if (box == table.has("mesh")) return table.need("one of mesh, box");
+    const core::Transform stock_from_body =
+        setup.stock_mount.link_from_body.inverse() * placement.machine_from_body();
+    core::Mesh mesh =
+        read_polyhedron(table, context.meshes(), box ? "box" : "mesh", stock_from_body);
+    core::Part part;
+    if (const auto tolerance = table.number("tolerance")) {
+        if (!(*tolerance > 0.0)) table.refuse("tolerance", "must be above 0");
+        part.tolerance = *tolerance;
+    } else {
+        context.file.assumptions.push_back(
+            fmt::format("the result may be off the part by {} mm either way", part.tolerance));
+    }
+    table.finish();
+    if (mesh.triangles.empty()) return;
+    part.solid = core::solid_mesh(std::move(mesh));
+    setup.part = std::move(part);
 }
 
 void read_fixture(TableReader& table, BodyContext& context) {
@@ -202,19 +309,30 @@ void read_fixture(TableReader& table, BodyContext& context) {
         if (other.name == fixture.name)
             table.refuse("name", fmt::format("\"{}\" is there twice", fixture.name));
     fixture.expendable = table.boolean("expendable").value_or(false);
-    const Placement placement = read_placement(table, context);
-    const auto shape = only_shape(table);
-    if (!shape) return;
-    if (*shape == "model") return table.refuse("model", "is for a stock only");
-    const core::Transform stock_from_body =
-        core::translation(-setup.stock_origin) * placement.machine_from_body();
-    if (*shape == "cylinder")
-        fixture.body = core::posed(standing(read_cylinder(table)), stock_from_body);
-    else
-        fixture.body = core::solid_mesh(read_polyhedron(table, context, *shape, stock_from_body));
-    context.frames.machine_from[fixture.name] = placement.machine_from_body();
+    const core::Transform machine_from_frame = read_frame(table, context);
+    const core::Transform stock_from_frame =
+        setup.stock_mount.link_from_body.inverse() * machine_from_frame;
+    fixture.mount = setup.stock_mount;
+    if (table.has("model")) return table.refuse("model", "is for a stock only");
+    const core::Transform frame_from_body = read_pose(table);
+    const auto body = exact_body(table, context.meshes(), stock_from_frame * frame_from_body);
+    if (!body) return;
+    fixture.body = *body;
+    context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
+    std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
     table.finish();
-    setup.fixtures.push_back(std::move(fixture));
+    setup.fixtures.push_back(fixture);
+    const core::Transform body_from_stock = (stock_from_frame * frame_from_body).inverse();
+    size_t last = setup.fixtures.size() - 1;
+    for (TableReader& move : moves) {
+        const auto to = read_move(move, setup, last);
+        if (!to) continue;
+        core::Fixture there = fixture;
+        there.is_there = false;
+        there.body = moved(fixture.body, stock_from_frame * *to * body_from_stock);
+        last = setup.fixtures.size();
+        setup.fixtures.push_back(std::move(there));
+    }
 }
 
 } // namespace app

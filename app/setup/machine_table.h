@@ -1,11 +1,11 @@
 #pragma once
 
-#include "app/setup/setup_file.h"
+#include "app/setup/body_table.h"
 #include "app/setup/table_reader.h"
 
 namespace app {
 
-/// Reads `[machine]`, or a machine file, into the set-up.
-void read_machine(TableReader& table, core::Machine& machine);
+/// Reads `[machine]`, or a machine file. What the table does not say stays as it was.
+void read_machine(TableReader& table, core::Machine& machine, const MeshSource& source);
 
 } // namespace app

@@ -14,7 +14,7 @@
 namespace app {
 namespace {
 
-constexpr const char* axis_keys[] = {"X", "Y", "Z"};
+constexpr const char* axis_keys[] = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
@@ -63,7 +63,7 @@ void read_offsets(TableReader& table, SetupFile& file) {
         if (!offset) continue;
         gcode::AxisValues& origin = file.environment.work_offsets[i];
         const gcode::AxisValues of_variables = std::exchange(origin, {});
-        for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t axis = 0; axis < core::axis_count; ++axis)
             origin[axis] = offset->number_or(axis_keys[axis], 0.0);
         if (of_variables != gcode::AxisValues{} && of_variables != origin)
             file.assumptions.push_back(
@@ -145,13 +145,13 @@ void read_rules(TableReader& table, SetupFile& file) {
 
 /// The machine from its own file, whose mistakes carry its own name.
 void read_machine_file(const std::string& path, core::Machine& machine,
-                       std::optional<core::Error>& error) {
+                       std::vector<std::string>& assumptions, std::optional<core::Error>& error) {
     const auto parsed = parse(path);
     if (!parsed) {
         error = parsed.error();
     } else {
         TableReader table(*parsed, "machine", error);
-        read_machine(table, machine);
+        read_machine(table, machine, {std::filesystem::path(path).parent_path(), assumptions});
     }
     if (error && error->file.empty()) error->file = path;
 }
@@ -160,28 +160,43 @@ void read_machine_table(TableReader& table, BodyContext& context,
                         std::optional<core::Error>& error) {
     core::Machine& machine = context.file.setup.machine;
     if (const auto name = table.string("file"))
-        read_machine_file((context.folder / *name).string(), machine, error);
-    read_machine(table, machine);
+        read_machine_file((context.folder / *name).string(), machine, context.file.assumptions,
+                          error);
+    read_machine(table, machine, context.meshes());
     const core::AxisPosition home = machine.home();
-    if (home[0] && home[1] && home[2] && !context.file.environment.home)
-        context.file.environment.home = gcode::AxisValues{*home[0], *home[1], *home[2]};
+    if (home[0] && home[1] && home[2] && !context.file.environment.home) {
+        gcode::AxisValues& values = context.file.environment.home.emplace();
+        for (size_t axis = 0; axis < core::axis_count; ++axis)
+            values[axis] = home[axis].value_or(0.0);
+    }
 }
 
 void place_offsets(BodyContext& context) {
+    const core::Machine& machine = context.file.setup.machine;
     context.frames.machine_from["machine"] = {};
     for (size_t i = 0; i < std::size(offset_names); ++i) {
         const gcode::AxisValues& set = context.file.environment.work_offsets[i];
-        const core::Vec3 origin(set[0], set[1], set[2]);
+        // The work lies along the machine's axes while the rotary ones stand at their offsets.
+        gcode::AxisValues rotary{};
+        for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = set[axis];
         context.frames.machine_from[offset_names[i]] =
-            core::translation(context.file.setup.machine.place(origin));
+            core::machine_from_link(machine, machine.table, rotary).inverse()
+            * core::translation(machine.place(set));
     }
 }
 
 /// Where the machine stands at the first block: as stated, else at home, axis by axis.
 void settle_start(SetupFile& file) {
     const core::AxisPosition home = file.setup.machine.home();
-    for (size_t i = 0; i < 3; ++i)
+    for (size_t i = 0; i < core::axis_count; ++i) {
         if (!file.environment.start[i]) file.environment.start[i] = home[i];
+        if (i < 3 || !file.setup.machine.axes[i].present || file.environment.start[i]) continue;
+        file.environment.start[i] = 0.0;
+        file.assumptions.push_back(
+            fmt::format("axis {} stands at 0 at the first block", core::axis_letters[i]));
+    }
+    if (file.setup.machine.has_rotary())
+        file.environment.machine = std::make_shared<const core::Machine>(file.setup.machine);
 }
 
 void read_bodies(TableReader& root, BodyContext& context) {
@@ -191,10 +206,8 @@ void read_bodies(TableReader& root, BodyContext& context) {
         infer_stock(context);
     for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
         read_fixture(fixture, context);
-    if (root.has("part")) {
-        root.table("part", "[part]");
-        context.file.assumptions.push_back("[part] is not compared with the result yet");
-    }
+    add_machine_bodies(root, context.file.setup);
+    if (auto part = root.table("part", "[part]")) read_part(*part, context);
 }
 
 void read_root(TableReader& root, BodyContext& context, const ProgramSettings& over,
@@ -203,6 +216,10 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
     core::Setup& setup = file.setup;
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
+    if (const auto megabytes = root.number("memory_limit")) {
+        if (!(*megabytes > 0.0)) root.refuse("memory_limit", "must be above 0, in MB");
+        setup.memory_limit = *megabytes * 1e6;
+    }
     ProgramSettings settings;
     if (auto table = root.table("program", "[program]"))
         settings = read_program_table(*table, context.folder);

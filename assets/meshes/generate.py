@@ -6,279 +6,19 @@ volume is the one worked out by another way. The same bytes come out on every ru
 """
 
 import math
-import struct
-from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parent
-
-
-# --- polygons: lists of (u, v), counter-clockwise ------------------------------------------------
-
-
-def cross(a, b, c):
-    """Twice the area of triangle abc, positive when it turns left."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def triangulate(polygon):
-    """Ear clipping of a simple polygon. Points on straight edges are kept as corners."""
-    rest, triangles = list(polygon), []
-    while len(rest) > 3:
-        ear = next(i for i in range(len(rest)) if is_ear(rest, i))
-        triangles.append((rest[ear - 1], rest[ear], rest[(ear + 1) % len(rest)]))
-        del rest[ear]
-    assert cross(*rest) > 0, "what is left of the polygon is flat"
-    return triangles + [tuple(rest)]
-
-
-def is_ear(polygon, i):
-    corner = (polygon[i - 1], polygon[i], polygon[(i + 1) % len(polygon)])
-    if cross(*corner) <= 1e-9:
-        return False
-    return not any(is_inside(p, corner) for p in polygon if p not in corner)
-
-
-def is_inside(p, triangle):
-    """The border counts as inside, so that no ear cuts a point off an edge."""
-    a, b, c = triangle
-    return min(cross(a, b, p), cross(b, c, p), cross(c, a, p)) >= -1e-9
-
-
-# --- solids: lists of triangles, each three (x, y, z) --------------------------------------------
-
-
-def prism(polygon, length, point):
-    """The polygon carried along its normal; `point(u, v, w)` places it. w runs from 0 to length."""
-    low = lambda p: point(p[0], p[1], 0.0)
-    high = lambda p: point(p[0], p[1], length)
-    solid = []
-    for a, b, c in triangulate(polygon):
-        solid += [(high(a), high(b), high(c)), (low(c), low(b), low(a))]
-    for a, b in zip(polygon, polygon[1:] + polygon[:1]):
-        solid += [(low(a), low(b), high(b)), (low(a), high(b), high(a))]
-    return solid
-
-
-def along_x(polygon, width):
-    """A profile in (y, z), extruded over x from -width/2 to width/2."""
-    return prism(polygon, width, lambda u, v, w: (w - width / 2, u, v))
-
-
-def along_y(polygon, width):
-    """A profile in (x, z), extruded over y from -width/2 to width/2."""
-    # (u, v, w) -> (x, z, -y) keeps the hand of the axes.
-    return prism(polygon, width, lambda u, v, w: (u, width / 2 - w, v))
-
-
-def chamfered_box(size, chamfer):
-    """A box with all its edges chamfered at 45 degrees, standing centred on z = 0."""
-    half = [s / 2 for s in size]
-
-    def corner(signs, axis):
-        """The corner point that lies in the face across `axis`."""
-        p = [s * (h - (0 if i == axis else chamfer)) for i, (s, h) in enumerate(zip(signs, half))]
-        return (p[0], p[1], p[2] + half[2])
-
-    all_signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-    solid = []
-    for axis in range(3):
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        for side in (-1, 1):
-            face = []
-            for su, sv in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-                signs = [0, 0, 0]
-                signs[axis], signs[u], signs[v] = side, su, sv
-                face.append(corner(signs, axis))
-            solid += fan(face if side > 0 else face[::-1])
-        for su in (-1, 1):
-            for sv in (-1, 1):
-                signs = [0, 0, 0]
-                signs[u], signs[v] = su, sv
-                low, high = list(signs), list(signs)
-                low[axis], high[axis] = -1, 1
-                edge = [corner(low, u), corner(low, v), corner(high, v), corner(high, u)]
-                solid += fan(edge if su * sv > 0 else edge[::-1])
-    for signs in all_signs:
-        tip = [corner(signs, axis) for axis in range(3)]
-        solid += fan(tip if signs[0] * signs[1] * signs[2] > 0 else tip[::-1])
-    return solid
-
-
-def fan(face):
-    return [(face[0], face[i], face[i + 1]) for i in range(1, len(face) - 1)]
-
-
-def drilled_block(width, top, bottom, holes):
-    """A block over x 0..width whose upper side is the line `top` [(y, z), ...], drilled through.
-
-    Holes are (x, y, radius). The plan is cut into strips between the points of `top` and the
-    lowest, middle and highest point of each hole; a hole cuts its strips in two.
-    """
-    cuts = sorted({y for y, _ in top} | {y + k * r for _, y, r in holes for k in (-1, 0, 1)})
-    solid = []
-
-    def lift(p):
-        return (p[0], p[1], height(top, p[1]))
-
-    def drop(p):
-        return (p[0], p[1], bottom)
-
-    def wall(a, b):
-        return [(drop(a), drop(b), lift(b)), (drop(a), lift(b), lift(a))]
-
-    for low, high in zip(cuts, cuts[1:]):
-        solid += wall((width, low), (width, high)) + wall((0.0, high), (0.0, low))
-        for plan in strip_pieces(width, low, high, holes):
-            for a, b, c in triangulate(plan):
-                solid += [(lift(a), lift(b), lift(c)), (drop(c), drop(b), drop(a))]
-        for left, right in hole_borders(low, high, holes):
-            for border in (left, right[::-1]):
-                for a, b in zip(border, border[1:]):
-                    solid += wall(a, b)
-    ends = row(width, cuts[0], holes), row(width, cuts[-1], holes)[::-1]
-    for end in ends:
-        for a, b in zip(end, end[1:]):
-            solid += wall(a, b)
-    return solid
-
-
-def height(top, y):
-    for (y0, z0), (y1, z1) in zip(top, top[1:]):
-        if y0 <= y <= y1:
-            return z0 + (z1 - z0) * (y - y0) / (y1 - y0)
-    raise ValueError(f"y {y} is beside the block")
-
-
-def row(width, y, holes):
-    """The points between two strips where no hole is open: the corners, and where a hole ends."""
-    tips = [(cx, y) for cx, cy, r in holes if y in (cy - r, cy + r)]
-    return [(0.0, y), *tips, (width, y)]
-
-
-def hole_borders(low, high, holes):
-    """The left and right side, upwards, of each hole that is open between low and high."""
-    for cx, cy, r in holes:
-        if cy - r <= low and high <= cy + r:
-            right = arc((cx, cy, r), low, high)
-            yield [(2 * cx - x, y) for x, y in right], right
-
-
-def arc(hole, low, high):
-    """Points of the right half of a circle from y = low to y = high, at most ten degrees apart."""
-    cx, cy, r = hole
-    start, end = (math.asin(max(-1.0, min(1.0, (y - cy) / r))) for y in (low, high))
-    count = math.ceil((end - start) / math.radians(10) - 1e-9)
-    points = [(cx + half_chord(r, low - cy), low)]
-    for i in range(1, count):
-        angle = start + (end - start) * i / count
-        points.append((cx + r * math.cos(angle), cy + r * math.sin(angle)))
-    return points + [(cx + half_chord(r, high - cy), high)]
-
-
-def half_chord(r, d):
-    """Exactly nothing at the ends, where rounding would leave a sliver."""
-    return 0.0 if abs(abs(d) - r) < 1e-12 else math.sqrt(r * r - d * d)
-
-
-def strip_pieces(width, low, high, holes):
-    borders = list(hole_borders(low, high, holes))
-    if not borders:
-        return [row(width, low, holes) + row(width, high, holes)[::-1]]
-    ((left, right),) = borders
-    return [[(0.0, low), *left, (0.0, high)], [(width, low), (width, high), *right[::-1]]]
-
-
-# --- checks and files ----------------------------------------------------------------------------
-
-
-def check_closed(name, solid):
-    edges = set()
-    for triangle in solid:
-        for a, b in zip(triangle, triangle[1:] + triangle[:1]):
-            assert a != b, f"{name}: an edge without length at {a}"
-            assert (a, b) not in edges, f"{name}: the edge {a} {b} is used twice"
-            edges.add((a, b))
-    for a, b in edges:
-        assert (b, a) in edges, f"{name}: open at the edge {a} {b}"
-
-
-def volume(solid):
-    def det(a, b, c):
-        return (
-            a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0])
-        )
-
-    return math.fsum(det(*triangle) for triangle in solid) / 6
-
-
-def chamfered_box_volume(size, chamfer):
-    """The box less the chamfer all round, grown by an octahedron of that radius."""
-    p, q, r = (s - 2 * chamfer for s in size)
-    return (
-        p * q * r
-        + 2 * chamfer * (p * q + q * r + r * p)
-        + 2 * chamfer**2 * (p + q + r)
-        + 4 / 3 * chamfer**3
-    )
-
-
-def drilled_block_volume(width, top, bottom, holes):
-    """Cross-sections over y; between two corners of the plan they are quadratic: Simpson is exact."""
-    corners = {y for y, _ in top}
-    for hole in holes:
-        _, cy, r = hole
-        cuts = sorted({y for y, _ in top if abs(y - cy) < r} | {cy - r, cy, cy + r})
-        for low, high in zip(cuts, cuts[1:]):
-            corners |= {y for _, y in arc(hole, low, high)}
-
-    def chord(hole, low, high, y):
-        cx, cy, r = hole
-        if not cy - r <= low < high <= cy + r:
-            return 0.0
-        a, b = half_chord(r, low - cy), half_chord(r, high - cy)
-        return 2 * (a + (b - a) * (y - low) / (high - low))
-
-    total = 0.0
-    ordered = sorted(corners)
-    for low, high in zip(ordered, ordered[1:]):
-        section = lambda y: (height(top, y) - bottom) * (
-            width - sum(chord(hole, low, high, y) for hole in holes)
-        )
-        total += (high - low) / 6 * (section(low) + 4 * section((low + high) / 2) + section(high))
-    return total
-
-
-def normal(a, b, c):
-    u, v = ([q - p for p, q in zip(a, other)] for other in (b, c))
-    n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-    length = math.sqrt(sum(x * x for x in n))
-    return tuple(x / length for x in n)
-
-
-def write_stl(name, solid):
-    data = bytearray(f"{name}, mm".encode().ljust(80)) + struct.pack("<I", len(solid))
-    for triangle in solid:
-        values = [*normal(*triangle), *(x for p in triangle for x in p)]
-        data += struct.pack("<12fH", *(x + 0.0 for x in values), 0)
-    (FOLDER / name).write_bytes(data)
-
-
-def rounded_to_float(solid):
-    """What a reader of the file will see."""
-    as_float = lambda x: struct.unpack("<f", struct.pack("<f", x))[0] + 0.0
-    return [tuple(tuple(map(as_float, p)) for p in triangle) for triangle in solid]
-
-
-def write_checked(name, solid, expected_volume):
-    solid = rounded_to_float(solid)
-    check_closed(name, solid)
-    found = volume(solid)
-    assert abs(found - expected_volume) <= 1e-6 * expected_volume, (name, found, expected_volume)
-    write_stl(name, solid)
-    print(f"{name}: {len(solid)} triangles, {found:.1f} mm3")
-
+from solids import (
+    along_x,
+    along_y,
+    chamfered_box,
+    chamfered_box_volume,
+    drilled_block,
+    drilled_block_volume,
+    prism,
+    turned,
+    turned_volume,
+)
+from stl import write_checked
 
 # --- the meshes ----------------------------------------------------------------------------------
 
@@ -346,9 +86,85 @@ def write_roughed(name):
     write_checked(name, drilled_block(*block), drilled_block_volume(*block))
 
 
+# --- the 6 inch vise: three meshes, put together for any opening ---------------------------------
+
+
+def write_vise6():
+    """Origin: on the bed, at the fixed jaw's face, in the middle of the jaws' width."""
+    width, front, back = 152.0, 330.0, 75.0
+    foot = [(-76, -73), (76, -73), (76, -45), (60, -45), (60, 0), (-60, 0), (-60, -45), (-76, -45)]
+    body = prism(foot, front + back, lambda u, v, w: (u, back - w, v))
+    write_checked("vise6-body.stl", body, (152 * 28 + 120 * 45) * (front + back))
+    fixed = [(0, 0), (60, 0), (60, 25), (45, 45), (0, 45)]
+    write_checked("vise6-fixed-jaw.stl", along_x(fixed, width), (60 * 45 - 15 * 20 / 2) * width)
+    moving = [(-85, 0), (0, 0), (0, 45), (-45, 45), (-85, 25)]
+    write_checked("vise6-moving-jaw.stl", along_x(moving, width), (85 * 45 - 40 * 20 / 2) * width)
+
+
+# --- a strap clamp: fork, stud with nut, step block ----------------------------------------------
+
+
+def write_fork(name):
+    """A forked strap, 125 x 40 x 25: nose at x 0 resting at z 0, open behind for a stud of 12."""
+    plan = [(0, -20), (125, -20), (125, -7), (30, -7), (30, 7), (125, 7), (125, 20), (0, 20)]
+    upright = lambda u, v, w: (u, v, w)
+    write_checked(name, prism(plan, 25.0, upright), (125 * 40 - 95 * 14) * 25)
+
+
+def write_stud(name):
+    """M12 with washer and nut, standing on the strap's upper side at z 0; 12 mm beyond the nut."""
+    count = 24
+    stud, nut, washer = (r / math.cos(math.pi / count) for r in (6.0, 11.0, 13.0))
+    profile = [(-100, 0), (33, 0), (33, stud), (21, stud), (21, nut), (3, nut), (3, washer)]
+    profile += [(0, washer), (0, stud), (-100, stud)]
+    rings = [(stud, 0, 100), (washer, 0, 3), (nut, 0, 18), (stud, 0, 12)]
+    upright = lambda u, v, w: (u, v, w)
+    write_checked(name, turned(profile, count, upright), turned_volume(rings, count))
+
+
+def write_step_block(name):
+    """Five steps of 12 x 8, the lowest 12 high at x 0, the highest 44 high at x 60; 30 wide."""
+    profile = [(0, 0), (60, 0), (60, 44), (48, 44), (48, 36), (36, 36), (36, 28), (24, 28)]
+    profile += [(24, 20), (12, 20), (12, 12), (0, 12)]
+    write_checked(name, along_y(profile, 30), 12 * (12 + 20 + 28 + 36 + 44) * 30)
+
+
+# --- a chuck for a rotary table, and the cradle of a trunnion ------------------------------------
+
+
+def write_chuck(name):
+    """Three-jaw chuck without its jaws, 160 across, axis X; its back at x 0, its face at x 66."""
+    count, bore = 36, 20.0
+    body, step = (r / math.cos(math.pi / count) for r in (80.0, 62.5))
+    profile = [(0, bore), (66, bore), (66, body), (12, body), (12, step), (0, step)]
+    rings = [(step, bore, 12), (body, bore, 54)]
+    along = lambda u, v, w: (w, u, v)
+    write_checked(name, turned(profile, count, along), turned_volume(rings, count))
+
+
+def write_chuck_jaw(name):
+    """One jaw, 20 wide: on the chuck's face at x 0, gripping at z 0, outwards along +z."""
+    profile = [(0, 0), (37, 0), (37, 14), (26, 14), (26, 32), (15, 32), (15, 50), (0, 50)]
+    write_checked(name, along_y(profile, 20), (37 * 14 + 26 * 18 + 15 * 18) * 20)
+
+
+def write_cradle(name):
+    """A trunnion's cradle seen from the front, 180 deep; the origin lies on the axis it tilts about."""
+    profile = [(-190, -120), (190, -120), (190, 90), (150, 90), (150, -70), (-150, -70)]
+    profile += [(-150, 90), (-190, 90)]
+    write_checked(name, along_y(profile, 180), (380 * 50 + 2 * 40 * 160) * 180)
+
+
 if __name__ == "__main__":
     write_vise("vise-116.stl", 116)
     write_vise("vise-38.stl", 38.1)
     write_clamp("clamp.stl")
     write_blank("blank.stl")
     write_roughed("roughed.stl")
+    write_vise6()
+    write_fork("fork.stl")
+    write_stud("stud.stl")
+    write_step_block("step-block.stl")
+    write_chuck("chuck.stl")
+    write_chuck_jaw("chuck-jaw.stl")
+    write_cradle("cradle.stl")

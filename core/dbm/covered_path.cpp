@@ -23,18 +23,25 @@ bool widens_upwards(const RevolvedProfile& flutes) {
     return is_convex(flutes) && flutes.elements.back().margin == 0.0;
 }
 
+/// A straight move of a tip in the tool's frame, where the tool stands upright, and whether what it
+/// cut is open above.
+struct Move {
+    Vec3 from, to;
+    bool open = false;
+};
+
 /// Whether the tip at `p` is near enough to a place of the move: all of a tool made smaller by that
 /// much is then within the tool as it stood there.
-bool passes(const LoggedSweep& logged, const Vec3& p, double near) {
-    const Vec3 q = logged.sweep.from, by = logged.sweep.to - logged.sweep.from;
+bool passes(const Move& move, const Vec3& p, double near) {
+    const Vec3 q = move.from, by = move.to - move.from;
     const double length = glm::dot(by, by);
     const double t = length > 0.0 ? std::clamp(glm::dot(p - q, by) / length, 0.0, 1.0) : 0.0;
     return glm::distance(p, q + t * by) <= near;
 }
 
 /// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
-bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
-    const Vec3 q = logged.sweep.from, by = logged.sweep.to - logged.sweep.from;
+bool covers(const Move& move, const Vec3& p, double sideways) {
+    const Vec3 q = move.from, by = move.to - move.from;
     // The places of the move that are not above p: first .. last of 0 .. 1.
     double first = 0.0, last = 1.0;
     if (by.z > 0.0) last = std::min(last, (p.z - q.z) / by.z);
@@ -47,20 +54,13 @@ bool covers(const LoggedSweep& logged, const Vec3& p, double sideways) {
     return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= sideways;
 }
 
-/// A move that can serve, and whether what it cut is open above.
-struct Move {
-    const LoggedSweep* logged = nullptr;
-    bool open = false;
-};
-
 /// A search among the moves that can serve.
 struct Search {
     std::vector<Move> moves;
     double sideways;
 
     bool over(const Move& move, const Vec3& p) const {
-        return passes(*move.logged, p, sideways)
-               || (move.open && covers(*move.logged, p, sideways));
+        return passes(move, p, sideways) || (move.open && covers(move, p, sideways));
     }
 
     /// Both ends over one move: then, both being straight, all between is over it too.
@@ -78,12 +78,30 @@ struct Search {
 
     /// Both in the same of two ways: each of them holds between its ends.
     bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
-        const bool passed = passes(*move.logged, a, sideways) && passes(*move.logged, b, sideways);
-        return passed
-               || (move.open && covers(*move.logged, a, sideways)
-                   && covers(*move.logged, b, sideways));
+        const bool passed = passes(move, a, sideways) && passes(move, b, sideways);
+        return passed || (move.open && covers(move, a, sideways) && covers(move, b, sideways));
     }
 };
+
+/// The height of the highest point of a box along `up`.
+double top_along(const Aabb& box, const Vec3& up) {
+    return glm::dot(glm::max(box.min * up, box.max * up), Vec3(1.0));
+}
+
+/// Everything that may have been cut over or under a path, along `up`.
+Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb& stock) {
+    Aabb path;
+    path.extend(from);
+    path.extend(to);
+    Aabb all = path;
+    all.extend(stock);
+    const Vec3 far = glm::length(all.size()) * up;
+    for (const Vec3& place : {from, to}) {
+        path.extend(place + far);
+        path.extend(place - far);
+    }
+    return path;
+}
 
 } // namespace
 
@@ -91,22 +109,21 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
     if (question.sideways <= 0.0) return false;
     const bool upwards = widens_upwards(question.flutes);
     const double height = bounds(question.flutes).max.z;
-    Aabb path;
-    path.extend(question.from);
-    path.extend(question.to);
-    Search search{{}, question.sideways};
+    const Vec3 up = question.orientation[2];
+    const Mat3 tool_from_stock = glm::transpose(question.orientation);
     // What cut under the path reached up through it, to the stock's top and beyond.
-    path.min.z = -infinity;
-    path.max.z = infinity;
+    const double top = top_along(stock.outer_box, up);
+    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
+    Search search{{}, question.sideways};
     for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
-        const LoggedSweep& logged = stock.log[number];
-        const CutterSweep& sweep = logged.sweep;
-        const double top = std::min(sweep.from.z, sweep.to.z) + height;
-        const bool open = upwards && top >= stock.outer_box.max.z;
-        if (same_profile(sweep.cutter->flutes, question.flutes))
-            search.moves.push_back({&logged, open});
+        const CutterSweep& sweep = stock.log[number].sweep;
+        if (sweep.orientation[2] != up) continue;
+        if (!same_profile(sweep.cutter->flutes, question.flutes)) continue;
+        Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to};
+        move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
+        search.moves.push_back(move);
     }
-    return search.covered(question.from, question.to, 0);
+    return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
 }
 
 } // namespace core

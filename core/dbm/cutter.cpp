@@ -3,8 +3,15 @@
 namespace core {
 namespace {
 
-/// What a computed end of a stretch may be off by, mm (see line_interval).
-constexpr double rounding = 1e-9;
+/// The box of a piece about the profile's origin, its axis pointing anywhere.
+Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
+    // Circles about the axis reach as far along X as the axis leans away from X.
+    const Vec3 lean(std::hypot(up.y, up.z), std::hypot(up.z, up.x), std::hypot(up.x, up.y));
+    Aabb box;
+    for (const auto& [z, r] : {std::pair(e.z0, e.r0), std::pair(e.z1, e.r1)})
+        box.extend(Aabb{z * up - r * lean, z * up + r * lean});
+    return box.grown(e.margin);
+}
 
 } // namespace
 
@@ -15,32 +22,37 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     else
         for (const ProfileElement& element : flutes.elements)
             convex.push_back(RevolvedProfile{{element}});
-    Cutter cutter{.flutes = flutes};
+    Cutter cutter{.flutes = flutes, .path_error = path_error, .pieces = {}, .body = {}};
     for (const RevolvedProfile& piece : convex) {
         if (path_error == 0.0)
             cutter.pieces.push_back({piece, piece});
         else
             cutter.pieces.push_back({shrunk_within(piece, path_error), grown(piece, path_error)});
     }
+    for (const Cutter::Piece& piece : cutter.pieces) cutter.body.extend(bounds(piece.around));
     return cutter;
 }
 
 Aabb bounds(const CutterSweep& sweep) {
-    Aabb box;
-    for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-        const Aabb body = bounds(piece.around);
-        for (const Vec3& place : {sweep.from, sweep.to})
-            box.extend(Aabb{body.min + place, body.max + place});
+    Aabb body = sweep.cutter->body;
+    if (!is_upright(sweep.orientation)) {
+        body = {};
+        for (const Cutter::Piece& piece : sweep.cutter->pieces)
+            for (const ProfileElement& e : piece.around.elements)
+                body.extend(tilted_bounds(e, sweep.orientation[2]));
     }
-    return box;
+    return {glm::min(sweep.from, sweep.to) + body.min, glm::max(sweep.from, sweep.to) + body.max};
 }
 
 std::optional<Interval> line_interval(const RevolvedProfile& convex, const CutterSweep& sweep,
                                       int axis, double u, double v) {
     // The sweep of a convex profile is convex, so the hull of what its pieces cover is covered.
+    const bool upright = is_upright(sweep.orientation);
     Interval hull{infinity, -infinity};
     for (const ProfileElement& element : convex.elements) {
-        const auto part = line_interval({element, sweep.from, sweep.to}, axis, u, v);
+        const ElementSweep moved{element, sweep.from, sweep.to};
+        const auto part = upright ? line_interval(moved, axis, u, v)
+                                  : tilted_line_interval(moved, sweep.orientation, axis, u, v);
         if (!part) continue;
         hull.lower = std::min(hull.lower, part->lower);
         hull.upper = std::max(hull.upper, part->upper);
@@ -64,8 +76,8 @@ std::optional<Interval> covered_heights(const RevolvedProfile& convex, const Cut
 }
 
 std::optional<Interval> safely_within(std::optional<Interval> swept) {
-    if (!swept || !(swept->lower + rounding < swept->upper - rounding)) return std::nullopt;
-    return Interval{swept->lower + rounding, swept->upper - rounding};
+    if (!swept || !(swept->lower + safely_less < swept->upper - safely_less)) return std::nullopt;
+    return Interval{swept->lower + safely_less, swept->upper - safely_less};
 }
 
 } // namespace core

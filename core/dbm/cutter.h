@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/dbm/solid.h"
-#include "core/dbm/swept_line.h"
+#include "core/dbm/tilted_line.h"
 
 namespace core {
 
@@ -16,16 +16,21 @@ struct Cutter {
         RevolvedProfile within, around;
     };
     RevolvedProfile flutes;
+    double path_error = 0.0;
     std::vector<Piece> pieces;
+    Aabb body; // round all of what it may cut, when it stands upright, about its tip
 };
 
 /// A cutter for paths that stay within `path_error` mm of the straight moves given for them.
 Cutter make_cutter(const RevolvedProfile& flutes, double path_error);
 
-/// One straight move of a cutter. Frame: that of the stock; places of the tool's tip.
+/// One straight move of a cutter that does not turn meanwhile.
+/// Frame: that of the stock; places of the tool's tip.
 struct CutterSweep {
     std::shared_ptr<const Cutter> cutter;
     Vec3 from = Vec3(0.0), to = Vec3(0.0);
+    Mat3 orientation = Mat3(1.0); // stock_from_tool
+    uint32_t block = 0;           // of the program, whatever the caller counts by
 };
 
 /// The box of everything the sweep may remove.
@@ -39,6 +44,9 @@ std::optional<Interval> line_interval(const RevolvedProfile& convex, const Cutte
 /// corners, it covers every point between them.
 std::optional<Interval> covered_heights(const RevolvedProfile& convex, const CutterSweep& sweep,
                                         const Square& square);
+
+/// What a computed end of a stretch may be off by, mm (see tilted_line_interval).
+constexpr double safely_less = 1e-8;
 
 /// A computed stretch, shortened by what rounding may have added to it; empty if nothing is left.
 std::optional<Interval> safely_within(std::optional<Interval> swept);

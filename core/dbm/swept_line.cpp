@@ -3,70 +3,11 @@
 #include <array>
 #include <cassert>
 
+#include "core/dbm/line_algebra.h"
+#include "core/dbm/tilted_line.h"
+
 namespace core {
 namespace {
-
-/// A stretch of the motion's parameter, 0..1 at most.
-struct Range {
-    double first, last;
-
-    bool empty() const { return !(first < last); }
-    double clamp(double t) const { return std::clamp(t, first, last); }
-};
-
-/// A quantity that changes evenly over the motion: at + t * by.
-struct Linear {
-    double at, by;
-
-    double operator()(double t) const { return at + t * by; }
-};
-
-/// Where `f` is not negative, within `range`.
-Range where_not_negative(const Linear& f, Range range) {
-    if (f.by == 0.0) return f.at >= 0.0 ? range : Range{1.0, 0.0};
-    const double root = -f.at / f.by;
-    if (f.by > 0.0) return {std::max(range.first, root), range.last};
-    return {range.first, std::min(range.last, root)};
-}
-
-/// a t^2 + 2 b t + c.
-struct Quadratic {
-    double a, b, c;
-
-    double operator()(double t) const { return (a * t + 2.0 * b) * t + c; }
-};
-
-/// The zeros of q, lower one first, from its discriminant >= 0. Nothing cancels, so that a very
-/// small `a` does no harm; a zero that is not there (a = 0) comes out infinite.
-Range zeros(const Quadratic& q, double discriminant) {
-    const double far = -q.b - std::copysign(std::sqrt(discriminant), q.b);
-    if (far == 0.0) return {0.0, 0.0};
-    const double one = far / q.a, other = q.c / far;
-    return {std::min(one, other), std::max(one, other)};
-}
-
-/// Where q <= 0, for a >= 0, within `range`.
-Range where_not_positive(const Quadratic& q, Range range) {
-    if (q.a == 0.0) return where_not_negative({-q.c, -2.0 * q.b}, range);
-    const double discriminant = q.b * q.b - q.a * q.c;
-    if (discriminant < 0.0) return {1.0, 0.0};
-    const Range below = zeros(q, discriminant);
-    return {std::max(range.first, below.first), std::min(range.last, below.last)};
-}
-
-/// Least and greatest of two functions over the candidates that were tried.
-struct Extent {
-    double least = infinity, greatest = -infinity;
-
-    void add(double low, double high) {
-        least = std::min(least, low);
-        greatest = std::max(greatest, high);
-    }
-    std::optional<Interval> interval() const {
-        if (!(least < greatest)) return std::nullopt;
-        return Interval{least, greatest};
-    }
-};
 
 /// Half the chord of a circle at a distance from its centre; at a cone's tip both are rounding.
 double half_chord(double radius, double away) {
@@ -113,16 +54,6 @@ struct LineMotion {
     }
     const Linear& operator[](int axis) const { return offset[static_cast<size_t>(axis)]; }
 };
-
-Quadratic squared(const Linear& f) { return {f.by * f.by, f.at * f.by, f.at * f.at}; }
-
-Quadratic operator+(const Quadratic& p, const Quadratic& q) {
-    return {p.a + q.a, p.b + q.b, p.c + q.c};
-}
-
-Quadratic operator-(const Quadratic& p, const Quadratic& q) {
-    return {p.a - q.a, p.b - q.b, p.c - q.c};
-}
 
 constexpr Range whole_motion{0.0, 1.0};
 
@@ -215,85 +146,14 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     return extent.interval();
 }
 
-/// The greatest value of a concave function over a range, by golden section.
-template <typename Function>
-double argmax(const Function& f, Range range) {
-    constexpr double golden = 0.6180339887498949;
-    double low = range.first, high = range.last;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double fa = f(a), fb = f(b);
-    for (int i = 0; i < 60; ++i) {
-        if (fa < fb) {
-            low = a;
-            a = b;
-            fa = fb;
-            fb = f(b = low + golden * (high - low));
-        } else {
-            high = b;
-            b = a;
-            fb = fa;
-            fa = f(a = high - golden * (high - low));
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/// The end of {f >= 0} between `inside`, where f >= 0, and `towards`.
-template <typename Function>
-double border(const Function& f, double inside, double towards) {
-    if (f(towards) >= 0.0) return towards;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (inside + towards);
-        (f(middle) >= 0.0 ? inside : towards) = middle;
-    }
-    return inside;
-}
-
-/// A disc with a margin (the rounded corner of a bull nose), by search on concave functions.
+/// A disc with a margin (the rounded corner of a bull nose).
 std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, double u, double v) {
     const ProfileElement& e = sweep.element;
-    const LineMotion line(sweep, axis, u, v);
-    const double disc = std::max(e.r0, e.r1);
     // Most lines near a sweep miss it: the cylinder round the piece tells them without a search.
-    const double widest = disc + e.margin;
+    const double widest = std::max(e.r0, e.r1) + e.margin;
     const ProfileElement round{e.z0 - e.margin, widest, e.z0 + e.margin, widest, 0.0};
     if (!line_interval({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
-    const auto reach = [&](double t) { // radius at the line's height
-        const double height = line[2](t) - e.z0;
-        return disc + std::sqrt(std::max(0.0, e.margin * e.margin - height * height));
-    };
-    const auto depth = [&](double t) { // how far the line lies within the body across itself
-        if (axis == 2) return disc + e.margin - std::hypot(line[0](t), line[1](t));
-        return reach(t) - std::abs(line[1 - axis](t));
-    };
-    // Only at the heights of the body is the depth concave.
-    Range level = whole_motion;
-    if (axis != 2) {
-        const Linear height{line[2].at - e.z0, line[2].by};
-        level = where_not_negative({e.margin - height.at, -height.by}, level);
-        level = where_not_negative({e.margin + height.at, height.by}, level);
-        if (level.first > level.last) return std::nullopt;
-    }
-    const double deepest = argmax(depth, level);
-    if (depth(deepest) < 0.0) return std::nullopt;
-    const Range range{border(depth, deepest, level.first), border(depth, deepest, level.last)};
-    const auto half = [&](double t) {
-        if (axis != 2) {
-            const double side = line[1 - axis](t);
-            const double r = reach(t);
-            return std::sqrt(std::max(0.0, r * r - side * side));
-        }
-        const double beyond = std::max(0.0, std::hypot(line[0](t), line[1](t)) - disc);
-        return std::sqrt(std::max(0.0, e.margin * e.margin - beyond * beyond));
-    };
-    const double middle = axis == 2 ? e.z0 : 0.0;
-    const auto high = [&](double t) { return middle - line[axis](t) + half(t); };
-    const auto low = [&](double t) { return middle - line[axis](t) - half(t); };
-    Extent extent;
-    for (const double t : {range.first, range.last, argmax(high, range),
-                           argmax([&](double at) { return -low(at); }, range)})
-        extent.add(low(t), high(t));
-    return extent.interval();
+    return tilted_line_interval(sweep, Mat3(1.0), axis, u, v);
 }
 
 } // namespace

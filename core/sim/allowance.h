@@ -4,16 +4,15 @@
 
 namespace core {
 
+struct Pair;
+
 /// What a pair must keep: a distance, and how much overlap is contact when the distance is 0.
 struct Allowance {
     double distance = 0.0;
     double contact = 0.0;
 };
 
-/// What the pair of a tool's part and the stock must keep.
-Allowance stock_allowance(const Setup& setup, PartKind part);
-
-/// What the pair of a tool's part and a fixture must keep.
-Allowance fixture_allowance(const Setup& setup, PartKind part, const Fixture& fixture);
+/// What a pair must keep, by the set-up's rules or else by default.
+Allowance allowance_of(const Setup& setup, const Pair& pair);
 
 } // namespace core

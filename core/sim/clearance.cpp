@@ -2,6 +2,13 @@
 
 namespace core {
 
+const std::string& part_name(const Setup& setup, const Pair& pair) {
+    static const std::string names[] = {name_of(PartKind::flutes), name_of(PartKind::shank),
+                                        name_of(PartKind::holder)};
+    if (pair.part < PartKind::nose) return names[static_cast<size_t>(pair.part)];
+    return setup.machine.bodies[pair.carried].name;
+}
+
 const std::string& body_name(const Setup& setup, const Pair& pair) {
     static const std::string stock = "stock";
     return pair.fixture ? setup.fixtures[*pair.fixture].name : stock;

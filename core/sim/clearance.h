@@ -8,13 +8,17 @@
 
 namespace core {
 
-/// A part of the tool and what it must not touch: the stock, or a fixture by its index.
+/// A part of the tool's side and what it must not touch: the stock, or a fixture by its index.
 struct Pair {
     PartKind part = PartKind::flutes;
-    std::optional<size_t> fixture; // empty: the stock
+    std::optional<size_t> fixture = {}; // empty: the stock
+    size_t carried = 0;                 // which of the machine's bodies, for nose and machine
 
     bool operator==(const Pair&) const = default;
 };
+
+/// The name of the pair's first body.
+const std::string& part_name(const Setup& setup, const Pair& pair);
 
 /// The name of the pair's second body.
 const std::string& body_name(const Setup& setup, const Pair& pair);

@@ -1,18 +1,14 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "core/base/ids.h"
 #include "core/base/vec.h"
+#include "core/sim/axes.h"
 
 namespace core {
-
-/// Machine coordinates of X, Y and Z (those of the gauge line, not the tip), mm. Empty: nobody
-/// knows.
-using AxisPosition = std::array<std::optional<double>, 3>;
 
 enum class MotionKind : uint8_t { rapid, feed, arc };
 
@@ -24,12 +20,20 @@ struct ArcPath {
     double angle = 0.0;      // radians, positive counter-clockwise seen from +normal
 };
 
-/// One rapid, feed or arc move in machine coordinates.
+/// The way of a tool's tip that the control keeps straight seen from the work, while rotary axes
+/// move. Frame: the link of the machine's table.
+struct TipPath {
+    Vec3 from = Vec3(0.0), to = Vec3(0.0);
+    double tool_length = 0.0; // that the control counts with
+};
+
+/// One rapid, feed or arc move in machine coordinates: those of the gauge line, not the tip.
 struct Motion {
     MotionKind kind = MotionKind::rapid;
     AxisPosition from, to;
-    std::optional<ArcPath> arc; // when kind is arc; both ends known then
-    double feed = 0.0;          // mm/min along the path; 0 on rapids
+    std::optional<ArcPath> arc = {}; // when kind is arc; both ends known then
+    std::optional<TipPath> tip = {}; // when the control follows the tip; both ends known then
+    double feed = 0.0;               // mm/min along the path; 0 on rapids
 };
 
 /// The tool that is in the spindle from now on; empty for T0, an empty spindle.
@@ -54,7 +58,25 @@ struct LengthOffsetChange {
     double length = 0.0; // mm
 };
 
+/// What becomes of corners. exact_stop: every motion ends at rest (G61.1). exact_path: the path is
+/// kept, and only what is no corner to the machine is passed without a stop (G61). continuous:
+/// corners are rounded within a tolerance (G64).
+enum class Blending : uint8_t { exact_stop, exact_path, continuous };
+
+/// How corners are passed from now on.
+struct PathModeChange {
+    Blending blending = Blending::continuous;
+    std::optional<double> tolerance; // mm; empty: not stated
+};
+
+/// A fixture that somebody puts there or takes away, by its index in the set-up.
+struct FixtureChange {
+    size_t fixture = 0;
+    bool is_there = true;
+};
+
 /// What a block does to the machine, in order.
-using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange>;
+using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange,
+                           PathModeChange, FixtureChange>;
 
 } // namespace core

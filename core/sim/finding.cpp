@@ -10,7 +10,7 @@ namespace {
 
 /// Every rule a set-up may name, with its own severity. `program` stands for what the interpreter
 /// remarks about a block.
-constexpr std::array<std::pair<const char*, Severity>, 35> rules = {{
+constexpr std::array<std::pair<const char*, Severity>, 37> rules = {{
     {"collision", Severity::error},
     {"near-miss", Severity::error},
     {"undecided", Severity::error},
@@ -43,6 +43,8 @@ constexpr std::array<std::pair<const char*, Severity>, 35> rules = {{
     {"rotary-with-tool-down", Severity::error},
     {"first-move", Severity::warning},
     {"rest-material", Severity::note},
+    {"gouge", Severity::error},
+    {"loose-piece", Severity::warning},
     {"holder-into-wall", Severity::error},
     {"air-cut", Severity::note},
     {"program", Severity::warning},

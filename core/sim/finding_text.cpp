@@ -5,15 +5,18 @@
 namespace core {
 namespace {
 
-std::string rule_of(const PairClearance& pair, BlockMotion motion, bool spindle_runs) {
+std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spindle_runs) {
     if (pair.verdict == Verdict::undecided) return "undecided";
-    const bool rapid = motion == BlockMotion::rapid;
+    const bool rapid = move.motion == BlockMotion::rapid;
+    if (rapid && move.turns) return "rotary-with-tool-down";
     const bool fixture = pair.pair.fixture.has_value();
     if (pair.verdict == Verdict::violation)
         return rapid && fixture ? "rapid-near-clamp" : "near-miss";
     if (!fixture && rapid) return "rapid-in-stock";
     if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs) return "spindle-off";
-    return pair.pair.part == PartKind::holder ? "holder-into-wall" : "collision";
+    return pair.pair.part == PartKind::holder || pair.pair.part == PartKind::nose
+               ? "holder-into-wall"
+               : "collision";
 }
 
 /// The way out of a near miss: along the axis that leads away from the body most directly.
@@ -32,6 +35,7 @@ std::string way_out(const PairClearance& pair, double missing) {
 std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body) {
     const bool fixture = pair.pair.fixture.has_value();
     if (rule == "rapid-in-stock") return "Raise the retract height, or feed through the material.";
+    if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
     if (rule == "spindle-off")
         return "Start the spindle the right way round before the tool feeds into the stock.";
     if (rule == "undecided")
@@ -40,6 +44,8 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
     if (!room.empty()) return fmt::format("{} would do{}.", room, move);
+    if (pair.pair.part == PartKind::machine)
+        return "Move the work, or use a longer tool: a part of the machine comes too near.";
     if (pair.pair.part != PartKind::flutes && !fixture)
         return "A longer stick-out or a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
@@ -51,10 +57,11 @@ std::string range(double low, double high) {
     return fmt::format("{:.3f} to {:.3f}", low, high);
 }
 
-std::string message_of(const PairClearance& pair, const std::string& rule, BlockMotion motion,
-                       const std::string& body, double at) {
-    const char* part = name_of(pair.pair.part);
-    const char* kind = motion == BlockMotion::rapid ? "On a rapid, the" : "The";
+std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
+                       const std::string& part, const std::string& body, double at) {
+    const char* kind = move.turns                          ? "While rotary axes turn, the"
+                       : move.motion == BlockMotion::rapid ? "On a rapid, the"
+                                                           : "The";
     if (rule == "rapid-in-stock")
         return fmt::format("Rapid into material: the {} runs into the stock.", part);
     if (rule == "spindle-off")
@@ -88,21 +95,22 @@ Severity severity_of(const Setup& setup, const std::string& rule) {
                                     : default_severity(rule).value_or(Severity::warning);
 }
 
-Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion motion,
-                   const SimulatorState& state, double duration) {
+Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                   const SimulatorState& state) {
     const ToolAssembly* tool = nullptr;
-    if (state.tool) tool = &setup.tools.at(*state.tool);
+    if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
+    const std::string& part = part_name(setup, pair.pair);
     const std::string& body = body_name(setup, pair.pair);
-    const double at = duration > 0.0 ? pair.time / duration : 0.0;
+    const double at = move.duration > 0.0 ? pair.time / move.duration : 0.0;
     Finding finding;
-    finding.rule = rule_of(pair, motion, spindle_runs);
+    finding.rule = rule_of(pair, move, spindle_runs);
     // Whatever it is called, a collision is never passed over.
     finding.severity =
         pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, finding.rule);
-    finding.message = in_the_plural(message_of(pair, finding.rule, motion, body, at));
+    finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
-    finding.pair = {name_of(pair.pair.part), body};
+    finding.pair = {part, body};
     finding.shortfall =
         pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
     if (!finding.cure.empty())

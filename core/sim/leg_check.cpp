@@ -3,82 +3,66 @@
 #include <cassert>
 
 #include "core/dbm/covered_path.h"
+#include "core/sim/pair_entry.h"
 
 namespace core {
 namespace {
 
-PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair,
-                     const Allowance& allowance) {
-    for (PairClearance& known : pairs)
-        if (known.pair == pair) return known;
-    pairs.push_back({.pair = pair, .allowance = allowance});
-    return pairs.back();
+double length(const Leg& leg) {
+    double sum = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) {
+        const double by = leg.places.back()[i] - leg.places.front()[i];
+        if (!is_rotary(i)) sum += by * by;
+    }
+    return std::sqrt(sum);
 }
-
-/// The stretch of a straight leg between two shares of it.
-Leg stretch(const Leg& leg, double first, double last) {
-    const auto place = [&](double share) {
-        return leg.places[0] + share * (leg.places[1] - leg.places[0]);
-    };
-    const auto time = [&](double share) { return leg.begin + share * (leg.end - leg.begin); };
-    return {{place(first), place(last)}, time(first), time(last), leg.path_error};
-}
-
-/// How far a point of the tool moves at most along a leg.
-double reach(const Leg& leg) {
-    return glm::distance(leg.places.front(), leg.places.back()) + leg.path_error;
-}
-
-/// Whether a leg cannot bring a pair nearer than it has been in this block: no point of the tool
-/// moves farther than the leg is long. Keeps the bound at the leg's end up to date if so.
-bool stays_away(PairClearance& known, const Leg& leg) {
-    if (!leg.straight || known.at_end - reach(leg) < known.upper) return false;
-    known.at_end -= reach(leg);
-    return true;
-}
-
-double length(const Leg& leg) { return glm::distance(leg.places.front(), leg.places.back()); }
 
 /// What narrows the search against the stock: the interval should not span the allowance.
 double deciding_distance(const Allowance& allowance) {
     return allowance.distance > resolution ? allowance.distance - resolution : 0.0;
 }
 
-Separation widened(Separation found, double by) {
-    found.lower = std::max(0.0, found.lower - by);
-    if (found.upper > 0.0) found.upper += by;
-    return found;
+/// The least of a row of errors, a quarter apart, that is no less than this: cutters are made for
+/// these.
+double rounded_up(double error) {
+    double step = 1e-5;
+    while (step < error) step *= 1.25;
+    return step;
 }
 
 } // namespace
 
-LegCheck::Shapes LegCheck::shapes(const RevolvedProfile& profile, const Leg& leg) const {
-    std::vector<Vec3> places;
-    for (const Vec3& place : leg.places)
-        places.push_back(place - setup_.stock_origin - Vec3(0.0, 0.0, tool_.length));
-    Shapes result;
-    for (const ProfileElement& element : profile.elements)
-        result.push_back(swept(convex(element), places));
-    return result;
+Pair LegCheck::pair_of(const MovingBody& body, std::optional<size_t> fixture) {
+    return {body.kind, fixture, body.carried};
 }
 
-Separation LegCheck::to_fixture(const Shapes& shapes, const Fixture& fixture, double limit) {
-    Separation best;
-    double lower = infinity;
-    for (const ConvexShape& shape : shapes) {
-        ++statistics_.shape_tests;
-        const double worth = std::min(limit, best.upper);
-        const Separation found = separation(shape, fixture.body, {.limit = worth});
-        lower = std::min(lower, found.lower);
-        if (found.upper < best.upper) best = found;
-    }
-    best.lower = std::min(lower, best.upper);
-    return best;
+const MovingBody& LegCheck::body_of(const Pair& pair) const {
+    for (const MovingBody& body : bodies_)
+        if (body.kind == pair.part && body.carried == pair.carried) return body;
+    assert(false);
+    return bodies_.front();
 }
 
-Separation LegCheck::to_stock(PartKind part, const Shapes& shapes, const CutModel& stock,
-                              double threshold, double limit) {
-    std::optional<LineId>& hint = hints_[static_cast<size_t>(part)];
+RelativeLeg LegCheck::against_stock(const MovingBody& body, const Leg& leg) const {
+    return relative_leg(setup_.machine, setup_.stock_mount, body.mover, leg);
+}
+
+double LegCheck::finest_error(const MovingBody& body) const {
+    const double cut = std::clamp(setup_.mesh_size / 50.0, 0.002, 0.01);
+    if (body.kind == PartKind::flutes) return cut;
+    return body.kind == PartKind::shank ? 2.0 * cut : 10.0 * cut;
+}
+
+Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
+                              double threshold, double limit, double shrink) {
+    // Most bodies of a machine are far away, and made of many triangles.
+    if (body.body && distance(bounds(*body.body, leg), stock.outer_box) >= limit)
+        return {.lower = limit};
+    const std::vector<ConvexShape> shapes =
+        !body.profile  ? shapes_of(*body.body, leg)
+        : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
+                       : shapes_of(*body.profile, leg);
+    std::optional<LineId>& hint = memory_.hints[static_cast<size_t>(body.kind)];
     const StockSeparation found =
         separation(shapes, stock,
                    {.limit = limit, .threshold = std::min(threshold, limit), .first_line = hint});
@@ -89,83 +73,65 @@ Separation LegCheck::to_stock(PartKind part, const Shapes& shapes, const CutMode
     return found.separation;
 }
 
-void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const ToolPart& part,
-                             std::vector<PairClearance>& pairs) {
-    const Fixture& body = setup_.fixtures[fixture];
-    const Allowance allowance = fixture_allowance(setup_, part.kind, body);
-    PairClearance& known = entry(pairs, {part.kind, fixture}, allowance);
-    if (stays_away(known, leg)) return;
-    const double limit = std::min(setup_.search_limit, known.upper);
-    const Separation found =
-        widened(to_fixture(shapes(part.profile, leg), body, limit), leg.path_error);
-    PairClearance now{.pair = known.pair, .allowance = allowance};
-    now.lower = std::min(found.lower, setup_.search_limit);
-    if (found.found()) {
-        now.upper = found.upper;
-        now.on_tool = found.point_a;
-        now.on_body = found.point_b;
-        now.time = start + leg.begin + found.time_a * (leg.end - leg.begin);
-    }
-    now.verdict = judge_distance(allowance, now.lower, now.upper);
-    if (now.upper == 0.0 || (allowance.distance <= resolution && now.lower <= 0.0)) {
-        const RevolvedProfile inner =
-            shrunk_around(part.profile, contact_shrink(allowance, part.profile));
-        const Separation shrunk =
-            widened(to_fixture(shapes(inner, leg), body, setup_.search_limit), leg.path_error);
-        now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
-    }
-    merge(known, now);
+void LegCheck::look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
+                             const CutModel& stock, double nearest) {
+    // Where the body really is at one moment is a sure witness.
+    Leg still = stretch(leg, 0.0, 0.5);
+    still.places = {still.places[1]};
+    const Observation here = observe(body, still, stock, nearest);
+    seen.shrunk.upper = here.shrunk.upper;
+    if (here.plain.upper >= seen.plain.upper) return;
+    const double lower = seen.plain.lower;
+    seen.plain = here.plain;
+    seen.plain.lower = std::min(lower, here.plain.upper);
+    seen.plain.time_a = 0.5;
 }
 
-void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs) {
-    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture)
-        for (const ToolPart& part : tool_.parts) {
-            const bool chips = part.kind == PartKind::flutes && use_ == FluteUse::cutting;
-            if (chips && setup_.fixtures[fixture].expendable) continue;
-            check_fixture(leg, start, fixture, part, pairs);
-        }
-}
-
-LegCheck::Observation LegCheck::observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
-                                        double nearest) {
-    const Allowance allowance = stock_allowance(setup_, part.kind);
+LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
+                                        const CutModel& stock, double nearest) {
+    const Allowance allowance = allowance_of(setup_, pair_of(body));
+    const RelativeLeg relative = against_stock(body, leg);
     const double limit = std::min(setup_.search_limit, nearest);
-    Observation seen;
-    seen.plain =
-        to_stock(part.kind, shapes(part.profile, leg), stock, deciding_distance(allowance), limit);
-    const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= leg.path_error;
-    if (may_touch && retraces(part, leg, stock, allowance)) {
+    const double error = relative.error;
+    Observation seen{.travel = relative.travel};
+    const double threshold = deciding_distance(allowance) + (relative.turns ? error : 0.0);
+    seen.plain = to_stock(body, relative, stock, threshold, limit);
+    const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
+    if (may_touch && retraces(body, relative, stock, allowance)) {
         seen.shrunk.lower = infinity; // no stock where the shrunk part goes
-    } else if (may_touch || seen.plain.upper == 0.0) {
-        const RevolvedProfile inner =
-            shrunk_around(part.profile, contact_shrink(allowance, part.profile));
-        const double just_apart = resolution + leg.path_error;
-        seen.shrunk = to_stock(part.kind, shapes(inner, leg), stock, just_apart, 2.0 * just_apart);
+    } else if (body.profile && (may_touch || seen.plain.upper == 0.0)) {
+        const double just_apart = resolution + error;
+        seen.shrunk = to_stock(body, relative, stock, just_apart, 2.0 * just_apart,
+                               contact_shrink(allowance, *body.profile));
+    } else if (seen.plain.upper == 0.0) {
+        seen.shrunk = seen.plain;
     }
-    seen.plain = widened(seen.plain, leg.path_error);
-    seen.shrunk = widened(seen.shrunk, leg.path_error);
+    const bool near = seen.plain.lower <= error;
+    seen.plain = widened(seen.plain, relative);
+    seen.shrunk = widened(seen.shrunk, relative);
+    if (relative.turns && near) look_half_way(seen, body, leg, stock, nearest);
     return seen;
 }
 
-bool LegCheck::retraces(const ToolPart& part, const Leg& leg, const CutModel& stock,
+bool LegCheck::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                         const Allowance& allowance) const {
+    if (tool_.parts.empty() || !body.profile || body.kind == PartKind::holder) return false;
+    if (leg.turns || leg.places.size() > 2) return false;
     const RevolvedProfile& flutes = tool_.parts[0].profile;
-    const double widest = bounds(flutes).max.x;
-    if (!leg.straight || part.kind == PartKind::holder || bounds(part.profile).max.x > widest)
-        return false;
+    if (bounds(*body.profile).max.x > bounds(flutes).max.x) return false;
     // Half of the contact depth is for the way, the rest for the errors of both paths.
-    const double path_errors = leg.path_error + chord_error(setup_.mesh_size);
-    const Vec3 tip = setup_.stock_origin + Vec3(0.0, 0.0, tool_.length);
+    const double path_errors = leg.error + chord_error(setup_.mesh_size);
     return runs_in_own_cut(stock, {.flutes = flutes,
-                                   .from = leg.places.front() - tip,
-                                   .to = leg.places.back() - tip,
-                                   .sideways = 0.5 * contact_depth(allowance) - path_errors});
+                                   .from = leg.places.front(),
+                                   .to = leg.places.back(),
+                                   .sideways = 0.5 * contact_depth(allowance) - path_errors,
+                                   .orientation = leg.orientation});
 }
 
-PairClearance LegCheck::clearance(const ToolPart& part, const Leg& leg, double start,
+PairClearance LegCheck::clearance(const MovingBody& body, const Leg& leg, double start,
                                   const Observation& before, const Observation& after) const {
-    PairClearance now{.pair = {part.kind, std::nullopt},
-                      .allowance = stock_allowance(setup_, part.kind)};
+    PairClearance now{.pair = pair_of(body)};
+    now.allowance = allowance_of(setup_, now.pair);
     now.lower = before.plain.lower;
     if (after.plain.found()) {
         now.upper = after.plain.upper;
@@ -182,69 +148,67 @@ PairClearance LegCheck::clearance(const ToolPart& part, const Leg& leg, double s
 
 double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
                                std::vector<PairClearance>& pairs) {
-    std::vector<PartCheck> checks;
+    std::vector<BodyCheck> checks;
     bool settled = true;
-    for (const ToolPart& part : tool_.parts) {
-        const Allowance allowance = stock_allowance(setup_, part.kind);
-        if (part.kind == PartKind::flutes) continue;
-        PairClearance& known = entry(pairs, {part.kind, std::nullopt}, allowance);
-        if (stays_away(known, leg)) continue;
-        const Observation before = observe(part, leg, stock, known.upper);
-        const bool clear = clearance(part, leg, start, before, before).verdict == Verdict::clear;
+    for (const MovingBody& body : bodies_) {
+        if (body.kind == PartKind::flutes) continue;
+        PairClearance& known = entry(pairs, pair_of(body), setup_);
+        if (stays_away(known, leg, against_stock(body, leg))) continue;
+        const Observation before = observe(body, leg, stock, known.upper);
+        const bool clear = clearance(body, leg, start, before, before).verdict == Verdict::clear;
         settled = settled && clear;
-        checks.push_back({part, before, clear});
+        checks.push_back({body, before, clear});
     }
     if (!settled && length(leg) > setup_.mesh_size && depends_on_time(checks, leg, stock))
         return check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
                + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
 
     const double removed = cut_along(leg, stock);
-    for (const PartCheck& check : checks) {
+    for (const BodyCheck& check : checks) {
         const Observation after = removed > 0.0 ? look_again(check, leg, stock) : check.before;
-        PairClearance now = clearance(check.part, leg, start, check.before, after);
+        PairClearance now = clearance(check.body, leg, start, check.before, after);
         if (now.verdict == Verdict::collision)
             now.time =
                 start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
-        merge(entry(pairs, now.pair, now.allowance), now);
+        merge(entry(pairs, now.pair, setup_), now);
     }
     return removed;
 }
 
-bool LegCheck::depends_on_time(const std::vector<PartCheck>& checks, const Leg& leg,
+bool LegCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
                                const CutModel& stock) {
     // What is too near both before and after the cut is so in any order.
     CutModel cut_already = stock;
     cut_along(leg, cut_already);
-    for (const PartCheck& check : checks) {
+    for (const BodyCheck& check : checks) {
         if (check.clear) continue;
         const Observation after = look_again(check, leg, cut_already);
-        if (clearance(check.part, leg, 0.0, after, after).verdict == Verdict::clear) return true;
+        if (clearance(check.body, leg, 0.0, after, after).verdict == Verdict::clear) return true;
     }
     return false;
 }
 
-LegCheck::Observation LegCheck::look_again(const PartCheck& check, const Leg& leg,
+LegCheck::Observation LegCheck::look_again(const BodyCheck& check, const Leg& leg,
                                            const CutModel& stock) {
     if (!check.before.plain.found()) return check.before;
-    if (!check.clear) return observe(check.part, leg, stock, setup_.search_limit);
+    if (!check.clear) return observe(check.body, leg, stock, setup_.search_limit);
     // Clear by its lower bound: what is left of the stock only gives the upper one.
     Observation after = check.before;
-    after.plain = widened(
-        to_stock(check.part.kind, shapes(check.part.profile, leg), stock, 0.0, setup_.search_limit),
-        leg.path_error);
+    const RelativeLeg relative = against_stock(check.body, leg);
+    after.plain =
+        widened(to_stock(check.body, relative, stock, 0.0, setup_.search_limit), relative);
     return after;
 }
 
-bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
-                           std::vector<PairClearance>& pairs) {
+bool LegCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
+                            std::vector<PairClearance>& pairs) {
     bool gouged = false;
-    for (const ToolPart& part : tool_.parts) {
-        const Allowance allowance = stock_allowance(setup_, part.kind);
-        PairClearance& known = entry(pairs, {part.kind, std::nullopt}, allowance);
-        if (stays_away(known, leg)) continue;
-        const Observation seen = observe(part, leg, stock, known.upper);
-        const PairClearance now = clearance(part, leg, start, seen, seen);
-        gouged = gouged || (part.kind == PartKind::flutes && now.verdict == Verdict::collision);
+    for (const MovingBody& body : bodies_) {
+        PairClearance& known = entry(pairs, pair_of(body), setup_);
+        if (stays_away(known, leg, against_stock(body, leg))) continue;
+        const Observation seen = observe(body, leg, stock, known.upper);
+        const PairClearance now = clearance(body, leg, start, seen, seen);
+        gouged = gouged || (body.kind == PartKind::flutes && now.verdict == Verdict::collision);
         merge(known, now);
     }
     return gouged;
@@ -252,9 +216,9 @@ bool LegCheck::check_parts(const Leg& leg, double start, const CutModel& stock,
 
 double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock,
                                    std::vector<PairClearance>& pairs) {
-    const bool gouged = check_parts(leg, start, stock, pairs);
+    const bool gouged = check_bodies(leg, start, stock, pairs);
     if (gouged) {
-        PairClearance& flutes = entry(pairs, {PartKind::flutes, std::nullopt}, {});
+        PairClearance& flutes = entry(pairs, {PartKind::flutes}, setup_);
         const double share = earliest(leg, flutes.pair, 0.0, stock);
         flutes.time = std::min(flutes.time, start + leg.begin + share * (leg.end - leg.begin));
     }
@@ -262,14 +226,72 @@ double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock
     return gouged ? cut_along(leg, stock) : 0.0;
 }
 
+std::shared_ptr<const Cutter> LegCheck::cutter_for(const RelativeLeg& leg) {
+    const double error = leg.turns ? rounded_up(leg.error) : leg.error;
+    auto& cutter = memory_.cutters[{tool_.description.number, error}];
+    if (!cutter)
+        cutter = std::make_shared<const Cutter>(make_cutter(tool_.parts[0].profile, error));
+    return cutter;
+}
+
 double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
-    const Vec3 tip(0.0, 0.0, tool_.length);
-    const auto cutter =
-        std::make_shared<const Cutter>(make_cutter(tool_.parts[0].profile, leg.path_error));
+    if (tool_.parts.empty()) return 0.0;
+    const RelativeLeg way = against_stock(bodies_[0], leg);
     ++statistics_.sweeps;
-    return cut(stock, {cutter, leg.places[0] - setup_.stock_origin - tip,
-                       leg.places[1] - setup_.stock_origin - tip});
+    return cut(stock, {.cutter = cutter_for(way),
+                       .from = way.places.front(),
+                       .to = way.places.back(),
+                       .orientation = way.orientation,
+                       .block = value_of(block_)});
+}
+
+bool LegCheck::turns_too_far(const Leg& leg) const {
+    if (!setup_.machine.has_rotary() || leg.places.size() != 2) return false;
+    for (const MovingBody& body : bodies_) {
+        const RelativeLeg relative = against_stock(body, leg);
+        if (relative.turns && relative.error > finest_error(body)) return true;
+    }
+    return false;
+}
+
+bool LegCheck::is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
+                                 std::vector<PairClearance>& pairs) {
+    std::vector<PairClearance> seen;
+    for (const MovingBody& body : bodies_) {
+        const RelativeLeg relative = against_stock(body, leg);
+        if (relative.error == infinity) return false;
+        const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
+        const PairClearance* known = nullptr;
+        for (const PairClearance& pair : pairs)
+            if (pair.pair == pair_of(body)) known = &pair;
+        const double nearest = known && !chips ? known->upper : infinity;
+        Observation look{.travel = relative.travel};
+        look.plain = widened(
+            to_stock(body, relative, stock, 0.0, std::min(setup_.search_limit, nearest)), relative);
+        const double lower = look.plain.lower;
+        if (lower <= 0.0) return false;
+        if (chips) continue;
+        const PairClearance now = clearance(body, leg, start, look, look);
+        if (now.verdict != Verdict::clear) return false;
+        if (lower < std::min(nearest, setup_.search_limit)
+            && relative.error > std::max(finest_error(body), 0.02 * lower))
+            return false;
+        seen.push_back(now);
+    }
+    for (const PairClearance& now : seen) merge(entry(pairs, now.pair, setup_), now);
+    return true;
+}
+
+double LegCheck::check_stock(const Leg& leg, double start, CutModel& stock,
+                             std::vector<PairClearance>& pairs) {
+    if (turns_too_far(leg)) {
+        if (is_seen_from_afar(leg, start, stock, pairs)) return 0.0;
+        return check_stock(stretch(leg, 0.0, 0.5), start, stock, pairs)
+               + check_stock(stretch(leg, 0.5, 1.0), start, stock, pairs);
+    }
+    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
+                                     : check_not_cutting(leg, start, stock, pairs);
 }
 
 double LegCheck::run(const Leg& leg, double start, CutModel& stock,
@@ -279,8 +301,7 @@ double LegCheck::run(const Leg& leg, double start, CutModel& stock,
         return 0.0;
     }
     check_fixtures(leg, start, pairs);
-    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
-                                     : check_not_cutting(leg, start, stock, pairs);
+    return check_stock(leg, start, stock, pairs);
 }
 
 void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
@@ -289,9 +310,9 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     // certainly taken meets it too.
     std::vector<PairClearance> anywhere;
     check_fixtures(leg, start, anywhere);
-    check_parts(leg, start, stock, anywhere);
+    check_bodies(leg, start, stock, anywhere);
     std::vector<PairClearance> certain;
-    for (const Vec3& place : leg.certain) rest(place, stock, certain);
+    for (const AxisValues& place : leg.certain) rest(place, stock, certain);
     for (PairClearance& pair : anywhere) {
         const bool safe = pair.verdict == Verdict::clear;
         PairClearance now{.pair = pair.pair, .allowance = pair.allowance, .lower = pair.lower};
@@ -300,28 +321,31 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
         now.lower = pair.lower;
         now.time = start + leg.end;
         if (!safe) now.verdict = std::max(now.verdict, Verdict::undecided);
-        merge(entry(pairs, pair.pair, pair.allowance), now);
+        merge(entry(pairs, pair.pair, setup_), now);
     }
 }
 
-void LegCheck::rest(const Vec3& place, const CutModel& stock, std::vector<PairClearance>& pairs) {
+void LegCheck::rest(const AxisValues& place, const CutModel& stock,
+                    std::vector<PairClearance>& pairs) {
     const Leg leg{.places = {place}};
     check_fixtures(leg, 0.0, pairs);
-    check_parts(leg, 0.0, stock, pairs);
+    check_bodies(leg, 0.0, stock, pairs);
 }
 
 double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
                           const CutModel& stock) {
-    if (!leg.straight) return 0.0;
-    const ToolPart* part = nullptr;
-    for (const ToolPart& candidate : tool_.parts)
-        if (candidate.kind == pair.part) part = &candidate;
+    if (!leg.straight || leg.places.size() < 2) return 0.0;
+    const MovingBody& body = body_of(pair);
+    const Mount& target = pair.fixture ? setup_.fixtures[*pair.fixture].mount : setup_.stock_mount;
     const auto reached = [&](double share) {
-        const Shapes moved = shapes(part->profile, stretch(leg, 0.0, share));
-        const double limit = distance + leg.path_error + resolution;
+        const RelativeLeg moved =
+            relative_leg(setup_.machine, target, body.mover, stretch(leg, 0.0, share));
+        if (moved.error == infinity) return true;
+        const double limit = distance + moved.error + resolution;
         const Separation found =
-            pair.fixture ? to_fixture(moved, setup_.fixtures[*pair.fixture], limit + 1.0)
-                         : to_stock(part->kind, moved, stock, 0.0, limit + 1.0);
+            pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
+                                         limit + 1.0, statistics_.shape_tests)
+                         : to_stock(body, moved, stock, 0.0, limit + 1.0);
         return found.upper <= limit;
     };
     if (reached(0.0)) return 0.0;

@@ -1,83 +1,114 @@
 #pragma once
 
+#include <map>
+
 #include "core/dbm/cut_model.h"
 #include "core/distance/stock_distance.h"
 #include "core/sim/clearance.h"
+#include "core/sim/moving_body.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
 namespace core {
 
-/// Where each part of a tool last met the stock most nearly: a good place to look first.
-using StockHints = std::array<std::optional<LineId>, 3>;
+/// What a check keeps from leg to leg to be faster; no answer depends on it.
+struct CheckMemory {
+    /// Where each kind of body last met the stock most nearly: a good place to look first.
+    std::array<std::optional<LineId>, 5> hints;
+    /// Cutters made ready, by the tool's number and the path error they allow for.
+    std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
+};
 
 /// Whether what the flutes meet becomes chips or is a crash.
 enum class FluteUse : uint8_t { cutting, not_cutting };
 
-/// Checks a tool along the legs of a path, against the fixtures and a stock that it cuts.
+/// Checks a tool and what carries it along the legs of a path, against the fixtures and a stock
+/// that it cuts.
 ///
 /// Refers to what it was given; make one where it is needed.
 class LegCheck {
 public:
-    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, StockHints& hints,
-             Statistics& statistics)
-        : setup_(setup), tool_(tool), use_(use), hints_(hints), statistics_(statistics) {}
+    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
+             const std::vector<bool>& fixtures_there, CheckMemory& memory, Statistics& statistics)
+        : setup_(setup),
+          tool_(tool),
+          use_(use),
+          block_(block),
+          fixtures_there_(fixtures_there),
+          memory_(memory),
+          statistics_(statistics),
+          bodies_(moving_bodies(setup, tool)) {}
 
     /// Checks one leg, cuts the stock along it, and adds what was found to `pairs`, with times
-    /// counted from `start`, seconds. While the flutes cut, shank and holder are held against the
+    /// counted from `start`, seconds. While the flutes cut, the other bodies are held against the
     /// stock as it is: `lower` against the stock at the start of a stretch, `upper` against what is
     /// left at its end, and a stretch that leaves a doubt is halved until it is no longer than the
-    /// mesh size.
+    /// mesh size. A leg on which rotary axes move is halved until what turning adds to the errors
+    /// is small, or does not matter.
     ///
     /// Result: the volume removed, mm3.
     double run(const Leg& leg, double start, CutModel& stock, std::vector<PairClearance>& pairs);
 
-    /// Checks the tool at rest, without cutting.
-    void rest(const Vec3& place, const CutModel& stock, std::vector<PairClearance>& pairs);
+    /// Checks everything at rest, without cutting.
+    void rest(const AxisValues& place, const CutModel& stock, std::vector<PairClearance>& pairs);
 
     /// The least share of the leg after which the pair is as near as `distance` for the first time.
     double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock);
 
 private:
-    using Shapes = std::vector<ConvexShape>;
-
-    /// What one state of the stock says of a part: as it is, and shrunk by the contact depth.
+    /// What one state of the stock says of a body: as it is, and shrunk by the contact depth.
     struct Observation {
         Separation plain;
         Separation shrunk;
+        double travel = 0.0; // how far the body goes at most
     };
 
-    Shapes shapes(const RevolvedProfile& profile, const Leg& leg) const;
-    Separation to_fixture(const Shapes& shapes, const Fixture& fixture, double limit);
-    Separation to_stock(PartKind part, const Shapes& shapes, const CutModel& stock,
-                        double threshold, double limit);
+    static Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});
+    const MovingBody& body_of(const Pair& pair) const;
+    RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
+    double finest_error(const MovingBody& body) const;
 
     void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
-    void check_fixture(const Leg& leg, double start, size_t fixture, const ToolPart& part,
+    void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
+    /// What is known of a body and a fixture over a leg, from one look at the whole of it.
+    PairClearance look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
+                                  const MovingBody& body, const PairClearance& known);
 
-    /// A part of a cutting tool before the stock is cut, and whether it is clear of it already.
-    struct PartCheck {
-        const ToolPart& part;
+    Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
+                        double threshold, double limit, double shrink = 0.0);
+
+    /// A body of a cutting tool before the stock is cut, and whether it is clear of it already.
+    struct BodyCheck {
+        const MovingBody& body;
         Observation before;
         bool clear;
     };
 
+    double check_stock(const Leg& leg, double start, CutModel& stock,
+                       std::vector<PairClearance>& pairs);
+    bool turns_too_far(const Leg& leg) const;
+    /// Whether one look at a leg that turns tells enough of every body; adds what it told if so.
+    bool is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
+                           std::vector<PairClearance>& pairs);
+
     /// Looks no farther than `nearest`.
-    Observation observe(const ToolPart& part, const Leg& leg, const CutModel& stock,
+    Observation observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
                         double nearest);
-    /// Whether the part goes only where the flutes have cut before (see runs_in_own_cut).
-    bool retraces(const ToolPart& part, const Leg& leg, const CutModel& stock,
+    void look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
+                       const CutModel& stock, double nearest);
+    /// Whether the body goes only where the flutes have cut before (see runs_in_own_cut).
+    bool retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                   const Allowance& allowance) const;
-    /// Whether a part that is too near the stock before the cut is clear of what is left after it.
-    bool depends_on_time(const std::vector<PartCheck>& checks, const Leg& leg,
+    /// Whether a body that is too near the stock before the cut is clear of what is left after it.
+    bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
                          const CutModel& stock);
-    Observation look_again(const PartCheck& check, const Leg& leg, const CutModel& stock);
-    PairClearance clearance(const ToolPart& part, const Leg& leg, double start,
+    Observation look_again(const BodyCheck& check, const Leg& leg, const CutModel& stock);
+    PairClearance clearance(const MovingBody& body, const Leg& leg, double start,
                             const Observation& before, const Observation& after) const;
-    /// Adds the pairs of all parts with the stock; whether the flutes gouge it.
-    bool check_parts(const Leg& leg, double start, const CutModel& stock,
-                     std::vector<PairClearance>& pairs);
+    /// Adds the pairs of all bodies with the stock; whether the flutes gouge it.
+    bool check_bodies(const Leg& leg, double start, const CutModel& stock,
+                      std::vector<PairClearance>& pairs);
     void check_hull(const Leg& leg, double start, const CutModel& stock,
                     std::vector<PairClearance>& pairs);
     double check_cutting(const Leg& leg, double start, CutModel& stock,
@@ -85,12 +116,16 @@ private:
     double check_not_cutting(const Leg& leg, double start, CutModel& stock,
                              std::vector<PairClearance>& pairs);
     double cut_along(const Leg& leg, CutModel& stock);
+    std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg);
 
     const Setup& setup_;
     const ToolAssembly& tool_;
     FluteUse use_;
-    StockHints& hints_;
+    BlockIndex block_;
+    const std::vector<bool>& fixtures_there_;
+    CheckMemory& memory_;
     Statistics& statistics_;
+    std::vector<MovingBody> bodies_;
 };
 
 } // namespace core

@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/sim/kinematics.h"
+
 namespace core {
 namespace {
 
-constexpr double assumed_rapid = 10'000.0; // mm/min, where the machine states none
 constexpr double seconds_per_minute = 60.0;
 
-std::optional<Vec3> known(const AxisPosition& p) {
-    if (!p[0] || !p[1] || !p[2]) return std::nullopt;
-    return Vec3(*p[0], *p[1], *p[2]);
+/// The values of a position; empty when an axis of the machine may stand anywhere.
+std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
+    AxisValues values{};
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (!p[i] && machine.axes[i].present) return std::nullopt;
+        values[i] = p[i].value_or(0.0);
+    }
+    return values;
 }
 
 double rapid_speed(const MachineAxis& axis, Path& path) {
@@ -20,90 +26,114 @@ double rapid_speed(const MachineAxis& axis, Path& path) {
 }
 
 /// Seconds each axis needs on its own.
-Vec3 axis_times(const Vec3& by, const Machine& machine, Path& path) {
-    Vec3 times(0.0);
-    for (int i = 0; i < 3; ++i)
-        if (by[i] != 0.0)
-            times[i] = std::abs(by[i]) / rapid_speed(machine.axes[static_cast<size_t>(i)], path)
-                       * seconds_per_minute;
+AxisValues axis_times(const AxisValues& from, const AxisValues& to, const Machine& machine,
+                      Path& path) {
+    AxisValues times{};
+    for (size_t i = 0; i < axis_count; ++i)
+        if (to[i] != from[i])
+            times[i] =
+                std::abs(to[i] - from[i]) / rapid_speed(machine.axes[i], path) * seconds_per_minute;
     return times;
 }
 
-void add_straight(Path& path, const Machine& machine, const Vec3& from, const Vec3& to,
-                  double duration) {
-    path.legs.push_back(
-        {{machine.place(from), machine.place(to)}, path.duration, path.duration + duration, 0.0});
+double longest(const AxisValues& times) { return *std::max_element(times.begin(), times.end()); }
+
+AxisValues between(const AxisValues& from, const AxisValues& to, double share) {
+    AxisValues values = from;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (to[i] != from[i])
+            values[i] = share == 1.0 ? to[i] : from[i] + share * (to[i] - from[i]);
+    return values;
+}
+
+void add_straight(Path& path, const AxisValues& from, const AxisValues& to, double duration) {
+    path.legs.push_back({{from, to}, path.duration, path.duration + duration, 0.0});
     path.duration += duration;
 }
 
-/// Corners of the box of axis values between two places, in the machine frame.
-std::vector<Vec3> box_corners(const Machine& machine, const Aabb& box) {
-    std::vector<Vec3> corners;
+/// The length that a feed is counted along: of the linear axes, or of the rotary ones, in degrees,
+/// where only they move.
+double feed_length(const AxisValues& from, const AxisValues& to) {
+    double linear = 0.0, secondary = 0.0, rotary = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) {
+        double& sum = is_rotary(i) ? rotary : is_secondary(i) ? secondary : linear;
+        sum += (to[i] - from[i]) * (to[i] - from[i]);
+    }
+    return std::sqrt(linear > 0.0 ? linear : secondary > 0.0 ? secondary : rotary);
+}
+
+/// Corners of the box of values of X, Y and Z between two places, the others as in the first.
+std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& high) {
+    std::vector<AxisValues> corners;
     for (unsigned i = 0; i < 8; ++i) {
-        const Vec3 corner(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
-                          i & 4U ? box.max.z : box.min.z);
-        const Vec3 place = machine.place(corner);
-        if (std::find(corners.begin(), corners.end(), place) == corners.end())
-            corners.push_back(place);
+        AxisValues corner = low;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (i >> axis & 1U) corner[axis] = high[axis];
+        if (std::find(corners.begin(), corners.end(), corner) == corners.end())
+            corners.push_back(corner);
     }
     return corners;
 }
 
 /// Each axis at its own speed: the path bends where an axis arrives.
-void add_dogleg(Path& path, const Machine& machine, const Vec3& from, const Vec3& to) {
-    const Vec3 times = axis_times(to - from, machine, path);
-    const double total = std::max({times.x, times.y, times.z});
-    if (path.assumed_speed) {
-        Aabb box;
-        box.extend(from);
-        box.extend(to);
-        path.legs.push_back({.places = box_corners(machine, box),
+void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to) {
+    const AxisValues times = axis_times(from, to, machine, path);
+    const double total = longest(times);
+    bool only_linear = true;
+    for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
+    if (path.assumed_speed && only_linear) {
+        path.legs.push_back({.places = box_corners(from, to),
                              .end = total,
                              .straight = false,
-                             .certain = {machine.place(from), machine.place(to)}});
+                             .certain = {from, to}});
         path.duration = total;
         return;
     }
-    std::array<double, 3> bends = {times.x, times.y, times.z};
+    AxisValues bends = times;
     std::sort(bends.begin(), bends.end());
-    Vec3 here = from;
+    AxisValues here = from;
     double now = 0.0;
     for (const double bend : bends) {
         if (bend <= now) continue;
-        Vec3 next = to;
-        for (int i = 0; i < 3; ++i)
+        AxisValues next = to;
+        for (size_t i = 0; i < axis_count; ++i)
             if (bend < times[i]) next[i] = from[i] + (to[i] - from[i]) * (bend / times[i]);
-        add_straight(path, machine, here, next, bend - now);
+        add_straight(path, here, next, bend - now);
         here = next;
         now = bend;
     }
 }
 
 /// The place on an arc after a share of its angle, axis values.
-Vec3 on_arc(const Motion& motion, const Vec3& from, const Vec3& to, double share) {
+AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues& to,
+                  double share) {
     const ArcPath& arc = *motion.arc;
-    const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
-    const double u = from[a] - arc.centre[a], v = from[b] - arc.centre[b];
-    const double end_radius = std::hypot(to[a] - arc.centre[a], to[b] - arc.centre[b]);
+    const auto a = static_cast<size_t>((arc.normal + 1) % 3);
+    const auto b = static_cast<size_t>((arc.normal + 2) % 3);
+    const double centre[2] = {arc.centre[(arc.normal + 1) % 3], arc.centre[(arc.normal + 2) % 3]};
+    const double u = from[a] - centre[0], v = from[b] - centre[1];
+    const double end_radius = std::hypot(to[a] - centre[0], to[b] - centre[1]);
     const double radius = std::hypot(u, v);
     // A small difference of the radii is spread evenly over the angle, as controls do.
     const double scale = radius > 0.0 ? 1.0 + share * (end_radius / radius - 1.0) : 1.0;
     const double angle = share * arc.angle;
-    Vec3 p = from;
-    p[a] = arc.centre[a] + scale * (u * std::cos(angle) - v * std::sin(angle));
-    p[b] = arc.centre[b] + scale * (u * std::sin(angle) + v * std::cos(angle));
-    p[arc.normal] = from[arc.normal] + share * (to[arc.normal] - from[arc.normal]);
+    AxisValues p = between(from, to, share);
+    p[a] = centre[0] + scale * (u * std::cos(angle) - v * std::sin(angle));
+    p[b] = centre[1] + scale * (u * std::sin(angle) + v * std::cos(angle));
     return p;
 }
 
-double arc_radius(const ArcPath& arc, const Vec3& from, const Vec3& to) {
+double arc_radius(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
-    return std::max(std::hypot(from[a] - arc.centre[a], from[b] - arc.centre[b]),
-                    std::hypot(to[a] - arc.centre[a], to[b] - arc.centre[b]));
+    const auto radius = [&](const AxisValues& place) {
+        return std::hypot(place[static_cast<size_t>(a)] - arc.centre[a],
+                          place[static_cast<size_t>(b)] - arc.centre[b]);
+    };
+    return std::max(radius(from), radius(to));
 }
 
-void add_arc(Path& path, const Machine& machine, const Motion& motion, const Vec3& from,
-             const Vec3& to, double max_error) {
+void add_arc(Path& path, const Motion& motion, const AxisValues& from, const AxisValues& to,
+             double max_error) {
     const ArcPath& arc = *motion.arc;
     const double radius = arc_radius(arc, from, to);
     // The sagitta of a chord is r (1 - cos(step / 2)); a spiral's drift adds less than as much
@@ -112,89 +142,150 @@ void add_arc(Path& path, const Machine& machine, const Motion& motion, const Vec
                                              : std::numbers::pi / 2.0;
     const double step = std::min(widest, std::numbers::pi / 2.0);
     const int count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.angle) / step)));
-    const double rise = to[arc.normal] - from[arc.normal];
+    const auto normal = static_cast<size_t>(arc.normal);
+    const double rise = to[normal] - from[normal];
     const double length = std::hypot(radius * arc.angle, rise);
     path.duration = motion.feed > 0.0 ? length / motion.feed * seconds_per_minute : 0.0;
-    Vec3 here = from;
+    AxisValues here = from;
     for (int i = 1; i <= count; ++i) {
         const double share = static_cast<double>(i) / count;
-        const Vec3 next = i == count ? to : on_arc(motion, from, to, share);
-        path.legs.push_back({{machine.place(here), machine.place(next)},
+        const AxisValues next = i == count ? to : on_arc(motion, from, to, share);
+        path.legs.push_back(
+            {{here, next}, path.duration * (i - 1) / count, path.duration * share, max_error});
+        here = next;
+    }
+}
+
+/// The path of a tip, as legs on which the axes move evenly.
+///
+/// Between two moments the linear axes are off an even motion by an eighth of their acceleration.
+/// The tip lies at most r from every rotary axis and moves by v against the work while the rotary
+/// axes turn by w in all: the linear axes make up for that, so their acceleration is at most
+/// 2 w (w r + v).
+void add_tip_path(Path& path, const Machine& machine, const Motion& motion, const AxisValues& from,
+                  const AxisValues& to, double max_error) {
+    const TipPath& tip = *motion.tip;
+    const auto at = [&](double share) {
+        const AxisValues rotary = between(from, to, share);
+        return reach_tip(machine, rotary, tip.from + share * (tip.to - tip.from), tip.tool_length)
+            .value_or(rotary);
+    };
+    const double travel = glm::distance(tip.from, tip.to);
+    const double turn = turn_of(machine, from, to);
+    const double farthest = std::max(tip_reach(machine, tip.from, tip.tool_length),
+                                     tip_reach(machine, tip.to, tip.tool_length));
+    const double bend = 2.0 * turn * (turn * farthest + travel);
+    const int count = std::clamp(
+        static_cast<int>(std::ceil(std::max(std::sqrt(bend / (8.0 * max_error)), 2.0 * turn))), 1,
+        1'000'000);
+    path.duration = motion.feed > 0.0 ? (travel > 0.0 ? travel : feed_length(from, to))
+                                            / motion.feed * seconds_per_minute
+                                      : longest(axis_times(from, to, machine, path));
+    AxisValues here = from;
+    for (int i = 1; i <= count; ++i) {
+        const double share = static_cast<double>(i) / count;
+        const AxisValues next = i == count ? to : at(share);
+        path.legs.push_back({{here, next},
                              path.duration * (i - 1) / count,
                              path.duration * share,
-                             max_error});
+                             turn > 0.0 ? max_error : 0.0});
         here = next;
     }
 }
 
 /// Every straight way to the end from wherever the limits allow the machine to stand.
 void add_from_unknown(Path& path, const Machine& machine, const Motion& motion) {
-    Aabb starts, ends;
-    for (int i = 0; i < 3; ++i) {
-        const auto k = static_cast<size_t>(i);
-        const MachineAxis& axis = machine.axes[k];
-        if ((!motion.from[k] || !motion.to[k]) && (!axis.min || !axis.max)) return;
-        starts.min[i] = motion.from[k].value_or(axis.min.value_or(0.0));
-        starts.max[i] = motion.from[k].value_or(axis.max.value_or(0.0));
-        ends.min[i] = motion.to[k].value_or(axis.min.value_or(0.0));
-        ends.max[i] = motion.to[k].value_or(axis.max.value_or(0.0));
+    AxisValues starts[2] = {}, ends[2] = {};
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = machine.axes[i];
+        if (!axis.present) continue;
+        const bool is_known = motion.from[i] && motion.to[i];
+        if (!is_known && (i >= 3 || !axis.min || !axis.max)) return;
+        if (i >= 3 && motion.from[i] != motion.to[i]) return;
+        starts[0][i] = motion.from[i].value_or(axis.min.value_or(0.0));
+        starts[1][i] = motion.from[i].value_or(axis.max.value_or(0.0));
+        ends[0][i] = motion.to[i].value_or(axis.min.value_or(0.0));
+        ends[1][i] = motion.to[i].value_or(axis.max.value_or(0.0));
     }
-    Leg leg{.places = box_corners(machine, starts), .straight = false, .start_known = false};
-    if (const auto to = known(motion.to)) {
-        leg.certain = {machine.place(*to)};
-        leg.places.push_back(leg.certain[0]);
+    Leg leg{.places = box_corners(starts[0], starts[1]), .straight = false, .start_known = false};
+    if (const auto to = known(motion.to, machine)) {
+        leg.certain = {*to};
+        leg.places.push_back(*to);
     } else { // an axis nobody commanded stands anywhere all the way
-        starts.extend(ends);
-        leg.places = box_corners(machine, starts);
+        for (size_t i = 0; i < 3; ++i) {
+            starts[0][i] = std::min(starts[0][i], ends[0][i]);
+            starts[1][i] = std::max(starts[1][i], ends[1][i]);
+        }
+        leg.places = box_corners(starts[0], starts[1]);
     }
     path.legs.push_back(std::move(leg));
+}
+
+void extend(AxisRange& range, const AxisValues& place, double by = 0.0) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        range.min[i] = std::min(range.min[i], place[i] - by);
+        range.max[i] = std::max(range.max[i], place[i] + by);
+    }
 }
 
 } // namespace
 
 double chord_error(double mesh_size) { return std::clamp(mesh_size / 200.0, 1e-4, 0.0025); }
 
+Leg stretch(const Leg& leg, double first, double last) {
+    const auto time = [&](double share) { return leg.begin + share * (leg.end - leg.begin); };
+    return {
+        {between(leg.places[0], leg.places[1], first), between(leg.places[0], leg.places[1], last)},
+        time(first),
+        time(last),
+        leg.path_error};
+}
+
 Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     Path path;
-    const auto from = known(motion.from), to = known(motion.to);
+    const auto from = known(motion.from, machine), to = known(motion.to, machine);
     if (!from || !to) {
         add_from_unknown(path, machine, motion);
-        return path;
-    }
-    if (motion.arc) {
-        add_arc(path, machine, motion, *from, *to, max_error);
-        return path;
-    }
-    if (motion.kind != MotionKind::rapid) {
-        const double length = glm::distance(*from, *to);
-        add_straight(path, machine, *from, *to,
-                     motion.feed > 0.0 ? length / motion.feed * seconds_per_minute : 0.0);
-        return path;
-    }
-    if (machine.rapid == RapidStyle::dogleg && *from != *to) {
+    } else if (motion.arc) {
+        add_arc(path, motion, *from, *to, max_error);
+    } else if (motion.tip) {
+        add_tip_path(path, machine, motion, *from, *to, max_error);
+    } else if (motion.kind != MotionKind::rapid) {
+        add_straight(path, *from, *to,
+                     motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
+                                       : 0.0);
+    } else if (machine.rapid == RapidStyle::dogleg && *from != *to) {
         add_dogleg(path, machine, *from, *to);
-        return path;
+    } else {
+        add_straight(path, *from, *to, longest(axis_times(*from, *to, machine, path)));
     }
-    const Vec3 times = axis_times(*to - *from, machine, path);
-    add_straight(path, machine, *from, *to, std::max({times.x, times.y, times.z}));
     return path;
 }
 
-Aabb axis_range(const Motion& motion) {
-    Aabb range;
-    const Vec3 from = *known(motion.from), to = *known(motion.to);
-    range.extend(from);
-    range.extend(to);
+AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error) {
+    AxisRange range;
+    range.min.fill(infinity);
+    range.max.fill(-infinity);
+    const AxisValues from = *known(motion.from, machine), to = *known(motion.to, machine);
+    extend(range, from);
+    extend(range, to);
+    if (motion.tip) {
+        const Path path = path_of(motion, machine, max_error);
+        for (const Leg& leg : path.legs)
+            if (&leg != &path.legs.back()) extend(range, leg.places[1], leg.path_error);
+        return range;
+    }
     if (!motion.arc) return range;
     const ArcPath& arc = *motion.arc;
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
-    const double start = std::atan2(from[b] - arc.centre[b], from[a] - arc.centre[a]);
+    const double start = std::atan2(from[static_cast<size_t>(b)] - arc.centre[b],
+                                    from[static_cast<size_t>(a)] - arc.centre[a]);
     // The extremes of the two axes lie where the angle is a multiple of a quarter turn.
     const double quarter = std::numbers::pi / 2.0;
     const double first = std::min(start, start + arc.angle), last = first + std::abs(arc.angle);
     for (double k = std::ceil(first / quarter); k * quarter <= last; ++k) {
         const double share = (k * quarter - start) / arc.angle;
-        range.extend(on_arc(motion, from, to, std::clamp(share, 0.0, 1.0)));
+        extend(range, on_arc(motion, from, to, std::clamp(share, 0.0, 1.0)));
     }
     return range;
 }

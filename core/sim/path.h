@@ -3,23 +3,28 @@
 #include <optional>
 #include <vector>
 
+#include "core/sim/event.h"
 #include "core/sim/machine.h"
 
 namespace core {
 
 /// A piece of a motion that is checked as a whole.
 ///
-/// `straight`: the gauge line moves from the first of two places to the second. Else it takes some
-/// way through the hull of the places, and only `certain` ones are known to be on it.
+/// `straight`: all axes move evenly from the first of two places to the second. Else the linear
+/// ones take some way through the hull of the places, and only `certain` ones are known to be on
+/// it; rotary axes stand still then.
 struct Leg {
-    std::vector<Vec3> places; // machine frame
-    double begin = 0.0;       // seconds after the motion's start
+    std::vector<AxisValues> places;
+    double begin = 0.0; // seconds after the motion's start
     double end = 0.0;
-    double path_error = 0.0; // the true path stays this near to the leg, mm
+    double path_error = 0.0; // the true place of every point of the tool is this near, mm
     bool straight = true;
     bool start_known = true; // false: the machine may come from anywhere within its limits
-    std::vector<Vec3> certain = {};
+    std::vector<AxisValues> certain = {};
 };
+
+/// The part of a straight leg between two shares of it, 0..1.
+Leg stretch(const Leg& leg, double first, double last);
 
 /// A motion as legs, in order. Empty when an axis may stand anywhere.
 struct Path {
@@ -28,6 +33,9 @@ struct Path {
     bool assumed_speed = false; // a rapid on an axis whose speed is not stated
 };
 
+/// What rapids run at on axes whose speed is not stated, mm/min.
+constexpr double assumed_rapid = 10'000.0;
+
 /// Chords of an arc stay within this of it, mm.
 double chord_error(double mesh_size);
 
@@ -35,10 +43,18 @@ double chord_error(double mesh_size);
 ///
 /// Shape: a straight move is one leg; an arc or helix is chords that stay within `max_error` of it;
 ///        a dog-leg rapid is a leg for each change of direction, or one box of the axes that move
-///        when speeds are unknown; a motion from an unknown place is the hull of the limits.
+///        when speeds are unknown; a motion from an unknown place is the hull of the limits. A
+///        path of the tip becomes legs on which the axes stay within `max_error` of where the
+///        control has them. Rotary axes from or to an unknown angle leave the path empty.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
-/// The least and greatest value of each axis over a motion whose ends are known.
-Aabb axis_range(const Motion& motion);
+/// The least and greatest value of each axis.
+struct AxisRange {
+    AxisValues min, max;
+};
+
+/// The range of every axis over a motion whose ends are known, its extremes on the way included.
+/// A path of the tip is counted by its legs, and up to `max_error` too wide.
+AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error);
 
 } // namespace core

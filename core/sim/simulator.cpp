@@ -1,5 +1,7 @@
 #include "core/sim/simulator.h"
 
+#include <thread>
+
 #include <fmt/format.h>
 
 #include "core/sim/finding_text.h"
@@ -21,6 +23,7 @@ struct BlockRun {
     SimulatorState& state;
     BlockResult result = {};
     std::vector<TimedLeg> legs = {};
+    bool turns = false; // rotary axes move
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -40,10 +43,18 @@ struct BlockRun {
         if (finding.severity != Severity::off) result.findings.push_back(std::move(finding));
     }
 
+    /// What checks the legs of a motion, with whatever is in the spindle.
+    LegCheck leg_check(FluteUse use) {
+        static const ToolAssembly nothing;
+        return {setup,           tool() ? *tool() : nothing, use,
+                block.block,     state.fixtures_there,       state.memory,
+                state.statistics};
+    }
+
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-        const bool turns = tool() && turns_to_cut(state.spindle, *tool());
-        return feeds && turns ? FluteUse::cutting : FluteUse::not_cutting;
+        const bool cuts = tool() && turns_to_cut(state.spindle, *tool());
+        return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
     }
 
     void carry_out(const Motion& motion);
@@ -51,6 +62,8 @@ struct BlockRun {
     void carry_out(const SpindleChange& change) { state.spindle = change; }
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
+    void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
+    void carry_out(const FixtureChange& change);
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
@@ -71,18 +84,20 @@ BlockMotion label(const Motion& motion) {
 }
 
 void BlockRun::check_limits(const Motion& motion) {
-    for (size_t i = 0; i < 3; ++i)
-        if (!motion.from[i] || !motion.to[i]) return;
-    const Aabb range = axis_range(motion);
-    for (int i = 0; i < 3; ++i) {
-        const MachineAxis& axis = setup.machine.axes[static_cast<size_t>(i)];
+    for (size_t i = 0; i < axis_count; ++i)
+        if (setup.machine.axes[i].present && (!motion.from[i] || !motion.to[i])) return;
+    const AxisRange range = axis_range(motion, setup.machine, chord_error(setup.mesh_size));
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = setup.machine.axes[i];
+        if (!axis.present) continue;
         const double below = axis.min.value_or(-infinity) - range.min[i];
         const double above = range.max[i] - axis.max.value_or(infinity);
         const double beyond = std::max(below, above);
         if (beyond <= resolution) continue;
         find("over-travel",
-             fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} mm beyond its limit.",
-                         axis_names[i], below > above ? range.min[i] : range.max[i], beyond),
+             fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} {} beyond its limit.",
+                         axis_letters[i], below > above ? range.min[i] : range.max[i], beyond,
+                         is_rotary(i) ? "degrees" : "mm"),
              "Move the work, or use another tool length or work offset.");
     }
 }
@@ -91,8 +106,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     std::vector<PairClearance> pairs;
     for (const Leg& leg : path.legs)
-        LegCheck(setup, *tool(), use(motion), state.hints, state.statistics)
-            .run(leg, result.duration, state.stock, pairs);
+        leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
     if (!path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
         for (PairClearance& pair : pairs) result.pairs.push_back(pair);
@@ -112,14 +126,16 @@ void BlockRun::carry_out(const Motion& motion) {
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
+    for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
     state.position = motion.to;
-    if (!tool()) {
-        move_without_tool(motion);
+    if (!tool()) move_without_tool(motion);
+    if (!tool() && setup.machine.bodies.empty()) {
+        // Nothing moves that could meet anything.
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else {
-        LegCheck check(setup, *tool(), use(motion), state.hints, state.statistics);
+        LegCheck check = leg_check(use(motion));
         for (const Leg& leg : path.legs) {
             result.removed += check.run(leg, result.duration, state.stock, result.pairs);
             legs.push_back({leg, result.duration});
@@ -161,18 +177,25 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
 }
 
+void BlockRun::carry_out(const FixtureChange& change) {
+    state.fixtures_there[change.fixture] = change.is_there;
+    const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
+    if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, result.pairs);
+}
+
 void BlockRun::check_tool_change() {
-    const AxisPosition& at = state.position;
-    if (!at[0] || !at[1] || !at[2]) return;
+    const Motion stay{.from = state.position, .to = state.position};
+    const Path path = path_of(stay, setup.machine, 0.0);
+    if (path.legs.empty() || !path.legs[0].start_known) return;
     std::vector<PairClearance> pairs;
-    LegCheck(setup, *tool(), FluteUse::not_cutting, state.hints, state.statistics)
-        .rest(setup.machine.place(Vec3(*at[0], *at[1], *at[2])), state.stock, pairs);
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
     if (!worst || worst->verdict == Verdict::clear) return;
     find("tool-change-unsafe",
          fmt::format("Tool {} is changed in where its {} {} only {:.3f} mm from {}; {:.3f} mm must "
                      "be kept.",
-                     value_of(*state.tool), name_of(worst->pair.part),
+                     value_of(*state.tool), part_name(setup, worst->pair),
                      worst->pair.part == PartKind::flutes ? "are" : "is",
                      worst->found() ? worst->upper : worst->lower, body_name(setup, worst->pair),
                      worst->allowance.distance),
@@ -185,8 +208,7 @@ void settle_time(BlockRun& run, PairClearance& pair) {
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
-        LegCheck check(run.setup, *run.tool(), FluteUse::not_cutting, run.state.hints,
-                       run.state.statistics);
+        LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
@@ -196,8 +218,8 @@ void settle_time(BlockRun& run, PairClearance& pair) {
 void BlockRun::conclude() {
     std::sort(result.pairs.begin(), result.pairs.end(),
               [](const PairClearance& a, const PairClearance& b) {
-                  return std::tuple(a.pair.fixture, a.pair.part)
-                         < std::tuple(b.pair.fixture, b.pair.part);
+                  return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
+                         < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
     if (const PairClearance* worst = deciding_pair(result.pairs)) {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
@@ -206,7 +228,7 @@ void BlockRun::conclude() {
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear)
-            add(finding_of(setup, pair, result.motion, state, result.duration));
+            add(finding_of(setup, pair, {result.motion, turns, result.duration}, state));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();
@@ -230,22 +252,28 @@ const char* name_of(BlockMotion motion) {
 }
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
-    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
+    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
+    if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
+    for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
+    state.pieces = watch_of(state.stock);
     return state;
 }
 
 BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state) {
     BlockRun run{setup, block, state};
+    const size_t cuts_before = state.stock.log.size();
     run.result.time = state.time;
     run.result.tool = state.tool;
     for (const Event& event : block.events)
         std::visit([&](const auto& e) { run.carry_out(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
+    for (Finding& finding : watch_pieces(setup, state.stock, cuts_before, state.pieces))
+        run.add(std::move(finding));
     run.conclude();
     state.time += run.result.duration;
     return std::move(run.result);

@@ -7,6 +7,7 @@
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
 #include "core/sim/leg_check.h"
+#include "core/sim/loose_pieces.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
@@ -15,14 +16,16 @@ namespace core {
 /// Everything a run leaves behind for its next block. A plain value: copy it to go back in time.
 struct SimulatorState {
     CutModel stock;
-    std::optional<ToolNumber> tool; // what is in the spindle; empty: nothing, or nobody knows
-    bool tool_known = false;        // something was called, if only an empty spindle
-    AxisPosition position;          // where the last motion ended
+    std::optional<ToolNumber> tool;   // what is in the spindle; empty: nothing, or nobody knows
+    bool tool_known = false;          // something was called, if only an empty spindle
+    AxisPosition position;            // where the last motion ended
+    std::vector<bool> fixtures_there; // of the set-up's fixtures
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    double time = 0.0; // seconds since the program's start
+    PieceWatch pieces; // of the stock
+    double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
-    StockHints hints;
+    CheckMemory memory;
     std::set<std::string> assumptions; // what had to be taken for granted on the way
     bool told_unknown_start = false;
     bool told_unchecked_tool = false; // of the tool that is in the spindle now
@@ -42,8 +45,8 @@ const char* name_of(BlockMotion motion);
 struct BlockResult {
     BlockMotion motion = BlockMotion::none;
     std::optional<ToolNumber> tool;
-    double time = 0.0;     // of its start, seconds
-    double duration = 0.0; // seconds
+    double time = 0.0;     // of its start, seconds, at full speed unless settle_time was called
+    double duration = 0.0; // seconds, likewise
     double removed = 0.0;  // mm3
     bool checked = true;   // false: it moves, but nothing can be said about its clearance
     Verdict verdict = Verdict::clear;

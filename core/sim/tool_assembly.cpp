@@ -106,8 +106,12 @@ const char* name_of(PartKind kind) {
         return "flutes";
     case PartKind::shank:
         return "shank";
-    default:
+    case PartKind::holder:
         return "holder";
+    case PartKind::nose:
+        return "nose";
+    default:
+        return "machine";
     }
 }
 

@@ -9,7 +9,9 @@
 
 namespace core {
 
-enum class PartKind : uint8_t { flutes, shank, holder };
+/// What moves on the tool's side: parts of the tool, the spindle's nose, and the rest of the
+/// machine.
+enum class PartKind : uint8_t { flutes, shank, holder, nose, machine };
 
 const char* name_of(PartKind kind);
 

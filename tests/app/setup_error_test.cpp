@@ -190,7 +190,19 @@ TEST(SetupFile, RefusesAMachineThatCannotBe) {
     expect_error(W().machine(W::axis("X", "direction = [1, 1, 0]\n")), {"direction"});
     expect_error(W().machine(W::axis("X", "direction = [0, 1, 0]\n")), {"right angles"});
     expect_error(W().machine(W::axis("X", "min = 5\nmax = 5\n")), {"min must be below max"});
-    expect_error(W().machine(W::axis("A", "kind = \"rotary\"\n")), {"linear axes"});
+    expect_error(W().machine(W::axis("A", "kind = \"linear\"\n")), {"A, B and C are the rotary"});
+    expect_error(W().machine(W::axis("A", "") + W::axis("A", "")), {"there twice"});
+    expect_error(W().machine(W::axis("A", "parent = \"Q\"\n")), {"no other axis"});
+    expect_error(W().machine(W::axis("A", "parent = \"Z\"\n")), {"other side"});
+    expect_error(W().machine(W::axis("A", "parent = \"C\"\n") + W::axis("C", "parent = \"A\"\n")),
+                 {"round to itself"});
+    expect_error(W().machine(W::axis("A", "") + W::axis("C", "parent = \"base\"\n")),
+                 {"both end the table side"});
+    expect_error(W().machine("[[machine.body]]\nname = \"bed\"\naxis = \"A\"\n"
+                             "box = [[0, 0, 0], [1, 1, 1]]\n"),
+                 {"no axis of this machine"});
+    expect_error(W().machine("[[machine.body]]\naxis = \"Z\"\nbox = [[0, 0, 0], [1, 1, 1]]\n"),
+                 {"name"});
     EXPECT_NE(error_of(W().machine("file = \"nope.toml\"\n").text()).find("nope.toml: there is"),
               std::string::npos);
 }

@@ -39,13 +39,21 @@ Environment example() {
     return environment;
 }
 
+using Linear = std::array<std::optional<double>, 3>;
+
+/// X, Y and Z; all other axes must stand at 0.
+Linear linear(const AxisPosition& position) {
+    for (size_t axis = 3; axis < core::axis_count; ++axis) EXPECT_EQ(position[axis], 0.0);
+    return {position[0], position[1], position[2]};
+}
+
 TEST(Lowering, AddsWorkOffsetAndToolLength) {
     const auto motions = motions_of("G54 G0 G43 H1 Z60.\nX-20. Y50.\nG1 Z-5. F100", example());
     ASSERT_EQ(motions.size(), 3u);
-    EXPECT_EQ(motions[0].from, (AxisPosition{-350.0, -200.0, 0.0}));
-    EXPECT_EQ(motions[0].to, (AxisPosition{-350.0, -200.0, -265.0}));
-    EXPECT_EQ(motions[1].to, (AxisPosition{-370.0, -150.0, -265.0}));
-    EXPECT_EQ(motions[2].to, (AxisPosition{-370.0, -150.0, -330.0}));
+    EXPECT_EQ(linear(motions[0].from), (Linear{-350.0, -200.0, 0.0}));
+    EXPECT_EQ(linear(motions[0].to), (Linear{-350.0, -200.0, -265.0}));
+    EXPECT_EQ(linear(motions[1].to), (Linear{-370.0, -150.0, -265.0}));
+    EXPECT_EQ(linear(motions[2].to), (Linear{-370.0, -150.0, -330.0}));
     EXPECT_EQ(motions[0].kind, MotionKind::rapid);
     EXPECT_EQ(motions[0].feed, 0.0);
     EXPECT_EQ(motions[2].kind, MotionKind::feed);
@@ -153,11 +161,11 @@ TEST(Lowering, AnArcTurnedByItsAngleReachesItsEnd) {
 TEST(Lowering, UnknownAxesStayEmpty) {
     const auto motions =
         motions_of("G0 Z5\nX1\nG1 Y2 F10", Environment{.dialect = DialectId::fanuc});
-    EXPECT_EQ(motions[0].from, (AxisPosition{}));
-    EXPECT_EQ(motions[0].to, (AxisPosition{std::nullopt, std::nullopt, 5.0}));
-    EXPECT_EQ(motions[1].to, (AxisPosition{1.0, std::nullopt, 5.0}));
+    EXPECT_EQ(linear(motions[0].from), (Linear{}));
+    EXPECT_EQ(linear(motions[0].to), (Linear{std::nullopt, std::nullopt, 5.0}));
+    EXPECT_EQ(linear(motions[1].to), (Linear{1.0, std::nullopt, 5.0}));
     EXPECT_EQ(motions[2].from, motions[1].to);
-    EXPECT_EQ(motions[2].to, (AxisPosition{1.0, 2.0, 5.0}));
+    EXPECT_EQ(linear(motions[2].to), (Linear{1.0, 2.0, 5.0}));
 }
 
 TEST(Lowering, TellsToolsSpindleLengthsAndDwells) {

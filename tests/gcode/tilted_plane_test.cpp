@@ -61,7 +61,8 @@ TEST(TiltedPlane, IsLeftWithG69) {
 }
 
 TEST(ToolCentre, G434IsG43WithANote) {
-    EXPECT_EQ(trace("G43.4 H3"), trace("G43 H3"));
+    EXPECT_EQ(trace("G43.4 H3"), "use_tool_length_offset number=3 length=0 follows_tip\n");
+    EXPECT_EQ(trace("G43 H3"), "use_tool_length_offset number=3 length=0\n");
     EXPECT_THAT(warnings_of("G43.4 H3"), HasSubstr("taken as G43"));
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/dbm/cut_model.h"
-#include "tests/support/profile_oracle.h"
+#include "tests/support/tilted_sweep.h"
 
 namespace test_support {
 
@@ -13,6 +13,7 @@ struct CutBox {
     struct Cut {
         core::RevolvedProfile flutes;
         core::Vec3 from, to;
+        core::Mat3 orientation = core::Mat3(1.0);
     };
     core::Aabb box;
     double path_error = 0.0;
@@ -22,7 +23,8 @@ struct CutBox {
     double outside_cuts(const core::Vec3& p, const core::Vec3& off = core::Vec3(0.0)) const {
         double least = core::infinity;
         for (const Cut& cut : cuts)
-            least = std::min(least, outside_sweep(cut.flutes, cut.from + off, cut.to + off, p));
+            least = std::min(least, outside_tilted_sweep(cut.flutes, cut.orientation,
+                                                         cut.from + off, cut.to + off, p));
         return least;
     }
 
@@ -31,7 +33,7 @@ struct CutBox {
     }
     core::CutterSweep sweep(size_t i) const {
         return {std::make_shared<core::Cutter>(core::make_cutter(cuts[i].flutes, path_error)),
-                cuts[i].from, cuts[i].to};
+                cuts[i].from, cuts[i].to, cuts[i].orientation, static_cast<uint32_t>(i)};
     }
     core::CutModel model(double spacing) const {
         core::CutModel result = uncut(spacing);
@@ -75,6 +77,19 @@ inline CutBox random_cut_box(std::mt19937& rng, size_t count, double path_error)
         if (kind == 4) to = from;
         if (kind == 0) from = glm::round(from), to = glm::round(to);
         world.cuts.push_back({tools[rng() % tools.size()], from, to});
+    }
+    return world;
+}
+
+/// The same with a tool that points anywhere, also along an axis and upside down.
+inline CutBox random_tilted_cut_box(std::mt19937& rng, size_t count, double path_error) {
+    CutBox world = random_cut_box(rng, count, path_error);
+    for (CutBox::Cut& cut : world.cuts) {
+        cut.orientation = random_rotation(rng);
+        const unsigned kind = static_cast<unsigned>(rng() % 4);
+        const auto quarter = [&] { return 90.0 * static_cast<double>(rng() % 4); };
+        if (kind == 0) cut.orientation = core::rotation_xyz_deg({quarter(), quarter(), 0.0});
+        if (kind == 1) cut.to = cut.from + (cut.to.z - cut.from.z) * cut.orientation[2];
     }
     return world;
 }

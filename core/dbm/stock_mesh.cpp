@@ -1,0 +1,328 @@
+#include "core/dbm/stock_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/dbm/dual_cell.h"
+#include "core/dbm/feature_point.h"
+#include "core/dbm/surface_point.h"
+#include "core/geom/nearest_surface.h"
+#include "core/geom/triangle_distance.h"
+
+namespace core {
+namespace {
+
+constexpr int32_t nowhere = -1;
+
+/// How far beyond an edge an end is still taken for the edge's own, mm.
+constexpr double slack = 1e-6;
+
+/// Where a line passes the surface between two nodes.
+struct CrossedEdge {
+    TangentPlane plane;
+    std::optional<uint32_t> sweep;
+};
+
+/// Nodes with the same z: where the lines of the three families meet. Node (i, j) stands where the
+/// lines i - 1 and j - 1 do; those round the outside have no lines and are outside.
+struct NodeLayer {
+    std::vector<uint8_t> inside;
+    std::array<std::vector<int32_t>, 2> edges; // along X, Y from each node: number of its point
+    std::vector<CrossedEdge> points;
+};
+
+/// Cells between two layers of nodes; cell (i, j) has node (i, j) as its lowest corner.
+struct CellLayer {
+    std::vector<uint8_t> inside;       // a bit for each corner
+    std::vector<int32_t> first_vertex; // of its pieces
+    std::vector<int32_t> z_edges;      // from each node of the lower layer
+    std::vector<CrossedEdge> points;
+};
+
+using EdgePoints = std::array<const CrossedEdge*, 12>;
+
+const CrossedEdge* point_of(const std::vector<CrossedEdge>& points, int32_t number) {
+    return number == nowhere ? nullptr : &points[static_cast<size_t>(number)];
+}
+
+class Contouring {
+public:
+    explicit Contouring(const CutModel& model)
+        : model_(model),
+          grid_(model.lines.grid),
+          bounds_(bounds(model.solid)),
+          width_(grid_.count(0) + 2),
+          depth_(grid_.count(1) + 2),
+          size_(static_cast<size_t>(width_ * depth_)) {}
+
+    StockMesh run();
+
+private:
+    size_t at(int i, int j) const { return static_cast<size_t>(i + j * width_); }
+    decltype(auto) line(int axis, int u, int v) const {
+        return model_.lines.families[static_cast<size_t>(axis)].line(u, v);
+    }
+
+    NodeLayer nodes(int k);
+    std::optional<uint32_t> sweep_at(const LineEnd& end) const;
+    CellLayer cells(const NodeLayer& below, const NodeLayer& above, int k);
+    int32_t cross(int axis, const std::array<int, 3>& node, bool from_inside,
+                  std::vector<CrossedEdge>& points);
+    void make_vertices(CellLayer& layer, const NodeLayer& below, const NodeLayer& above, int i,
+                       int j, int k);
+    EdgePoints points_of(const CellLayer& layer, const NodeLayer& below, const NodeLayer& above,
+                         int i, int j) const;
+    void add_flat_quads(const NodeLayer& nodes, const CellLayer& below, const CellLayer& above);
+    void add_upright_quads(const CellLayer& layer);
+    int32_t vertex(const CellLayer& layer, int i, int j, size_t edge) const;
+    void measure_error();
+    void add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards);
+
+    const CutModel& model_;
+    const ScanGrid& grid_;
+    Aabb bounds_;
+    int width_, depth_;
+    size_t size_;
+    StockMesh result_;
+    std::vector<double> from_own_triangles_; // of each sample, mm
+    size_t taken_ = 0;                       // boundary points that became part of the surface
+};
+
+/// Which of the nodes along a line lie in its matter, from node 0 on.
+template <typename Line, typename Mark>
+void mark_inside(const ScanGrid& grid, int axis, const Line& line, const Mark& mark) {
+    const double first = grid.coordinate(axis, 0);
+    for (const Interval& matter : line) {
+        const double from = std::ceil((matter.lower - first) / grid.spacing) - 1.0;
+        const int last = grid.count(axis) - 1;
+        for (int i = std::clamp(static_cast<int>(from), 0, last + 1); i <= last; ++i) {
+            const double place = grid.coordinate(axis, i);
+            if (place > matter.upper) break;
+            if (place >= matter.lower) mark(i);
+        }
+    }
+}
+
+/// A node is inside where most of its three lines say so: they may differ by rounding.
+NodeLayer Contouring::nodes(int k) {
+    NodeLayer layer;
+    layer.inside.assign(size_, 0);
+    for (auto& edges : layer.edges) edges.assign(size_, nowhere);
+    const int row = k - 1;
+    if (row < 0 || row >= grid_.count(2)) return layer;
+    for (int j = 0; j < grid_.count(1); ++j)
+        mark_inside(grid_, 0, line(0, j, row), [&](int i) { ++layer.inside[at(i + 1, j + 1)]; });
+    for (int i = 0; i < grid_.count(0); ++i)
+        mark_inside(grid_, 1, line(1, row, i), [&](int j) { ++layer.inside[at(i + 1, j + 1)]; });
+    const double z = grid_.coordinate(2, row);
+    for (int j = 0; j < grid_.count(1); ++j)
+        for (int i = 0; i < grid_.count(0); ++i)
+            layer.inside[at(i + 1, j + 1)] += line(2, i, j).contains(z);
+    for (uint8_t& votes : layer.inside) votes = votes >= 2;
+    for (int j = 0; j < depth_; ++j)
+        for (int i = 0; i < width_; ++i) {
+            const bool here = layer.inside[at(i, j)] != 0;
+            if (i + 1 < width_ && here != (layer.inside[at(i + 1, j)] != 0))
+                layer.edges[0][at(i, j)] = cross(0, {i, j, k}, here, layer.points);
+            if (j + 1 < depth_ && here != (layer.inside[at(i, j + 1)] != 0))
+                layer.edges[1][at(i, j)] = cross(1, {i, j, k}, here, layer.points);
+        }
+    return layer;
+}
+
+/// The point at which the line along `axis` leaves or enters the matter between a node and the
+/// next.
+int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_inside,
+                          std::vector<CrossedEdge>& points) {
+    const int u = node[static_cast<size_t>(u_axis(axis))] - 1;
+    const int v = node[static_cast<size_t>(v_axis(axis))] - 1;
+    const int step = node[static_cast<size_t>(axis)] - 1;
+    const double low = grid_.coordinate(axis, step), high = grid_.coordinate(axis, step + 1);
+    const auto& matter = line(axis, u, v);
+    LineEnd end{axis, u, v, 0, from_inside};
+    double along = 0.5 * (low + high), best = slack;
+    bool found = false;
+    for (size_t i = 0; i < matter.size(); ++i) {
+        const double here = from_inside ? matter[i].upper : matter[i].lower;
+        const double beyond = std::max({low - here, here - high, 0.0});
+        if (beyond > best || (found && beyond == best)) continue;
+        best = beyond;
+        along = here;
+        end.interval = i;
+        found = true;
+    }
+    CrossedEdge edge;
+    if (found) {
+        edge = {{Vec3(0.0), surface_point(model_, end).normal}, sweep_at(end)};
+        ++taken_;
+    } else {
+        edge.plane.normal[axis] = from_inside ? 1.0 : -1.0;
+    }
+    edge.plane.place = point_on_line(grid_, axis, u, v, std::clamp(along, low, high));
+    points.push_back(edge);
+    return static_cast<int32_t>(points.size()) - 1;
+}
+
+/// The number of the cut that made an end; empty for raw stock.
+std::optional<uint32_t> Contouring::sweep_at(const LineEnd& end) const {
+    const EndMarks marks =
+        model_.lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
+    const uint32_t mark = end.upper ? marks.upper : marks.lower;
+    return mark > 0 ? std::optional(mark - 1) : std::nullopt;
+}
+
+CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int k) {
+    CellLayer layer;
+    layer.inside.assign(size_, 0);
+    layer.first_vertex.assign(size_, nowhere);
+    layer.z_edges.assign(size_, nowhere);
+    for (int j = 0; j < depth_; ++j)
+        for (int i = 0; i < width_; ++i)
+            if (below.inside[at(i, j)] != above.inside[at(i, j)])
+                layer.z_edges[at(i, j)] =
+                    cross(2, {i, j, k}, below.inside[at(i, j)] != 0, layer.points);
+    for (int j = 0; j + 1 < depth_; ++j)
+        for (int i = 0; i + 1 < width_; ++i) make_vertices(layer, below, above, i, j, k);
+    return layer;
+}
+
+EdgePoints Contouring::points_of(const CellLayer& layer, const NodeLayer& below,
+                                 const NodeLayer& above, int i, int j) const {
+    const size_t here = at(i, j), right = at(i + 1, j), behind = at(i, j + 1);
+    const auto flat = [](const NodeLayer& nodes, size_t axis, size_t node) {
+        return point_of(nodes.points, nodes.edges[axis][node]);
+    };
+    const auto upright = [&](size_t node) { return point_of(layer.points, layer.z_edges[node]); };
+    return {flat(below, 0, here),   flat(below, 0, behind), flat(above, 0, here),
+            flat(above, 0, behind), flat(below, 1, here),   flat(below, 1, right),
+            flat(above, 1, here),   flat(above, 1, right),  upright(here),
+            upright(right),         upright(behind),        upright(at(i + 1, j + 1))};
+}
+
+void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const NodeLayer& above,
+                               int i, int j, int k) {
+    unsigned inside = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+        const NodeLayer& nodes = c & 4U ? above : below;
+        const size_t node = at(i + static_cast<int>(c & 1U), j + static_cast<int>(c >> 1U & 1U));
+        inside |= static_cast<unsigned>(nodes.inside[node] != 0) << c;
+    }
+    if (inside == 0 || inside == 255) return;
+    layer.inside[at(i, j)] = static_cast<uint8_t>(inside);
+    layer.first_vertex[at(i, j)] = static_cast<int32_t>(result_.mesh.vertices.size());
+    const DualCell& pieces = dual_cell(static_cast<uint8_t>(inside));
+    const EdgePoints edge_points = points_of(layer, below, above, i, j);
+    // Where a sharp edge leaves its cell through a side that lines pass on both flanks, only the
+    // cell knows of it: vertices may stand in the cell beyond.
+    const auto corner = [&](int by) {
+        const Vec3 node(grid_.coordinate(0, i - 1 + by), grid_.coordinate(1, j - 1 + by),
+                        grid_.coordinate(2, k - 1 + by));
+        return glm::clamp(node, bounds_.min, bounds_.max);
+    };
+    const Aabb room{corner(-1), corner(2)};
+    for (uint8_t piece = 0; piece < pieces.count; ++piece) {
+        std::array<TangentPlane, 12> met;
+        size_t count = 0;
+        for (size_t e = 0; e < 12; ++e)
+            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->plane;
+        result_.mesh.vertices.push_back(feature_point({met.data(), count}, room));
+    }
+}
+
+int32_t Contouring::vertex(const CellLayer& layer, int i, int j, size_t edge) const {
+    const size_t cell = at(i, j);
+    return layer.first_vertex[cell] + dual_cell(layer.inside[cell]).piece[edge];
+}
+
+/// The quads across the edges along X and Y of a layer of nodes.
+void Contouring::add_flat_quads(const NodeLayer& nodes, const CellLayer& below,
+                                const CellLayer& above) {
+    // Only edges from the outermost nodes inwards pass the surface: the cells round it exist.
+    for (int j = 0; j + 1 < depth_; ++j)
+        for (int i = 0; i + 1 < width_; ++i) {
+            const bool here = nodes.inside[at(i, j)] != 0;
+            if (const auto* p = point_of(nodes.points, nodes.edges[0][at(i, j)]))
+                add_quad({vertex(below, i, j - 1, 3), vertex(below, i, j, 2),
+                          vertex(above, i, j, 0), vertex(above, i, j - 1, 1)},
+                         *p, here);
+            if (const auto* p = point_of(nodes.points, nodes.edges[1][at(i, j)]))
+                add_quad({vertex(below, i - 1, j, 7), vertex(above, i - 1, j, 5),
+                          vertex(above, i, j, 4), vertex(below, i, j, 6)},
+                         *p, here);
+        }
+}
+
+void Contouring::add_upright_quads(const CellLayer& layer) {
+    for (int j = 1; j + 1 < depth_; ++j)
+        for (int i = 1; i + 1 < width_; ++i)
+            if (const auto* p = point_of(layer.points, layer.z_edges[at(i, j)]))
+                add_quad({vertex(layer, i - 1, j - 1, 11), vertex(layer, i, j - 1, 10),
+                          vertex(layer, i, j, 8), vertex(layer, i - 1, j, 9)},
+                         *p, (layer.inside[at(i, j)] & 1U) != 0);
+}
+
+double distance_to(const Vec3& p, const Triangle& t) {
+    return glm::distance(p, nearest_point(t, p));
+}
+
+/// Two triangles, cut along the diagonal that leaves them nearer to the point on the line.
+void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards) {
+    if (!upwards) std::swap(corners[1], corners[3]);
+    const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
+    const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
+    const Vec3& point = edge.plane.place;
+    double away[2];
+    for (size_t k = 0; k < 2; ++k)
+        away[k] = std::min(distance_to(point, {place(k), place(k + 1), place(k + 2)}),
+                           distance_to(point, {place(k), place(k + 2), place((k + 3) % 4)}));
+    const size_t k = away[1] < away[0] - 1e-9 ? 1 : 0;
+    result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
+    result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
+    result_.samples.push_back({point, edge.sweep});
+    from_own_triangles_.push_back(away[k]);
+}
+
+/// The distance of the samples from the mesh: no more than from their own triangles, so those that
+/// are far from these are looked at first.
+void Contouring::measure_error() {
+    std::vector<uint32_t> order;
+    for (uint32_t k = 0; k < from_own_triangles_.size(); ++k)
+        if (from_own_triangles_[k] > slack) order.push_back(k);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return from_own_triangles_[a] > from_own_triangles_[b];
+    });
+    if (!from_own_triangles_.empty())
+        result_.error = std::min(
+            slack, *std::max_element(from_own_triangles_.begin(), from_own_triangles_.end()));
+    if (order.empty()) return;
+    const TriangleBvh triangles = build_bvh(result_.mesh);
+    for (const uint32_t k : order) {
+        if (from_own_triangles_[k] <= result_.error) return;
+        const Vec3& place = result_.samples[k].place;
+        const double limit = from_own_triangles_[k] * (1.0 + 1e-9);
+        result_.error = std::max(
+            result_.error, std::min(limit, nearest_surface(triangles, place, limit).distance));
+    }
+}
+
+StockMesh Contouring::run() {
+    NodeLayer below = nodes(0);
+    CellLayer last;
+    for (int k = 0; k + 1 < grid_.count(2) + 2; ++k) {
+        NodeLayer above = nodes(k + 1);
+        CellLayer layer = cells(below, above, k);
+        if (k > 0) add_flat_quads(below, last, layer);
+        add_upright_quads(layer);
+        below = std::move(above);
+        last = std::move(layer);
+    }
+    measure_error();
+    result_.lost = point_count(model_.lines) - std::min(taken_, point_count(model_.lines));
+    return std::move(result_);
+}
+
+} // namespace
+
+StockMesh stock_mesh(const CutModel& model) { return Contouring(model).run(); }
+
+} // namespace core

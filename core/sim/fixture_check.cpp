@@ -1,0 +1,102 @@
+#include "core/sim/leg_check.h"
+#include "core/sim/pair_entry.h"
+
+namespace core {
+namespace {
+
+/// The place half way, as a leg on which nothing moves.
+Leg still_half_way(const Leg& leg) {
+    const Leg first_half = stretch(leg, 0.0, 0.5);
+    Leg still = first_half;
+    still.places = {first_half.places[1]};
+    still.begin = first_half.end;
+    return still;
+}
+
+/// From the frame of a fixture to that of the stock, at these axis values.
+Transform stock_from_fixture(const Setup& setup, const Fixture& fixture, const AxisValues& values) {
+    if (fixture.mount.link == setup.stock_mount.link)
+        return setup.stock_mount.link_from_body.inverse() * fixture.mount.link_from_body;
+    return target_from_mover(setup.machine, setup.stock_mount, fixture.mount, values);
+}
+
+/// The axis values at a share of a leg; at its start where the way is not known.
+AxisValues values_at(const Leg& leg, double share) {
+    return leg.straight && leg.places.size() == 2 ? stretch(leg, 0.0, share).places[1]
+                                                  : leg.places[0];
+}
+
+} // namespace
+
+PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
+                                        const MovingBody& body, const PairClearance& known) {
+    const Fixture& fixture = setup_.fixtures[*known.pair.fixture];
+    const Allowance& allowance = known.allowance;
+    const double limit = std::min(setup_.search_limit, known.upper);
+    const Separation found = widened(
+        distance_over(relative, body, fixture.body, limit, statistics_.shape_tests), relative);
+    PairClearance now{.pair = known.pair, .allowance = allowance};
+    now.lower = std::min(found.lower, setup_.search_limit);
+    if (found.found()) {
+        const Transform stock_from =
+            stock_from_fixture(setup_, fixture, values_at(leg, found.time_a));
+        now.upper = found.upper;
+        now.on_tool = stock_from * found.point_a;
+        now.on_body = stock_from * found.point_b;
+        now.time = start + leg.begin + found.time_a * (leg.end - leg.begin);
+    }
+    now.verdict = judge_distance(allowance, now.lower, now.upper);
+    const bool may_touch = allowance.distance <= resolution && now.lower <= 0.0;
+    if (now.upper > 0.0 && !may_touch) return now;
+    if (!body.profile) {
+        now.verdict = judge_contact(allowance, now.lower, now.upper);
+        return now;
+    }
+    const RevolvedProfile inner =
+        shrunk_around(*body.profile, contact_shrink(allowance, *body.profile));
+    const Separation shrunk = widened(
+        distance_over(relative, inner, fixture.body, setup_.search_limit, statistics_.shape_tests),
+        relative);
+    now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
+    return now;
+}
+
+void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                             std::vector<PairClearance>& pairs) {
+    const Pair pair = pair_of(body, fixture);
+    PairClearance& known = entry(pairs, pair, setup_);
+    const RelativeLeg relative =
+        relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, leg);
+    if (stays_away(known, leg, relative)) return;
+    if (!relative.turns) return merge(known, look_at_fixture(leg, start, relative, body, known));
+    // A body that turns: half of the way at a time, until it is far or seen sharply enough.
+    if (relative.error < infinity) {
+        PairClearance now = look_at_fixture(leg, start, relative, body, known);
+        if (now.lower >= std::min(known.upper, setup_.search_limit)
+            || relative.error <= std::max(finest_error(body), 0.02 * now.lower))
+            return merge(known, now);
+        if (now.lower <= 0.0) {
+            const Leg still = still_half_way(leg);
+            const RelativeLeg here =
+                relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, still);
+            now = look_at_fixture(still, start, here, body, known);
+            if (now.verdict == Verdict::collision) return merge(known, now);
+        }
+    }
+    check_fixture(stretch(leg, 0.0, 0.5), start, fixture, body, pairs);
+    check_fixture(stretch(leg, 0.5, 1.0), start, fixture, body, pairs);
+}
+
+void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs) {
+    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture) {
+        if (!fixtures_there_[fixture]) continue;
+        for (const MovingBody& body : bodies_) {
+            const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
+            if (chips && setup_.fixtures[fixture].expendable) continue;
+            if (is_exempt(setup_.machine, body, setup_.fixtures[fixture])) continue;
+            check_fixture(leg, start, fixture, body, pairs);
+        }
+    }
+}
+
+} // namespace core

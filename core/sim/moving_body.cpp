@@ -1,0 +1,111 @@
+#include "core/sim/moving_body.h"
+
+namespace core {
+namespace {
+
+MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolPart& part) {
+    const Aabb box = bounds(part.profile);
+    const Vec3 centre(0.0, 0.0, box.center().z);
+    const double reach = std::hypot(box.max.x, 0.5 * box.size().z);
+    return {
+        .kind = part.kind,
+        .profile = &part.profile,
+        .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})}, centre, reach}};
+}
+
+MovingBody moving_machine_body(const Setup& setup, size_t index) {
+    const MachineBody& body = setup.machine.bodies[index];
+    const Aabb box = bounds(body.body);
+    const bool nose = body.name == name_of(PartKind::nose);
+    return {.kind = nose ? PartKind::nose : PartKind::machine,
+            .carried = index,
+            .body = &body.body,
+            .mover = {{body.link, {}}, box.center(), 0.5 * glm::length(box.size())}};
+}
+
+ConvexShape moved(const ConvexShape& shape, const RelativeLeg& leg) {
+    if (leg.orientation == Mat3(1.0)) return swept(shape, leg.places);
+    return swept(posed(shape, {leg.orientation, Vec3(0.0)}), leg.places);
+}
+
+Separation between(const std::vector<ConvexShape>& shapes, const ExactBody& fixture, double limit,
+                   size_t& shape_tests) {
+    Separation best;
+    double lower = infinity;
+    for (const ConvexShape& shape : shapes) {
+        ++shape_tests;
+        const Separation found = separation(shape, fixture, {.limit = std::min(limit, best.upper)});
+        lower = std::min(lower, found.lower);
+        if (found.upper < best.upper) best = found;
+    }
+    best.lower = std::min(lower, best.upper);
+    return best;
+}
+
+} // namespace
+
+std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool) {
+    std::vector<MovingBody> bodies;
+    for (const ToolPart& part : tool.parts) bodies.push_back(moving_part(setup, tool, part));
+    for (size_t i = 0; i < setup.machine.bodies.size(); ++i)
+        if (!is_on_table_side(setup.machine, setup.machine.bodies[i].link))
+            bodies.push_back(moving_machine_body(setup, i));
+    return bodies;
+}
+
+bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture) {
+    const LinkId a = body.mover.mount.link, b = fixture.mount.link;
+    if (a == b) return true;
+    if (!body.body || !fixture.is_machine) return false;
+    const auto carrier = [&](LinkId link) {
+        return link == LinkId::base ? link : machine.axes[static_cast<size_t>(link)].carrier;
+    };
+    return carrier(a) == b || carrier(b) == a;
+}
+
+Aabb bounds(const ExactBody& body, const RelativeLeg& leg) {
+    const Aabb box = bounds(body);
+    const Vec3 centre = leg.orientation * box.center();
+    Vec3 half(0.0);
+    for (int axis = 0; axis < 3; ++axis)
+        half += 0.5 * box.size()[axis] * glm::abs(leg.orientation[axis]);
+    Aabb swept;
+    for (const Vec3& place : leg.places)
+        swept.extend(Aabb{centre + place - half, centre + place + half});
+    return swept.grown(leg.error);
+}
+
+std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const RelativeLeg& leg) {
+    std::vector<ConvexShape> shapes;
+    for (const ProfileElement& element : profile.elements)
+        shapes.push_back(moved(convex(element), leg));
+    return shapes;
+}
+
+std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg) {
+    if (const auto* shape = std::get_if<ConvexShape>(&body)) return {moved(*shape, leg)};
+    const Mesh& mesh = *std::get<SolidMesh>(body).mesh;
+    std::vector<ConvexShape> shapes;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        shapes.push_back(moved(convex(mesh.triangle(i)), leg));
+    return shapes;
+}
+
+Separation distance_over(const RelativeLeg& leg, const RevolvedProfile& profile,
+                         const ExactBody& fixture, double limit, size_t& shape_tests) {
+    return between(shapes_of(profile, leg), fixture, limit, shape_tests);
+}
+
+Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,
+                         double limit, size_t& shape_tests) {
+    if (body.profile) return distance_over(leg, *body.profile, fixture, limit, shape_tests);
+    if (std::holds_alternative<ConvexShape>(*body.body) || leg.places.size() > 2)
+        return between(shapes_of(*body.body, leg), fixture, limit, shape_tests);
+    ++shape_tests;
+    Separation found = separation(fixture, *body.body, {leg.orientation, leg.places.front()},
+                                  leg.places.back() - leg.places.front(), {.limit = limit});
+    std::swap(found.point_a, found.point_b);
+    return found;
+}
+
+} // namespace core

@@ -1,0 +1,24 @@
+#include "core/sim/pair_entry.h"
+
+namespace core {
+
+PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair, const Setup& setup) {
+    for (PairClearance& known : pairs)
+        if (known.pair == pair) return known;
+    pairs.push_back({.pair = pair, .allowance = allowance_of(setup, pair)});
+    return pairs.back();
+}
+
+bool stays_away(PairClearance& known, const Leg& leg, const RelativeLeg& relative) {
+    if (!leg.straight || known.at_end - relative.travel < known.upper) return false;
+    known.at_end -= relative.travel;
+    return true;
+}
+
+Separation widened(Separation found, const RelativeLeg& leg) {
+    found.lower = std::max(0.0, found.lower - leg.error);
+    if (found.upper > 0.0 || leg.turns) found.upper += leg.error;
+    return found;
+}
+
+} // namespace core

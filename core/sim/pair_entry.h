@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/sim/clearance.h"
+#include "core/sim/kinematics.h"
+
+namespace core {
+
+/// What is known of a pair, begun here if nothing was. The reference lasts until the next one is
+/// begun.
+PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair, const Setup& setup);
+
+/// Whether a leg cannot bring a pair nearer than it has been in this block. Keeps the bound at the
+/// leg's end up to date if so.
+bool stays_away(PairClearance& known, const Leg& leg, const RelativeLeg& relative);
+
+/// What a look at a leg says of the real way, given the leg's error. A body that turns has not been
+/// where the look put it, so an overlap is only as sure as the error.
+Separation widened(Separation found, const RelativeLeg& leg);
+
+} // namespace core

@@ -1,0 +1,250 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/sim/kinematics.h"
+#include "tests/support/machines.h"
+
+namespace core {
+namespace {
+
+using test_support::fork_head;
+using test_support::head_and_table;
+using test_support::trunnion;
+
+constexpr double radian = std::numbers::pi / 180.0;
+
+Vec3 about_x(const Vec3& p, double degrees) {
+    const double c = std::cos(degrees * radian), s = std::sin(degrees * radian);
+    return {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+}
+Vec3 about_y(const Vec3& p, double degrees) {
+    const double c = std::cos(degrees * radian), s = std::sin(degrees * radian);
+    return {c * p.x + s * p.z, p.y, -s * p.x + c * p.z};
+}
+Vec3 about_z(const Vec3& p, double degrees) {
+    const double c = std::cos(degrees * radian), s = std::sin(degrees * radian);
+    return {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+}
+
+AxisValues random_values(std::mt19937& rng) {
+    std::uniform_real_distribution<double> mm(-300.0, 300.0), degrees(-170.0, 170.0);
+    AxisValues values{};
+    for (size_t i = 0; i < 6; ++i) values[i] = is_rotary(i) ? degrees(rng) : mm(rng);
+    return values;
+}
+
+std::vector<Machine> machines() {
+    return {trunnion({10, 20, -500}, {-5, 12, -480}), head_and_table({3, 0, 150}, {40, -30, -500}),
+            fork_head({1, 2, 180}), Machine()};
+}
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+    EXPECT_LT(glm::distance(a, b), tolerance)
+        << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
+}
+
+TEST(TipPlace, OfATrunnionIsTurnedBackThroughBothAxes) {
+    const Vec3 a_point(10, 20, -500), c_point(-5, 12, -480);
+    const Machine machine = trunnion(a_point, c_point);
+    std::mt19937 rng(3);
+    for (int i = 0; i < 200; ++i) {
+        const AxisValues q = random_values(rng);
+        // The tool turns by A and C as the work sees it: about A first, which stands still.
+        const Vec3 tip(q[0], q[1], q[2] - 80.0);
+        const Vec3 on_cradle = about_x(tip - a_point, q[3]) + a_point;
+        expect_near(tip_place(machine, q, 80.0), about_z(on_cradle - c_point, q[5]) + c_point,
+                    1e-9);
+    }
+}
+
+TEST(TipPlace, OfAForkHeadSwingsWithTheTool) {
+    const Vec3 pivot(1, 2, 180);
+    const Machine machine = fork_head(pivot);
+    std::mt19937 rng(4);
+    for (int i = 0; i < 200; ++i) {
+        const AxisValues q = random_values(rng);
+        const Vec3 from_pivot = about_z(about_y(Vec3(0, 0, -80) - pivot, q[4]), q[5]);
+        expect_near(tip_place(machine, q, 80.0), from_pivot + pivot + Vec3(q[0], q[1], q[2]), 1e-9);
+    }
+}
+
+TEST(TipPlace, IsExactAtQuarterTurns) {
+    const Machine machine = trunnion({0, 0, -100}, {0, 0, -100});
+    AxisValues q{};
+    q[2] = -50.0, q[3] = 90.0;
+    EXPECT_EQ(tip_place(machine, q, 50.0), Vec3(0, 0, -100));
+    q[2] = 0.0;
+    EXPECT_EQ(tip_place(machine, q, 50.0), Vec3(0, -50, -100));
+}
+
+TEST(ReachTip, BringsTheTipToItsPlaceOnEveryMachine) {
+    std::mt19937 rng(5);
+    for (const Machine& machine : machines())
+        for (int i = 0; i < 200; ++i) {
+            const AxisValues q = random_values(rng);
+            const Vec3 place(random_values(rng)[0], random_values(rng)[1], random_values(rng)[2]);
+            const auto reached = reach_tip(machine, q, place, 80.0);
+            ASSERT_TRUE(reached);
+            expect_near(tip_place(machine, *reached, 80.0), place, 1e-8);
+            for (size_t axis = 3; axis < axis_count; ++axis) EXPECT_EQ((*reached)[axis], q[axis]);
+        }
+}
+
+Vec3 tool_axis(const Machine& machine, const AxisValues& q) {
+    return glm::normalize(tip_place(machine, q, 0.0) - tip_place(machine, q, 1.0));
+}
+
+TEST(PointTool, ReachesEveryDirectionThatSomeAnglesGive) {
+    std::mt19937 rng(6);
+    for (const Machine& machine : machines()) {
+        if (!machine.has_rotary()) continue;
+        for (int i = 0; i < 300; ++i) {
+            const AxisValues q = random_values(rng), now = random_values(rng);
+            const Vec3 wanted = tool_axis(machine, q);
+            const auto pointed = point_tool(machine, now, wanted);
+            ASSERT_TRUE(pointed);
+            expect_near(tool_axis(machine, *pointed), wanted, 1e-8);
+            for (size_t axis = 0; axis < 3; ++axis) EXPECT_EQ((*pointed)[axis], now[axis]);
+        }
+    }
+}
+
+TEST(PointTool, KeepsToTheLimitsAndTurnsAsLittleAsItCan) {
+    Machine machine = trunnion({0, 0, 0}, {0, 0, 0});
+    machine.axes[3].min = -30.0;
+    machine.axes[3].max = 120.0;
+    AxisValues q{};
+    // Towards -Y by A 90, or by A -90 and half a turn of C, which the limit forbids.
+    const auto pointed = point_tool(machine, q, {0, -1, 0});
+    ASSERT_TRUE(pointed);
+    EXPECT_NEAR((*pointed)[3], 90.0, 1e-9);
+    EXPECT_NEAR((*pointed)[5], 0.0, 1e-9);
+    const auto other = point_tool(machine, q, {0, 1, 0});
+    ASSERT_TRUE(other);
+    EXPECT_NEAR((*other)[3], 90.0, 1e-9);
+    EXPECT_NEAR(std::abs((*other)[5]), 180.0, 1e-9);
+    machine.axes[3].max = 60.0;
+    EXPECT_FALSE(point_tool(machine, q, {0, 1, 0}));
+    EXPECT_FALSE(point_tool(Machine(), q, {0, 1, 0}));
+    EXPECT_TRUE(point_tool(Machine(), q, {0, 0, 1}));
+}
+
+/// A leg of a random machine with a random mover and target.
+struct RandomLeg {
+    Mount target;
+    Mover mover;
+    Leg leg;
+};
+
+LinkId random_link(const Machine& machine, std::mt19937& rng) {
+    while (true) {
+        const size_t i = rng() % 7;
+        if (i == 6) return LinkId::base;
+        if (machine.axes[i].present) return link_of(i);
+    }
+}
+
+RandomLeg random_leg(const Machine& machine, double turn_deg, std::mt19937& rng) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const auto place = [&](double size) { return size * Vec3(unit(rng), unit(rng), unit(rng)); };
+    RandomLeg random;
+    random.target = {random_link(machine, rng),
+                     {rotation_xyz_deg(180.0 * place(1.0)), place(200.0)}};
+    random.mover = {{random_link(machine, rng), {rotation_xyz_deg(180.0 * place(1.0)), place(200)}},
+                    place(60.0),
+                    50.0 * std::abs(unit(rng))};
+    AxisValues from = random_values(rng), to = from;
+    for (size_t i = 0; i < 6; ++i) to[i] += is_rotary(i) ? turn_deg * unit(rng) : 8.0 * unit(rng);
+    random.leg.places = {from, to};
+    return random;
+}
+
+TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
+    std::mt19937 rng(7);
+    double tightest = 0.0;
+    int turned = 0, straight = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const Machine machine = machines()[rng() % 4];
+        const RandomLeg random = random_leg(machine, i % 3 ? 0.3 : 8.0, rng);
+        const RelativeLeg leg = relative_leg(machine, random.target, random.mover, random.leg);
+        if (leg.error == infinity) continue;
+        ++(leg.turns ? turned : straight);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (int k = 0; k <= 20; ++k) {
+            const double share = k / 20.0;
+            const AxisValues q = stretch(random.leg, 0.0, share).places[1];
+            const Transform real = target_from_mover(machine, random.target, random.mover.mount, q);
+            const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
+            const Vec3 p = random.mover.centre + random.mover.reach * direction;
+            const Vec3 taken =
+                leg.orientation * p + leg.places[0] + share * (leg.places[1] - leg.places[0]);
+            const double off = glm::distance(real * p, taken);
+            ASSERT_LE(off, leg.error + 1e-9) << i;
+            if (leg.turns) tightest = std::max(tightest, off / leg.error);
+            const Transform before =
+                target_from_mover(machine, random.target, random.mover.mount, random.leg.places[0]);
+            ASSERT_LE(glm::distance(real * p, before * p), leg.travel + 1e-9) << i;
+        }
+    }
+    EXPECT_GT(turned, 2000);
+    EXPECT_GT(straight, 200);
+    EXPECT_GT(tightest, 0.5); // a bound that were much too wide would be of no use
+}
+
+TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
+    std::mt19937 rng(8);
+    for (int i = 0; i < 300; ++i) {
+        const Machine machine = machines()[static_cast<size_t>(i) % 3];
+        AxisValues from = random_values(rng), to = from;
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (size_t axis = 3; axis < 6; ++axis) to[axis] += 30.0 * unit(rng);
+        const Vec3 a = tip_place(machine, from, 90.0);
+        const Vec3 b = a + 20.0 * Vec3(unit(rng), unit(rng), unit(rng));
+        to = *reach_tip(machine, to, b, 90.0);
+        Motion motion{.kind = MotionKind::feed, .tip = TipPath{a, b, 90.0}, .feed = 100.0};
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            motion.from[axis] = from[axis];
+            motion.to[axis] = to[axis];
+        }
+        const Path path = path_of(motion, machine, 0.002);
+        double share = 0.0;
+        for (const Leg& leg : path.legs) {
+            for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+                const AxisValues q = stretch(leg, 0.0, part).places[1];
+                const double at = (share + part) / static_cast<double>(path.legs.size());
+                expect_near(tip_place(machine, q, 90.0), a + at * (b - a), 0.002 + 1e-8);
+            }
+            share += 1.0;
+        }
+        EXPECT_EQ(path.legs.front().places[0], from);
+        EXPECT_EQ(path.legs.back().places[1], to);
+    }
+}
+
+TEST(AxisRange, OfATipPathHoldsWhatTheAxesDoOnTheWay) {
+    // The tip stays where it is, 100 mm from A's line, while A swings from -40 to 40 degrees: Z has
+    // its extreme in the middle, where both of its ends are the same.
+    const Machine machine = trunnion({0, 0, 0}, {0, 0, 0});
+    AxisValues from{};
+    from[3] = -40.0;
+    const Vec3 tip(0, 0, 100);
+    from = *reach_tip(machine, from, tip, 50.0);
+    AxisValues to = from;
+    to[3] = 40.0;
+    to = *reach_tip(machine, to, tip, 50.0);
+    Motion motion{.kind = MotionKind::feed, .tip = TipPath{tip, tip, 50.0}, .feed = 100.0};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        motion.from[axis] = from[axis];
+        motion.to[axis] = to[axis];
+    }
+    const AxisRange range = axis_range(motion, machine, 0.002);
+    EXPECT_NEAR(range.max[2], 150.0, 0.003);
+    EXPECT_GE(range.max[2], 150.0);
+    EXPECT_NEAR(range.min[2], 50.0 + 100.0 * std::cos(40 * radian), 1e-9);
+}
+
+} // namespace
+} // namespace core

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/sim/timing.h"
+
+namespace test_support {
+
+/// A motion as far as its speed goes: how fast at most on it and at the corner before it.
+struct SpeedPiece {
+    double length, acceleration, cruise, corner;
+};
+
+/// Seconds that each piece takes if the whole is run as fast as possible from rest to rest: squared
+/// speeds at `steps` points of every piece, lowered until none rises faster than it may.
+inline std::vector<double> fastest_times(const std::vector<SpeedPiece>& pieces, int steps) {
+    std::vector<double> squared{0.0}, step, acceleration;
+    for (size_t i = 0; i < pieces.size(); ++i) {
+        const double cruise = pieces[i].cruise * pieces[i].cruise;
+        const double corner = i == 0 ? 0.0 : pieces[i].corner * pieces[i].corner;
+        squared.back() = std::min({squared.back(), corner, cruise});
+        for (int k = 0; k < steps; ++k) {
+            squared.push_back(cruise);
+            step.push_back(pieces[i].length / steps);
+            acceleration.push_back(pieces[i].acceleration);
+        }
+    }
+    squared.back() = 0.0;
+    for (size_t i = 0; i < step.size(); ++i)
+        squared[i + 1] = std::min(squared[i + 1], squared[i] + 2.0 * acceleration[i] * step[i]);
+    for (size_t i = step.size(); i-- > 0;)
+        squared[i] = std::min(squared[i], squared[i + 1] + 2.0 * acceleration[i] * step[i]);
+    std::vector<double> times(pieces.size(), 0.0);
+    for (size_t i = 0; i < step.size(); ++i)
+        times[i / static_cast<size_t>(steps)] +=
+            2.0 * step[i] / (std::sqrt(squared[i]) + std::sqrt(squared[i + 1]));
+    return times;
+}
+
+/// What a machine would see of a rounded corner that takes `lasts` seconds: the rates change evenly
+/// from those before to those after, at this speed along both.
+struct CornerRun {
+    core::AxisNumbers acceleration{}; // the greatest of each axis
+    double missed = infinity;         // least distance from the corner along X, Y, Z
+    double length = 0.0;              // of either motion that is used up
+
+    static constexpr double infinity = core::infinity;
+};
+
+inline CornerRun run_corner(const core::AxisNumbers& before, const core::AxisNumbers& after,
+                            double speed, double lasts) {
+    CornerRun run;
+    run.length = 0.5 * speed * lasts;
+    constexpr int steps = 2000;
+    core::AxisNumbers place{}, rate{};
+    for (size_t i = 0; i < place.size(); ++i) place[i] = -run.length * before[i];
+    const double tick = lasts / steps;
+    for (int k = 0; k <= steps; ++k) {
+        run.missed = std::min(run.missed, std::hypot(place[0], place[1], place[2]));
+        for (size_t i = 0; i < place.size(); ++i) {
+            const double share = (k + 0.5) / steps;
+            const double now = speed * (before[i] + share * (after[i] - before[i]));
+            if (k > 0)
+                run.acceleration[i] = std::max(run.acceleration[i], std::abs(now - rate[i]) / tick);
+            rate[i] = now;
+            place[i] += now * tick;
+        }
+    }
+    return run;
+}
+
+} // namespace test_support
