@@ -104,6 +104,8 @@ struct Notes {
         result.offsets_lengths = result.offsets_lengths || change.number.has_value();
     }
     void operator()(const core::Dwell&) {}
+    void operator()(const core::PathModeChange&) {}
+    void operator()(const core::FixtureChange&) {}
     void operator()(const core::Motion&) {}
 };
 

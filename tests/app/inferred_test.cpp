@@ -152,12 +152,17 @@ TEST(StockEnvelope, CountsInASetUpAsWell) {
                   .find("X 2.000 to 48.000, Y 2.000 to "
                         "18.000, Z -8.000 (3 mm below"),
               std::string::npos);
-    EXPECT_EQ(
-        check(SetupWriter().stock("margin = 3\nbox = [[0, 0, 0], [1, 1, 1]]\n"), program).status,
-        2);
-    EXPECT_EQ(check(SetupWriter().stock("margin = -1\n"), program).status, 2);
-    EXPECT_EQ(check(SetupWriter().stock("at = [1, 2, 3]\n"), program).status, 2);
-    EXPECT_EQ(check(SetupWriter().without_stock(), "G21\nG0 X1\nM30\n").status, 2);
+    const ScopedFolder folder;
+    const auto status = [&](const SetupWriter& setup, const std::string& text) {
+        return feeler({"check", folder.write("p.nc", text), "--setup",
+                       folder.write("s.toml", setup.text())})
+            .status;
+    };
+    const std::string box = "box = [[0, 0, 0], [1, 1, 1]]\n";
+    EXPECT_EQ(status(SetupWriter().stock("margin = 3\n" + box), program), 2);
+    EXPECT_EQ(status(SetupWriter().stock("margin = -1\n"), program), 2);
+    EXPECT_EQ(status(SetupWriter().stock("at = [1, 2, 3]\n"), program), 2);
+    EXPECT_EQ(status(SetupWriter().without_stock(), "G21\nG0 X1\nM30\n"), 2);
 }
 
 TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {

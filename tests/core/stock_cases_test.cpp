@@ -1,8 +1,10 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
 
-#include "core/dbm/cut_model.h"
+#include "core/dbm/cut_memory.h"
 #include "tests/support/raster_program.h"
 #include "tests/support/stock_digest.h"
 #include "tests/support/stock_oracle.h"
@@ -308,6 +310,44 @@ TEST(CutOnThreads, GivesTheSameBitsForAnyNumber) {
     CutModel one_by_one = make_cut_model({SolidBox{program.stock}, 0.0}, 1.0).value();
     for (size_t i = 0; i < sweeps.size(); ++i)
         EXPECT_NEAR(cut(one_by_one, sweeps[i]), volumes[i], 1e-6);
+}
+
+TEST(LaneCut, GivesTheSameBitsOnEveryInstructionSet) {
+    const auto program = test_support::raster_program(2.0, 1.0);
+    auto sweeps = test_support::sweeps_of(program, test_support::raster_ball());
+    sweeps.resize(400);
+    const auto flat_ones = test_support::sweeps_of(program, flat);
+    sweeps.insert(sweeps.end(), flat_ones.begin(), flat_ones.begin() + 400);
+    std::optional<uint64_t> hash;
+    const auto choose = [](int64_t targets) {
+        hwy::SetSupportedTargetsForTest(targets);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    };
+    int sets = 0;
+    for (int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
+        const int64_t target = left & -left;
+        choose(target);
+        CutModel model = make_cut_model({SolidBox{program.stock}, 0.0}, 1.0).value();
+        for (const CutterSweep& sweep : sweeps) cut(model, sweep);
+        if (!hash) hash = digest(model);
+        EXPECT_EQ(digest(model), *hash) << hwy::TargetName(target);
+        ++sets;
+        choose(0);
+    }
+    EXPECT_GT(sets, 1);
+}
+
+TEST(CutMemory, IsKnownBeforeItIsTaken) {
+    for (const WithColumns columns : {WithColumns::no, WithColumns::yes}) {
+        const Aabb box{{0, 0, -13}, {47, 61, 0}};
+        CutModel model =
+            make_cut_model({SolidBox{box}, 0.0}, 0.5, default_memory_limit, columns).value();
+        const double estimate = cut_memory_estimate(box, 0.5, columns);
+        EXPECT_LE(memory_of(model), estimate);
+        // A cut through all tiles makes all of them keep marks.
+        cut(model, {cutter({{{0, 60, 40, 60, 0}}}), {20, 30, -12}, {30, 30, -12}});
+        EXPECT_NEAR(memory_of(model), estimate, 0.02 * estimate);
+    }
 }
 
 TEST(CutLog, GivesBackEveryMove) {

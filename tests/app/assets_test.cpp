@@ -1,0 +1,118 @@
+#include <set>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+
+namespace app_test {
+namespace {
+
+using test_support::SetupWriter;
+
+const std::filesystem::path assets = std::filesystem::path(FEELER_SOURCE_DIR) / "assets";
+
+/// A job of assets, and what its comment says that must be found.
+struct Job {
+    std::string program, setup, verdict;
+    std::string errors;          // their texts, in the order of the blocks
+    std::vector<double> removed; // by each tool, from tool 1 on, mm3
+};
+
+const std::vector<Job> jobs = {
+    {"clamped_plate.nc", "clamped_plate", "clear", "", {57414.6, 6032.0}},
+    {"clamped_plate_low.nc", "clamped_plate", "collision", "Y75. Y143. Y75. Y7. ", {}},
+    {"indexed_flats.nc", "indexed_flats", "clear", "", {42541.0, 2894.8}},
+    {"indexed_flats_g99.nc", "indexed_flats", "collision", "G0 A180. G0 A90. G0 A0 ", {}},
+    {"tilted_faces.nc", "tilted_faces", "clear", "", {5472.8, 1688.4, 3110.0}},
+    {"tilted_faces_lead_in.nc", "tilted_faces", "collision", "Z-4.243 G1 X60. F800. ", {}},
+    {"TEST_G90.NC", "test_g90_vise6", "clear", "", {13397.8, 0.0, 108379.9}},
+};
+
+Checked check_job(const Job& job) {
+    return check_files(assets / "programs" / job.program,
+                       assets / "setups" / (job.setup + ".toml"));
+}
+
+/// The text of every block that is not clear.
+std::string texts_of_errors(const Checked& checked) {
+    std::string texts;
+    for (const BlockLine& block : checked.blocks)
+        if (block.verdict != "clear" && block.motion != "none") texts += block.text + " ";
+    return texts;
+}
+
+TEST(Assets, EveryJobHasItsVerdict) {
+    for (const Job& job : jobs) {
+        SCOPED_TRACE(job.program);
+        const Checked checked = check_job(job);
+        EXPECT_EQ(checked.verdict, job.verdict) << checked.errors() << checked.err;
+        EXPECT_EQ(checked.status, job.verdict == "clear" ? 0 : 1);
+        EXPECT_EQ(texts_of_errors(checked), job.errors);
+        for (size_t i = 0; i < job.removed.size(); ++i) {
+            double removed = 0.0;
+            for (const BlockLine& block : checked.blocks)
+                if (block.tool == static_cast<int>(i) + 1) removed += block.removed;
+            EXPECT_NEAR(removed, job.removed[i], 0.01 * job.removed[i]) << "tool " << i + 1;
+        }
+    }
+}
+
+TEST(Assets, EverySetupIsInAJob) {
+    std::set<std::string> known = {"parallel", "test_g90"}; // golden_test.cpp
+    for (const Job& job : jobs) known.insert(job.setup);
+    for (const auto& file : std::filesystem::directory_iterator(assets / "setups"))
+        EXPECT_TRUE(known.contains(file.path().stem())) << file.path();
+}
+
+/// One range of an axis, or of a rotary one the angles to try.
+struct Travel {
+    char axis;
+    std::vector<double> places;
+};
+
+/// Blocks that go to every corner of the travel, with an empty spindle.
+std::string corners(const std::vector<Travel>& travels) {
+    std::vector<std::string> blocks = {"G53 G0"};
+    for (const Travel& travel : travels) {
+        std::vector<std::string> longer;
+        for (const std::string& block : blocks)
+            for (const double place : travel.places)
+                longer.push_back(fmt::format("{} {}{:.1f}", block, travel.axis, place));
+        blocks = std::move(longer);
+    }
+    std::string text = "G21 G90 G40 G49 G80 G17\n";
+    for (const std::string& block : blocks) text += block + "\n";
+    return text + "M30\n";
+}
+
+/// A crumb on the table: no work is in the way.
+void expect_free_travel(const std::string& machine, const std::string& origin,
+                        const std::vector<Travel>& travels) {
+    SetupWriter setup;
+    setup.program("dialect = \"fanuc\"\n")
+        .machine("file = \"" + (assets / "machines" / (machine + ".toml")).string() + "\"\n")
+        .offsets("G54 = " + origin + "\n")
+        .stock("box = [[-5, -5, 0], [5, 5, 5]]");
+    const Checked checked = check(setup, corners(travels));
+    EXPECT_EQ(checked.verdict, "clear") << machine << " " << checked.errors() << checked.err;
+    size_t pairs = 0;
+    for (const BlockLine& block : checked.blocks) pairs += block.pairs.size();
+    EXPECT_GT(pairs, checked.blocks.size()) << machine << " has bodies";
+}
+
+TEST(Assets, NoMachineMeetsItselfInItsTravel) {
+    expect_free_travel("mill3", "{ X = -350, Y = -225, Z = -620 }",
+                       {{'X', {0, -700}}, {'Y', {0, -450}}, {'Z', {0, -500}}});
+    expect_free_travel("mill4", "{ X = -324, Y = -225, Z = -670 }",
+                       {{'A', {0, 130}}, {'X', {0, -700}}, {'Y', {0, -450}}, {'Z', {0, -500}}});
+    expect_free_travel("trunnion5", "{ X = 0, Y = 0, Z = -730 }",
+                       {{'A', {0, 30, -60, -110}},
+                        {'C', {0, 130}},
+                        {'X', {-300, 0, 300}},
+                        {'Y', {225, 0, -225}},
+                        {'Z', {0, -500}}});
+}
+
+} // namespace
+} // namespace app_test
