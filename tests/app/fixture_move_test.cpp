@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "app/session/m_codes.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
 
@@ -53,14 +52,6 @@ TEST(FixtureMove, OntoTheToolIsFoundWhereItIsPut) {
     const Checked checked = check(with_post("[[fixture.move]]\nline = 8\nat = [-60, 0, 0]\n"),
                                   program({"G0 X-20. Y50.", "Z10.", "M61", "Z60."}));
     EXPECT_EQ(checked.at_line(8).pair("flutes post").verdict, "collision");
-}
-
-TEST(MCodes, AreFoundOutsideOfComments) {
-    EXPECT_TRUE(app::has_m_code("N10 G0 X1 M61", 61));
-    EXPECT_TRUE(app::has_m_code("m061", 61));
-    EXPECT_FALSE(app::has_m_code("M6 (M61)", 61));
-    EXPECT_FALSE(app::has_m_code("M6 ; M61", 61));
-    EXPECT_FALSE(app::has_m_code("M610", 61));
 }
 
 } // namespace
