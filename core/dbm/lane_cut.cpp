@@ -183,39 +183,102 @@ HWY_INLINE void add_upright(const CapsuleLanes& c, const Row& u, double v, Stret
     unite(all, at.met, low, last * c.by_a + (c.from_a + c.high_end));
 }
 
-/// Narrows the moments first .. last to those at which a point that moves evenly, and stands at
-/// `offset` from it, lies within low .. high; `per` is 1 / its way.
-HWY_INLINE void narrow(const Row& offset, double low, double high, double per, Row& first,
-                       Row& last) {
+/// Moments of a move, first .. last for each line, while `met`.
+struct Moments {
+    Row first, last;
+    RowMask met;
+};
+
+/// Narrows the moments to those at which a point that moves evenly, and stands at `offset` from it,
+/// lies within low .. high; `per` is 1 / its way.
+HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, double per,
+                       Moments& at) {
     const Row one = (offset - low) * per, other = (offset - high) * per;
-    first = most(first, least(one, other));
-    last = least(last, most(one, other));
+    at.first = most(at.first, least(one, other));
+    at.last = least(at.last, most(one, other));
+}
+
+/// Circles of these radii, a line at `s` beside each, during these moments.
+HWY_INLINE void add_circles(const AcrossLanes& c, const Row& s, const Row& radius, Moments at,
+                            Stretch& all) {
+    const Row other_side = row_of(0.0) - radius;
+    if (c.per_side == 0.0)
+        at.met = at.met & at_most(other_side, s) & at_most(s, radius);
+    else
+        narrow(s, other_side, radius, c.per_side, at);
+    const RowMask met = at.met & at_most(at.first, at.last);
+    if (!any(met)) return;
+    const auto half = [&](const Row& t) HWY_ATTR {
+        const Row aside = s - t * c.by_side;
+        return root((radius - aside) * (aside + radius));
+    };
+    const Row touching = s * c.per_side, shift = radius * c.by_radius;
+    const Row low = least(most(touching + c.low_at - shift, at.first), at.last);
+    const Row high = least(most(touching + c.high_at + shift, at.first), at.last);
+    unite(all, met, low * c.by_a + c.from_a - half(low), high * c.by_a + c.from_a + half(high));
 }
 
 HWY_INLINE void add_across(const AcrossLanes& c, const Row& u, double v, Stretch& all) {
     const Row s = (c.side_is_u ? u : row_of(v)) - c.from_side;
     const Row z = (c.side_is_u ? row_of(v) : u) - c.from_z;
-    Row first = row_of(0.0), last = row_of(1.0);
-    RowMask met = at_most(first, last);
-    if (c.per_z == 0.0)
-        met = at_most(row_of(c.z0 + std::min(0.0, c.by_z)), z)
-              & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z)));
+    Moments at{row_of(0.0), row_of(1.0), {}};
+    if (c.per_z == 0.0) {
+        at.met = at_most(row_of(c.z0 + std::min(0.0, c.by_z)), z)
+                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z)));
+    } else {
+        at.met = at_most(at.first, at.last);
+        narrow(z, row_of(c.z0), row_of(c.z1), c.per_z, at);
+    }
+    add_circles(c, s, row_of(c.radius), at, all);
+}
+
+HWY_INLINE void add_level_across(const LevelLanes& level, const Row& u, double v, Stretch& all) {
+    const AcrossLanes& c = level.across;
+    const ProfileElement& e = level.element;
+    const Row s = (c.side_is_u ? u : row_of(v)) - c.from_side;
+    const Row z = (c.side_is_u ? row_of(v) : u) - c.from_z;
+    Moments at{row_of(0.0), row_of(1.0), {}};
+    if (e.margin > 0.0) {
+        const Row rise = z - e.z0, under = (row_of(e.margin) - rise) * (rise + e.margin);
+        at.met = at_most(row_of(0.0), under);
+        if (any(at.met)) add_circles(c, s, root(under) + std::max(e.r0, e.r1), at, all);
+        return;
+    }
+    const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
+    at.met = at_most(row_of(e.z0), z) & at_most(z, row_of(e.z1));
+    if (any(at.met)) add_circles(c, s, (z - e.z0) * slope + e.r0, at, all);
+}
+
+HWY_INLINE void add_level_along(const LevelLanes& level, const Row& u, double v, Stretch& all) {
+    const CapsuleLanes& c = level.path;
+    const ProfileElement& e = level.element;
+    const Row ou = u - c.from_u;
+    const double ov = v - c.from_v;
+    const Row g = ou * c.cos_u + row_of(ov * c.cos_v);
+    const Row aside = ou * c.cos_v - row_of(ov * c.cos_u);
+    const Row past = g - within_move(g * c.per_length) * c.length;
+    const Row away = root(aside * aside + past * past);
+    const RowMask met = at_most(away, row_of(c.radius));
+    if (e.margin > 0.0) {
+        const Row beyond = most(away - std::max(e.r0, e.r1), row_of(0.0));
+        const Row half = root((row_of(e.margin) - beyond) * (beyond + e.margin));
+        unite(all, met, row_of(c.from_a + e.z0) - half, half + (c.from_a + e.z0));
+        return;
+    }
+    const Row slant = (away - e.r0) * ((e.z1 - e.z0) / (e.r1 - e.r0)) + e.z0;
+    const Row end = least(most(slant, row_of(e.z0)), row_of(e.z1)) + c.from_a;
+    if (e.r1 > e.r0)
+        unite(all, met, end, row_of(c.from_a + e.z1));
     else
-        narrow(z, c.z0, c.z1, c.per_z, first, last);
-    if (c.per_side == 0.0)
-        met = met & at_most(row_of(-c.radius), s) & at_most(s, row_of(c.radius));
+        unite(all, met, row_of(c.from_a + e.z0), end);
+}
+
+HWY_INLINE void add_level(const LanePlan& plan, const LevelLanes& level, const Row& u, double v,
+                          Stretch& all) {
+    if (plan.axis == 2)
+        add_level_along(level, u, v, all);
     else
-        narrow(s, -c.radius, c.radius, c.per_side, first, last);
-    met = met & at_most(first, last);
-    if (!any(met)) return;
-    const auto half = [&](const Row& t) HWY_ATTR {
-        const Row aside = s - t * c.by_side;
-        return root((row_of(c.radius) - aside) * (aside + c.radius));
-    };
-    const Row touching = s * c.per_side;
-    const Row low = least(most(touching + c.low_at, first), last);
-    const Row high = least(most(touching + c.high_at, first), last);
-    unite(all, met, low * c.by_a + c.from_a - half(low), high * c.by_a + c.from_a + half(high));
+        add_level_across(level, u, v, all);
 }
 
 /// Line by line, for shapes and moves that have no lanes of their own.
@@ -248,7 +311,8 @@ HWY_INLINE Stretch stretches_of(const LanePlan& plan, const double* u, double v,
         if (u[0] <= c.u_most && v <= c.v_most) add_ball(c, at_u, v, all);
     }
     for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
-    for (size_t i = 0; i < plan.across; ++i) add_across(plan.level[i], at_u, v, all);
+    for (size_t i = 0; i < plan.across; ++i) add_across(plan.beside[i], at_u, v, all);
+    for (size_t i = 0; i < plan.levels; ++i) add_level(plan, plan.level[i], at_u, v, all);
     return {on_lattice(all.lower), on_lattice(all.upper)};
 }
 

@@ -80,16 +80,22 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
         c.per_side = 1.0 / by[side];
         // The circle's foremost points across its own path.
         const double whole = std::sqrt(c.by_a * c.by_a + c.by_side * c.by_side);
-        const double touching = e.r0 * c.by_a / whole;
-        const double shift = std::copysign(touching, touching * by[side]) * c.per_side;
-        c.low_at = -shift;
-        c.high_at = shift;
+        c.by_radius = c.by_a / (whole * std::abs(c.by_side));
     } else {
         c.by_side = 0.0;
         c.low_at = c.by_a < 0.0 ? 1.0 : 0.0;
         c.high_at = 1.0 - c.low_at;
     }
     return c;
+}
+
+LevelLanes level_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e) {
+    LevelLanes level{e, {}, {}};
+    if (axis == 2)
+        level.path = capsule(sweep, axis, 0.0, std::max(e.r0, e.r1) + e.margin);
+    else
+        level.across = across_lanes(sweep, axis, e);
+    return level;
 }
 
 bool is_ball(const ProfileElement& e) { return e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0; }
@@ -136,9 +142,12 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             c = upright_lanes(sweep, e);
             open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
-            plan.level[plan.across++] = across_lanes(sweep, axis, e);
+            plan.beside[plan.across++] = across_lanes(sweep, axis, e);
+        } else if (sweep.from.z == sweep.to.z && plan.levels < LanePlan::most
+                   && (e.margin > 0.0 || (e.z0 < e.z1 && e.r0 != e.r1))) {
+            plan.level[plan.levels++] = level_lanes(sweep, axis, e);
         } else {
-            plan.balls = plan.uprights = plan.across = 0;
+            plan.balls = plan.uprights = plan.across = plan.levels = 0;
             return plan;
         }
     }

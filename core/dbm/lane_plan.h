@@ -31,7 +31,16 @@ struct AcrossLanes {
     double by_a, by_side, by_z;
     double radius, z0, z1;
     double per_side, per_z; // 1 / by_side, 1 / by_z; 0 when there is none to speak of
-    double low_at, high_at; // the moments are side * per_side + these
+    double low_at, high_at; // the moments are side * per_side + these, ...
+    double by_radius;       // ... less radius * by_radius for the low one, more for the high one
+};
+
+/// A cone or a rounded corner on a level move: what it is at a height, or at a distance from the
+/// path, it is at every moment.
+struct LevelLanes {
+    ProfileElement element;
+    CapsuleLanes path;  // for lines along Z
+    AcrossLanes across; // for the others; its radius means nothing
 };
 
 /// How one convex piece along one move meets the lines of one family, in numbers made for lanes.
@@ -40,9 +49,10 @@ struct LanePlan {
 
     int axis = 0;
     bool by_lanes = false; // else line by line: with RevolvedProfile and CutterSweep below
-    size_t balls = 0, uprights = 0, across = 0;
+    size_t balls = 0, uprights = 0, across = 0, levels = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
-    std::array<AcrossLanes, most> level;          // cylinders met by lines along X and Y
+    std::array<AcrossLanes, most> beside;         // cylinders met by lines along X and Y
+    std::array<LevelLanes, most> level;
     const RevolvedProfile* piece = nullptr;
     const CutterSweep* sweep = nullptr;
 };

