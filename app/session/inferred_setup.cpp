@@ -221,7 +221,8 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         choose_mesh_size(file);
     }
     // Flutes of which nothing is said are as long as the program needs them.
-    const double top = core::bounds(file.setup.stock).max.z + file.setup.stock_origin.z;
+    const double top =
+        core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
     for (const std::vector<std::string>& notes : {put_tools(file, tools, first, deep), about_stock})
         file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
