@@ -103,10 +103,8 @@ struct Notes {
         length = change.length;
         result.offsets_lengths = result.offsets_lengths || change.number.has_value();
     }
-    void operator()(const core::Dwell&) {}
-    void operator()(const core::PathModeChange&) {}
-    void operator()(const core::FixtureChange&) {}
-    void operator()(const core::Motion&) {}
+    template <typename Other>
+    void operator()(const Other&) {} // says nothing here
 };
 
 void note_cut(const TipPath& path, double radius, ProgramSurvey& result) {
