@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
     cli.require_subcommand(1);
     app::ExitCode exit_code = app::ExitCode::clear;
     app::add_check(cli, exit_code);
+    app::add_setup(cli, exit_code);
     app::add_trace(cli, exit_code);
     app::add_distance(cli, exit_code);
     app::add_bench(cli, exit_code);

@@ -17,7 +17,7 @@ struct Options {
     std::string program, setup, output, stock, comparison;
     ProgramArguments reading;
     std::string format = "text";
-    std::optional<double> allowance, mesh_size;
+    std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
 };
@@ -51,14 +51,26 @@ core::Result<void> save_results(const Options& options, CheckRun& run) {
                  "was not written: the program did not run to its end",
                  name});
     if (!options.stock.empty()) {
+        FEELER_TRY(const MeshForm form, mesh_form(options.stock));
         FEELER_TRY(const StockFile file,
-                   stock_file(*run.surface, run.setup.mesh_size, options.stock));
+                   form == MeshForm::record
+                       ? stock_record_file(*run.stock, options.stock)
+                       : stock_file(*run.surface, run.setup.mesh_size, options.stock));
         if (auto written = write_output(options.stock, file.bytes); !written) return written;
         run.saved_stock = file.facts;
     }
     if (options.comparison.empty()) return {};
     FEELER_TRY(const std::string bytes, comparison_file(run, options.comparison));
     return write_output(options.comparison, bytes);
+}
+
+/// Before much memory is taken it is said how much.
+void say_memory(double bytes) {
+    constexpr double much = 1e9;
+    if (bytes >= much)
+        std::fputs(
+            fmt::format("the model of the stock takes about {:.1f} GB\n", 1e-9 * bytes).c_str(),
+            stderr);
 }
 
 ExitCode check(const Options& options) {
@@ -73,8 +85,16 @@ ExitCode check(const Options& options) {
         return ExitCode::failed;
     }
     const bool needs_surface = !options.stock.empty() || !options.comparison.empty();
-    auto run = run_check({options.program, options.setup, options.allowance, options.mesh_size,
-                          needs_surface, *settings});
+    std::optional<double> memory_limit;
+    if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
+    auto run = run_check({.program = options.program,
+                          .setup = options.setup,
+                          .allowance = options.allowance,
+                          .mesh_size = options.mesh_size,
+                          .memory_limit = memory_limit,
+                          .needs_surface = needs_surface,
+                          .before_model = say_memory,
+                          .settings = *settings});
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
@@ -99,20 +119,26 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup, "Set-up file (TOML); else it is inferred from the program, and said");
+    command.add_option("--setup", options->setup,
+                       "Set-up file (TOML); else it is inferred from the program, and said");
     command
         .add_option("--allowance", options->allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300));
+    command
+        .add_option("--memory-limit", options->memory_limit,
+                    "What the model of the stock may take, MB (8590 unless said)")
+        ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     command.add_option("--save-stock", options->stock,
-                       "Write what is left of the stock to this file (.stl, .ply)");
+                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
+                       "for a later set-up)");
     command.add_option("--save-comparison", options->comparison,
                        "Write what is left, coloured by its deviation from the part (.ply)");
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");

@@ -13,6 +13,7 @@ enum class ExitCode : int {
 
 /// Each adds a subcommand that sets `exit_code` when it runs.
 void add_check(CLI::App& cli, ExitCode& exit_code);
+void add_setup(CLI::App& cli, ExitCode& exit_code);
 void add_trace(CLI::App& cli, ExitCode& exit_code);
 void add_distance(CLI::App& cli, ExitCode& exit_code);
 void add_bench(CLI::App& cli, ExitCode& exit_code);

@@ -102,6 +102,7 @@ Json statistics_json(const CheckRun& run) {
     json["lines"] = run.lines;
     json["sphere_tests"] = 0; // this engine compares boxes and exact shapes instead
     json["point_tests"] = 0;
+    json["model_bytes"] = run.memory;
     json["box_tests"] = run.statistics.box_tests;
     json["shape_tests"] = run.statistics.shape_tests;
     json["refined"] = run.statistics.refined;
@@ -136,6 +137,7 @@ Json part_json(const CheckRun& run) {
 }
 
 Json saved_json(const SavedStock& saved) {
+    if (saved.triangles == 0) return {{"file", saved.file}, {"moves", saved.moves}};
     return {{"file", saved.file},
             {"triangles", saved.triangles},
             {"error", saved.error},

@@ -124,8 +124,8 @@ std::string summary_text(const CheckRun& run) {
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
     text += fmt::format("  removed    {:.1f} mm3\n", run.removed);
     text +=
-        fmt::format("  model      mesh size {} mm, {} scan lines, {} points; checked in {:.2f} s\n",
-                    run.setup.mesh_size, run.lines, run.points,
+        fmt::format("  model      mesh size {} mm, {} scan lines, {} points, {:.0f} MB; {:.2f} s\n",
+                    run.setup.mesh_size, run.lines, run.points, std::ceil(1e-6 * run.memory),
                     run.times.read + run.times.model + run.times.check);
     if (run.comparison)
         text +=

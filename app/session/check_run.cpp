@@ -7,6 +7,7 @@
 
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
+#include "app/session/m_codes.h"
 #include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
 #include "core/sim/block_clock.h"
@@ -106,11 +107,29 @@ void take_tool_zero(core::Event& event) {
     if (change && !change->tool) change->tool = core::ToolNumber{0};
 }
 
+/// The fixtures that are moved before a block.
+std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+    std::vector<core::Event> events;
+    for (const core::FixtureMove& move : setup.fixture_moves) {
+        const bool here = move.line && block.file.empty() && block.line == *move.line;
+        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
+        events.emplace_back(core::FixtureChange{move.from, false});
+        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
+    }
+    return events;
+}
+
+void take_any_speed(core::Event& event) {
+    auto* spindle = std::get_if<core::SpindleChange>(&event);
+    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
+}
+
 /// A run while it goes on.
 struct Runner {
     const gcode::Program& program;
     const gcode::Environment& environment;
     CheckRun& run;
+    bool speed_by_hand = false;
     gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
                                   environment.search_path};
     gcode::Interpreter interpreter{library, environment};
@@ -138,9 +157,12 @@ struct Runner {
 
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        std::vector<core::Event> events = gcode::lower(block, lowering);
-        if (run.setup.tools.contains(core::ToolNumber{0}))
-            for (core::Event& event : events) take_tool_zero(event);
+        std::vector<core::Event> events = fixture_events(run.setup, block);
+        for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
+        for (core::Event& event : events) {
+            if (run.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
+            if (speed_by_hand) take_any_speed(event);
+        }
         if (auto refused = refusal(block)) return refused;
         CheckedBlock checked{
             block.block, block.line, std::string(block.text), std::string(block.file),
@@ -249,12 +271,15 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     look_beyond_allowances(run.setup);
     take_tool_at_start(run.setup, run, calls_tools(*program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
 
     const Clock::time_point modelling = Clock::now();
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    if (job.before_model) job.before_model(run.memory);
     auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     state->spindle.direction = run.setup.spindle_at_start;
@@ -262,7 +287,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
-    Runner{*program, file.environment, run}.to_the_end(*state);
+    Runner{*program, file.environment, run, file.speed_by_hand}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
     run.stock = std::move(state->stock);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,7 +47,8 @@ struct CheckRun {
     double cycle_time = 0.0; // of the program, seconds
     double removed = 0.0;    // mm3
     CheckTimes times;
-    std::optional<core::CutModel> stock;    // what is left of it
+    double memory = 0.0;                 // bytes that the model of the stock was expected to take
+    std::optional<core::CutModel> stock; // what is left of it
     std::optional<core::StockMesh> surface; // of it, if it was asked for
     std::optional<SavedStock> saved_stock;
     std::optional<core::PartComparison> comparison; // if the set-up has a part
@@ -60,8 +62,10 @@ struct CheckJob {
     std::string setup;               // empty: inferred from the program
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
+    std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     bool needs_surface = false; // that of the stock is wanted, also without a part
-    ProgramSettings settings;   // replace what the set-up says under [program]
+    std::function<void(double)> before_model = {}; // told the bytes that the model will take
+    ProgramSettings settings;                      // replace what the set-up says under [program]
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

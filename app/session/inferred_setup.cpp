@@ -20,35 +20,64 @@ constexpr double zero_above_program = 500.0; // mm, of the machine
 constexpr double below_the_cuts = 2.0;       // mm of stock under the deepest cut
 constexpr double smallest_height = 1.0;
 
-/// Adds the tools that the program uses and the set-up has not.
-core::Result<void> complete_tools(SetupFile& file, const gcode::Program& program,
-                                  const ProgramSurvey& seen) {
-    FEELER_TRY(OfferedTools offered, offered_tools(file, program));
+/// A number that no tool has.
+ToolNumber free_number(const ProgramSurvey& seen) {
+    int number = 1;
+    while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
+        ++number;
+    return ToolNumber{number};
+}
+
+/// What is known of the tools that the program uses and the set-up has not.
+core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
+                                                   const ProgramSurvey& seen) {
+    FEELER_TRY(const OfferedTools offered, offered_tools(file, program));
     const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
     const auto mills = [&](ToolNumber number) {
         const auto found = seen.mills.find(number);
         return found == seen.mills.end() || found->second;
     };
+    std::vector<FoundTool> missing;
     std::vector<ToolNumber> wanted = seen.tools;
     const bool only_empties = seen.tools.empty() && seen.empties_spindle;
     if (file.is_inferred && only_empties) wanted.push_back(ToolNumber{0}); // T0 M6, and it cuts
     for (const ToolNumber number : wanted) {
-        if (file.setup.tools.contains(number)) continue;
         const auto found = offered.tools.find(number);
+        if (file.setup.tools.contains(number)) continue;
         if (found != offered.tools.end())
-            add_tool(file, found->second);
+            missing.push_back(found->second);
         else if (file.is_inferred)
-            add_unknown_tool(file, number, mills(number), unit);
+            missing.push_back(unknown_tool(number, mills(number), unit));
     }
-    if (seen.calls_tools || !file.setup.tools.empty()) return {};
+    const bool one_is_held = seen.feeds_before_call || !seen.calls_tools;
+    if (!one_is_held || !file.setup.tools.empty() || file.setup.tool_at_start) return missing;
     if (offered.in_spindle) {
-        FoundTool held = *offered.in_spindle;
-        if (core::value_of(held.tool.number) == 0) held.tool.number = ToolNumber{1};
-        add_tool(file, held);
+        missing.push_back(*offered.in_spindle);
+        if (core::value_of(missing.back().tool.number) == 0)
+            missing.back().tool.number = ToolNumber{1};
     } else if (file.is_inferred) {
-        add_unknown_tool(file, ToolNumber{1}, mills(ToolNumber{0}), unit);
+        missing.push_back(unknown_tool(free_number(seen), mills(ToolNumber{0}), unit));
     }
-    return {};
+    if (file.is_inferred && seen.calls_tools) {
+        file.setup.tool_at_start = missing.back().tool.number;
+        file.assumptions.push_back(
+            fmt::format("the program cuts before it calls a tool: tool {} is in the spindle then",
+                        core::value_of(*file.setup.tool_at_start)));
+    }
+    return missing;
+}
+
+std::vector<std::string> put_tools(SetupFile& file, const std::vector<FoundTool>& tools,
+                                   const ProgramSurvey& seen, double least_flutes) {
+    std::vector<std::string> assumed;
+    for (const FoundTool& tool : tools) {
+        auto length = seen.control_lengths.find(tool.tool.number);
+        if (length == seen.control_lengths.end()) // of what is in the spindle before any call
+            length = seen.control_lengths.find(ToolNumber{0});
+        assumed.push_back(put_tool(file, tool, least_flutes,
+                                   length == seen.control_lengths.end() ? 0.0 : length->second));
+    }
+    return assumed;
 }
 
 SurveyTools sizes(const SetupFile& file, bool calls_tools) {
@@ -60,9 +89,10 @@ SurveyTools sizes(const SetupFile& file, bool calls_tools) {
         known.lengths[number] = tool.length;
         known.radii[number] = widest;
     }
-    // A motion before any call is one of the only tool there is.
-    if (!calls_tools && file.setup.tools.size() == 1) {
-        const ToolNumber only = file.setup.tools.begin()->first;
+    // A motion before any call is one of the tool that is held, or of the only one there is.
+    const bool only_one = !calls_tools && file.setup.tools.size() == 1;
+    if (file.setup.tool_at_start || only_one) {
+        const ToolNumber only = file.setup.tool_at_start.value_or(file.setup.tools.begin()->first);
         known.lengths[ToolNumber{0}] = known.lengths[only];
         known.radii[ToolNumber{0}] = known.radii[only];
     }
@@ -78,6 +108,8 @@ struct Top {
 Top top_of(const ProgramSurvey& seen, double origin) {
     constexpr double near = 2.0, share = 0.25; // how far above zero ramps and leads begin
     const double lowest = seen.lowest - origin;
+    if (seen.retract && *seen.retract - origin < 0.0 && *seen.retract > seen.lowest)
+        return {*seen.retract - origin, "where rapids travel"};
     if (!seen.cuts_sideways)
         return lowest < 0.0 ? Top{0.0, "at Z0, where cuts go below it"}
                             : Top{lowest + smallest_height, "just above the deepest feed"};
@@ -87,12 +119,12 @@ Top top_of(const ProgramSurvey& seen, double origin) {
     return {highest, "at the highest cut"};
 }
 
-core::Result<void> complete_stock(SetupFile& file, const ProgramSurvey& seen) {
+core::Result<std::vector<std::string>> complete_stock(SetupFile& file, const ProgramSurvey& seen) {
     if (!seen.feeds && !file.is_inferred)
         return core::fail(core::ErrorCode::invalid_value,
                           "[stock] is missing, and the program has no cutting move that it could "
                           "be inferred from");
-    const Vec3 origin = file.setup.stock_origin;
+    const Vec3 origin = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
     Aabb box{{-5, -5, -5}, {5, 5, 0}};
     std::string why = "the program cuts nothing, so the stock is a cube of 10 mm at its zero";
@@ -111,8 +143,24 @@ core::Result<void> complete_stock(SetupFile& file, const ProgramSurvey& seen) {
     }
     const double tolerance = file.setup.stock.tolerance;
     file.setup.stock = {core::SolidBox{box}, tolerance};
-    file.assumptions.push_back(why);
-    return {};
+    return std::vector<std::string>{why};
+}
+
+/// What an operator does who runs such a program.
+void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
+    if (!seen.turns_spindle) {
+        file.setup.spindle_at_start = core::SpindleDirection::clockwise;
+        file.assumptions.push_back(
+            "the program never starts the spindle: it is switched on by hand");
+    } else if (!seen.states_speed) {
+        file.speed_by_hand = true;
+        file.assumptions.push_back("the program never says how fast the spindle turns: that is set "
+                                   "by hand");
+    }
+    if (seen.offsets_lengths) return;
+    file.setup.rules["missing-length-offset"] = core::Severity::off;
+    file.assumptions.push_back(
+        "the program offsets no tool's length: the work offset is set again with every tool");
 }
 
 /// Large stocks take a coarser model, so that its memory stays that of an ordinary one.
@@ -135,7 +183,7 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     file.tool_table = settings.tool_table;
     for (gcode::AxisValues& offset : file.environment.work_offsets)
         offset = {0.0, 0.0, -zero_above_program};
-    file.setup.stock_origin = Vec3(0.0, 0.0, -zero_above_program);
+    file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
     for (size_t axis = 0; axis < 3; ++axis)
         if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
     file.assumptions = notes;
@@ -147,18 +195,37 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     return file;
 }
 
+core::Result<SetupFile> infer_setup(const gcode::Program& program,
+                                    const ProgramSettings& settings) {
+    FEELER_TRY(SetupFile file, bare_setup(settings));
+    if (!file.dialect) file.dialect = gcode::recognise(program).dialect;
+    if (!gcode::dialect(*file.dialect).supported)
+        return core::fail(core::ErrorCode::unsupported,
+                          fmt::format("the dialect {} is not supported by this version",
+                                      gcode::dialect(*file.dialect).name));
+    file.environment.dialect = *file.dialect;
+    if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
+    return file;
+}
+
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
     const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
-    if (auto wrong = complete_tools(file, program, first); !wrong) return wrong;
-    if (file.is_inferred && !first.turns_spindle) {
-        file.setup.spindle_at_start = core::SpindleDirection::clockwise;
-        file.assumptions.push_back(
-            "the program never starts the spindle: it is switched on by hand");
-    }
-    if (!file.needs_stock) return {};
+    FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
+    put_tools(file, tools, first, 0.0);
+    if (file.is_inferred) assume_handwork(file, first);
+    if (!file.needs_stock && tools.empty()) return {};
     const ProgramSurvey seen = survey(program, file.environment, sizes(file, first.calls_tools));
-    if (auto wrong = complete_stock(file, seen); !wrong) return wrong;
-    choose_mesh_size(file);
+    std::vector<std::string> about_stock;
+    if (file.needs_stock) {
+        FEELER_TRY(about_stock, complete_stock(file, seen));
+        choose_mesh_size(file);
+    }
+    // Flutes of which nothing is said are as long as the program needs them.
+    const double top =
+        core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
+    const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
+    for (const std::vector<std::string>& notes : {put_tools(file, tools, first, deep), about_stock})
+        file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
 }
 

@@ -11,6 +11,11 @@ namespace app {
 /// Errors: of the files that the settings name.
 core::Result<SetupFile> bare_setup(const ProgramSettings& settings);
 
+/// A whole set-up from a program alone.
+///
+/// Errors: of the files that the settings name; unsupported for a dialect that cannot be read.
+core::Result<SetupFile> infer_setup(const gcode::Program& program, const ProgramSettings& settings);
+
 /// Adds what a set-up leaves open and the program tells: tools from its comments and from the
 /// set-up's library, the stock from the cutting moves; of a bare set-up also tools of which nothing
 /// is known, and a spindle that is switched on by hand. What is there stays. Every guess becomes an

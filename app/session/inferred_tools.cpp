@@ -15,29 +15,14 @@ double usual_diameter(gcode::LengthUnit unit) {
     return unit == gcode::LengthUnit::inch ? 6.35 : 6.0;
 }
 
-void put_in_place(SetupFile& file, core::ToolDescription tool, const std::string& assumed) {
-    tool.touched_off = file.is_inferred;
-    // The control's table knows how long it is, if it knows the tool.
-    const auto entry =
-        file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
-    if (!file.is_inferred && entry != file.environment.length_offsets.end() && !tool.gauge_length
-        && entry->second.length > tool.stick_out.value_or(0.0))
-        tool.gauge_length = entry->second.length;
-    auto assembled = core::assemble(tool);
-    if (!assembled) { // sizes that contradict each other: the plainest tool of that width
-        file.assumptions.push_back(
-            fmt::format("{}; it is taken as a flat end mill", assembled.error().message));
-        core::ToolDescription plain;
-        plain.number = tool.number;
-        plain.diameter = tool.diameter;
-        plain.touched_off = tool.touched_off;
-        assembled = core::assemble(complete({plain, true, true, "what is left of it"}).tool);
-        if (!assembled) return;
-    }
-    file.assumptions.push_back(assumed);
-    file.environment.tool_lengths[tool.number] = assembled->length;
-    file.environment.tool_diameters[tool.number] = assembled->description.diameter;
-    file.setup.tools.insert_or_assign(tool.number, *std::move(assembled));
+/// The plainest tool of that width, when the sizes that were found contradict each other.
+core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
+    FoundTool plain;
+    plain.tool.number = tool.number;
+    plain.tool.diameter = tool.diameter;
+    plain.tool.touched_off = tool.touched_off;
+    const auto assembled = core::assemble(complete(plain).tool);
+    return assembled ? *assembled : core::ToolAssembly{.description = plain.tool, .parts = {}};
 }
 
 } // namespace
@@ -56,24 +41,38 @@ core::Result<OfferedTools> offered_tools(const SetupFile& file, const gcode::Pro
     return offered;
 }
 
-void add_tool(SetupFile& file, const FoundTool& found) {
-    const CompleteTool whole = complete(found);
-    put_in_place(file, whole.tool, whole.assumed);
-}
-
-void add_unknown_tool(SetupFile& file, ToolNumber number, bool mills, gcode::LengthUnit unit) {
+FoundTool unknown_tool(ToolNumber number, bool mills, gcode::LengthUnit unit) {
     FoundTool guess;
     guess.tool.number = number;
     guess.tool.shape = mills ? core::ToolShape::flat : core::ToolShape::drill;
     guess.tool.diameter = usual_diameter(unit);
     guess.has_shape = true;
-    const CompleteTool whole = complete(guess);
-    put_in_place(file, whole.tool,
-                 fmt::format("nothing is said about tool {}: it is taken as a {} of {:g} mm, "
-                             "because it {}",
-                             core::value_of(number), mills ? "flat end mill" : "drill",
-                             guess.tool.diameter,
-                             mills ? "cuts sideways" : "only goes up and down"));
+    guess.source = fmt::format("its use alone: it {}, and nothing is said about it",
+                               mills ? "cuts sideways" : "only goes up and down");
+    return guess;
+}
+
+std::string put_tool(SetupFile& file, const FoundTool& found, double least_flutes,
+                     double control_length) {
+    CompleteTool whole = complete(found, least_flutes);
+    core::ToolDescription& tool = whole.tool;
+    if (file.is_inferred) tool.touched_off = control_length;
+    // The control's table knows how long a tool is, if it knows it at all.
+    const auto entry =
+        file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
+    const bool longer = entry != file.environment.length_offsets.end()
+                        && entry->second.length > tool.stick_out.value_or(0.0);
+    if (!file.is_inferred && longer && !tool.gauge_length) tool.gauge_length = entry->second.length;
+    auto assembled = core::assemble(tool);
+    if (!assembled) {
+        whole.assumed = fmt::format("{}; it is taken as a flat end mill of {:g} mm",
+                                    assembled.error().message, tool.diameter);
+        assembled = plain_tool(tool);
+    }
+    file.environment.tool_lengths[tool.number] = assembled->length;
+    file.environment.tool_diameters[tool.number] = assembled->description.diameter;
+    file.setup.tools.insert_or_assign(tool.number, *std::move(assembled));
+    return whole.assumed;
 }
 
 } // namespace app

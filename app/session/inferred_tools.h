@@ -18,10 +18,14 @@ struct OfferedTools {
 /// Errors: of the tool table's file.
 core::Result<OfferedTools> offered_tools(const SetupFile& file, const gcode::Program& program);
 
-/// Adds a tool that was found, completed by what such tools usually have.
-void add_tool(SetupFile& file, const FoundTool& found);
+/// A tool of which only the use is known.
+FoundTool unknown_tool(core::ToolNumber number, bool mills, gcode::LengthUnit unit);
 
-/// Adds a tool of which only the use is known.
-void add_unknown_tool(SetupFile& file, core::ToolNumber number, bool mills, gcode::LengthUnit unit);
+/// Puts a tool in its place, completed by what such tools usually have. In a bare set-up the
+/// control's length is its length.
+///
+/// Result: what is assumed.
+std::string put_tool(SetupFile& file, const FoundTool& found, double least_flutes,
+                     double control_length);
 
 } // namespace app

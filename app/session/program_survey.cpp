@@ -67,28 +67,47 @@ std::optional<TipPath> path_of(const Motion& motion, double length) {
 
 double size_of(const std::map<core::ToolNumber, double>& sizes,
                const std::optional<core::ToolNumber>& tool) {
-    if (!tool) return 0.0;
-    const auto found = sizes.find(*tool);
+    const auto found = sizes.find(tool.value_or(core::ToolNumber{0}));
     return found == sizes.end() ? 0.0 : found->second;
 }
 
-/// The height at which rapids travel farthest in all; to 0.1 mm.
+/// The highest plane, to 0.1 mm, in which rapids travel much: a fifth of the way of the busiest
+/// one.
 std::optional<double> plane_of(const std::map<long, double>& travel) {
-    const auto most =
-        std::max_element(travel.begin(), travel.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == travel.end()) return std::nullopt;
-    return 0.1 * static_cast<double>(most->first);
+    constexpr double much = 0.2;
+    double most = 0.0;
+    for (const auto& [height, way] : travel) most = std::max(most, way);
+    for (auto plane = travel.rbegin(); plane != travel.rend(); ++plane)
+        if (plane->second >= much * most) return 0.1 * static_cast<double>(plane->first);
+    return std::nullopt;
 }
 
-void note_tool(const ProgramEvent& event, const core::ToolChange& change, ProgramSurvey& result) {
-    (void)event;
-    result.calls_tools = true;
-    result.empties_spindle = result.empties_spindle || !change.tool;
-    if (change.tool
-        && std::find(result.tools.begin(), result.tools.end(), *change.tool) == result.tools.end())
-        result.tools.push_back(*change.tool);
-}
+/// What a program says beside its motions.
+struct Notes {
+    ProgramSurvey& result;
+    double length = 0.0; // that the control counts now
+
+    void operator()(const core::ToolChange& change) {
+        auto& tools = result.tools;
+        result.calls_tools = true;
+        result.empties_spindle = result.empties_spindle || !change.tool;
+        if (change.tool && std::find(tools.begin(), tools.end(), *change.tool) == tools.end())
+            tools.push_back(*change.tool);
+    }
+    void operator()(const core::SpindleChange& spindle) {
+        const bool turns = spindle.direction != core::SpindleDirection::stopped;
+        result.turns_spindle = result.turns_spindle || turns;
+        result.states_speed = result.states_speed || (turns && spindle.speed > 0.0);
+    }
+    void operator()(const core::LengthOffsetChange& change) {
+        length = change.length;
+        result.offsets_lengths = result.offsets_lengths || change.number.has_value();
+    }
+    void operator()(const core::Dwell&) {}
+    void operator()(const core::PathModeChange&) {}
+    void operator()(const core::FixtureChange&) {}
+    void operator()(const core::Motion&) {}
+};
 
 void note_cut(const TipPath& path, double radius, ProgramSurvey& result) {
     if (!result.feeds) result.lowest = core::infinity;
@@ -108,33 +127,40 @@ void note_cut(const TipPath& path, double radius, ProgramSurvey& result) {
 ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
                      const SurveyTools& tools) {
     ProgramSurvey result;
+    Notes notes{result};
     std::map<long, double> travel; // of rapids sideways, by height in tenths of a millimetre
     visit_events(program, environment, [&](const ProgramEvent& event) {
-        if (const auto* change = std::get_if<core::ToolChange>(&event.event))
-            note_tool(event, *change, result);
-        if (const auto* spindle = std::get_if<core::SpindleChange>(&event.event))
-            result.turns_spindle =
-                result.turns_spindle || spindle->direction != core::SpindleDirection::stopped;
+        std::visit(notes, event.event);
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
         const auto path = path_of(*motion, size_of(tools.lengths, event.tool));
         if (!path) return;
         if (motion->kind != MotionKind::rapid) {
-            bool& mills = result.mills[event.tool.value_or(core::ToolNumber{0})];
+            const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
+            bool& mills = result.mills[tool];
             mills = mills || path->sideways;
+            result.control_lengths.try_emplace(tool, notes.length);
+            result.feeds_before_call = result.feeds_before_call || !result.calls_tools;
         } else if (path->sideways && path->places[0].z == path->places.back().z) {
             travel[std::lround(10.0 * path->lowest())] +=
                 glm::distance(path->places[0], path->places.back());
         }
     });
     result.retract = plane_of(travel);
-    visit_events(program, environment, [&](const ProgramEvent& event) {
-        const auto* motion = std::get_if<Motion>(&event.event);
-        if (!motion || motion->kind == MotionKind::rapid) return;
-        const auto path = path_of(*motion, size_of(tools.lengths, event.tool));
-        if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
-        note_cut(*path, size_of(tools.radii, event.tool), result);
-    });
+    const auto look_at_cuts = [&] {
+        visit_events(program, environment, [&](const ProgramEvent& event) {
+            const auto* motion = std::get_if<Motion>(&event.event);
+            if (!motion || motion->kind == MotionKind::rapid) return;
+            const auto path = path_of(*motion, size_of(tools.lengths, event.tool));
+            if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
+            note_cut(*path, size_of(tools.radii, event.tool), result);
+        });
+    };
+    look_at_cuts();
+    if (!result.feeds && result.retract) { // rapids travel at the depth of the cuts
+        result.retract.reset();
+        look_at_cuts();
+    }
     return result;
 }
 

@@ -16,6 +16,10 @@ struct ProgramSurvey {
     bool calls_tools = false;            // also T0
     bool empties_spindle = false;        // calls T0
     bool turns_spindle = false;
+    bool states_speed = false;    // of the spindle, above 0
+    bool offsets_lengths = false; // G43 or its like, ever
+    bool feeds_before_call = false;
+    std::map<core::ToolNumber, double> control_lengths; // that are in effect as a tool first feeds
     std::map<core::ToolNumber, bool> mills; // of each tool that feeds: it feeds sideways
 
     bool feeds = false;

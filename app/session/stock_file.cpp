@@ -1,6 +1,7 @@
 #include "app/session/stock_file.h"
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -29,10 +30,14 @@ core::Result<MeshForm> mesh_form(const std::string& path) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".stl") return MeshForm::stl;
     if (ending == ".ply") return MeshForm::ply;
-    return refused(path, "cannot be written: the name must end in .stl or .ply");
+    if (ending == ".feeler") return MeshForm::record;
+    return refused(path, "cannot be written: the name must end in .stl, .ply or .feeler");
 }
 
 std::string facts_of(const SavedStock& saved) {
+    if (saved.moves > 0 || saved.triangles == 0)
+        return fmt::format("{}: the raw stock and {} moves; a set-up takes it as [stock] model",
+                           saved.file, saved.moves);
     std::string text =
         fmt::format("{}: {} triangles, within {:.2g} mm of the model's points, lines {} mm apart",
                     saved.file, saved.triangles, saved.error, saved.mesh_size);
@@ -44,6 +49,7 @@ std::string facts_of(const SavedStock& saved) {
 core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
                                    const std::string& path) {
     FEELER_TRY(const MeshForm form, mesh_form(path));
+    assert(form != MeshForm::record);
     if (surface.mesh.triangles.empty())
         return refused(path, "was not written: nothing is left of the stock");
     StockFile file;
@@ -66,6 +72,14 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
         comments.push_back(
             fmt::format("{} points on details thinner than that are missing", surface.lost));
     file.bytes = core::ply_bytes(surface.mesh, comments);
+    return file;
+}
+
+StockFile stock_record_file(const core::CutModel& stock, const std::string& path) {
+    const core::StockRecord record = core::record_of(stock);
+    StockFile file;
+    file.facts = {.file = path, .mesh_size = record.spacing, .moves = record.sweeps.size()};
+    file.bytes = core::bytes_of(record);
     return file;
 }
 

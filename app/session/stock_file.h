@@ -5,11 +5,12 @@
 
 #include "core/base/result.h"
 #include "core/dbm/stock_mesh.h"
+#include "core/dbm/stock_record.h"
 
 namespace app {
 
-/// The forms in which surfaces are written.
-enum class MeshForm : uint8_t { stl, ply };
+/// The forms in which a stock is written: surfaces, or the record of its cuts (.feeler).
+enum class MeshForm : uint8_t { stl, ply, record };
 
 /// The form that a file's ending asks for.
 ///
@@ -23,6 +24,7 @@ struct SavedStock {
     double error = 0.0;     // mm: the points of the model are this near to the surface
     double mesh_size = 0.0; // mm: between lines this far apart the surface is interpolated
     size_t lost = 0;        // points on details thinner than the mesh size, not in the surface
+    size_t moves = 0;       // in a record, which has no triangles and no error
 };
 
 /// The same in a line of text.
@@ -39,5 +41,8 @@ struct StockFile {
 /// Errors: those of mesh_form; invalid_value when nothing is left.
 core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
                                    const std::string& path);
+
+/// The stock as a record from which a later set-up takes it (`[stock] model`), nothing lost.
+StockFile stock_record_file(const core::CutModel& stock, const std::string& path);
 
 } // namespace app

@@ -1,8 +1,15 @@
 #include "app/setup/body_table.h"
 
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/text_lines.h"
+#include "core/dbm/stock_record.h"
+#include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
 
 namespace app {
@@ -77,16 +84,6 @@ CylinderKey read_cylinder(TableReader& table) {
     return cylinder;
 }
 
-core::Mesh mesh_of(const core::Aabb& box) {
-    core::Mesh mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.emplace_back(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
-                                   i & 4U ? box.max.z : box.min.z);
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
-
 /// The mesh a body names, in the body's frame. Relative paths are relative to the set-up.
 core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
     const std::string name = table.string("mesh").value_or("");
@@ -112,7 +109,8 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
 /// Box or mesh, moved, as a mesh.
 core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
                            const core::Transform& target_from_body) {
-    core::Mesh mesh = shape == "box" ? mesh_of(read_box(table)) : read_mesh_key(table, source);
+    core::Mesh mesh =
+        shape == "box" ? core::mesh_of(read_box(table)) : read_mesh_key(table, source);
     return moved(std::move(mesh), target_from_body);
 }
 
@@ -173,6 +171,66 @@ void read_envelope(TableReader& table, BodyContext& context, const Placement& pl
     table.finish();
 }
 
+core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
+    if (const auto* shape = std::get_if<core::ConvexShape>(&body)) return core::posed(*shape, by);
+    return core::solid_mesh(moved(*std::get<core::SolidMesh>(body).mesh, by));
+}
+
+/// The number of an M code such as "M61"; empty for a text that is none.
+std::optional<int> m_code(const std::string& text) {
+    if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != 'M') return {};
+    const auto number = number_in(std::string_view(text).substr(1));
+    if (!number || *number < 0.0 || *number > 99999.0 || *number != std::floor(*number)) return {};
+    return static_cast<int>(*number);
+}
+
+/// A `[[fixture.move]]` of the fixture that stands last; where it goes, if it is not taken away.
+std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last) {
+    core::FixtureMove move{.from = last};
+    if (const auto line = table.integer("line")) {
+        if (*line < 1) table.refuse("line", "counts from 1");
+        move.line = static_cast<uint32_t>(std::max(*line, 1));
+    }
+    if (const auto code = table.string("code")) {
+        move.code = m_code(*code);
+        if (!move.code) table.refuse("code", "must be an M code, as in \"M61\"");
+    }
+    if (table.has("line") == table.has("code")) table.need("one of line, code");
+    const bool removed = table.boolean("remove").value_or(false);
+    if (removed && (table.has("at") || table.has("rotate_deg")))
+        table.refuse("remove", "takes the fixture away: it has no place then");
+    if (!removed) move.to = setup.fixtures.size();
+    const core::Transform to = read_pose(table);
+    table.finish();
+    setup.fixture_moves.push_back(move);
+    return removed ? std::nullopt : std::optional(to);
+}
+
+core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return core::fail(core::ErrorCode::io, "there is no such file, or it cannot be read");
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return core::stock_record(bytes.str());
+}
+
+/// A stock as an earlier program left it (check --save-stock).
+void read_model(TableReader& table, BodyContext& context, const Placement& placement) {
+    const std::string name = table.string("model").value_or("");
+    auto record = read_record(context.folder / name);
+    if (record) record = core::moved(*std::move(record), placement.frame_from_body);
+    if (!record)
+        return table.refuse("model", fmt::format("= \"{}\": {}", name, record.error().message));
+    core::Setup& setup = context.file.setup;
+    setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
+    setup.stock = std::move(record->solid);
+    setup.earlier_cuts =
+        std::make_shared<const std::vector<core::CutterSweep>>(std::move(record->sweeps));
+    context.frames.machine_from["stock"] = placement.machine_from_body();
+    table.finish();
+}
+
 } // namespace
 
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
@@ -206,9 +264,7 @@ void read_stock(TableReader& table, BodyContext& context) {
         return read_envelope(table, context, placement);
     const auto shape = only_shape(table);
     if (!shape) return;
-    if (*shape == "model")
-        return table.refuse("model", "is not supported by this version; give a box, cylinder or "
-                                     "mesh");
+    if (*shape == "model") return read_model(table, context, placement);
     core::Setup& setup = context.file.setup;
     setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
@@ -263,8 +319,20 @@ void read_fixture(TableReader& table, BodyContext& context) {
     if (!body) return;
     fixture.body = *body;
     context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
+    std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
     table.finish();
-    setup.fixtures.push_back(std::move(fixture));
+    setup.fixtures.push_back(fixture);
+    const core::Transform body_from_stock = (stock_from_frame * frame_from_body).inverse();
+    size_t last = setup.fixtures.size() - 1;
+    for (TableReader& move : moves) {
+        const auto to = read_move(move, setup, last);
+        if (!to) continue;
+        core::Fixture there = fixture;
+        there.is_there = false;
+        there.body = moved(fixture.body, stock_from_frame * *to * body_from_stock);
+        last = setup.fixtures.size();
+        setup.fixtures.push_back(std::move(there));
+    }
 }
 
 } // namespace app

@@ -94,6 +94,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.machine_codes, over.machine_codes);
     replace(settings.tool_at_start, over.tool_at_start);
     replace(settings.spindle_at_start, over.spindle_at_start);
+    replace(settings.speed_by_hand, over.speed_by_hand);
     return settings;
 }
 

@@ -25,6 +25,7 @@ struct ProgramSettings {
     std::set<int> machine_codes; // M codes of the machine's builder
     std::optional<core::ToolNumber> tool_at_start;
     std::optional<core::SpindleDirection> spindle_at_start;
+    std::optional<bool> speed_by_hand; // the spindle turns though no S says how fast
 };
 
 /// Both together; what `over` says wins.

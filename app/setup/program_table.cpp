@@ -49,6 +49,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
         if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
         settings.max_blocks = static_cast<uint64_t>(*blocks);
     }
+    settings.speed_by_hand = table.boolean("speed_by_hand");
     if (const auto tool = table.integer("tool_at_start"))
         settings.tool_at_start = core::ToolNumber{*tool};
     if (const auto spindle =

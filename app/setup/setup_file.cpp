@@ -51,6 +51,7 @@ void apply_settings(const ProgramSettings& settings, SetupFile& file,
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
     file.setup.tool_at_start = settings.tool_at_start;
+    file.speed_by_hand = settings.speed_by_hand.value_or(false);
     file.setup.spindle_at_start =
         settings.spindle_at_start.value_or(core::SpindleDirection::stopped);
     file.assumptions.insert(file.assumptions.end(), notes->begin(), notes->end());
@@ -215,6 +216,10 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
     core::Setup& setup = file.setup;
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
+    if (const auto megabytes = root.number("memory_limit")) {
+        if (!(*megabytes > 0.0)) root.refuse("memory_limit", "must be above 0, in MB");
+        setup.memory_limit = *megabytes * 1e6;
+    }
     ProgramSettings settings;
     if (auto table = root.table("program", "[program]"))
         settings = read_program_table(*table, context.folder);

@@ -26,6 +26,7 @@ struct SetupFile {
     std::string tool_table;                        // of the control, which knows diameters too
     bool needs_stock = false;                      // it is to be inferred from the program
     std::optional<double> stock_margin;            // round what is inferred
+    bool speed_by_hand = false;                    // M3 turns the spindle without an S
     bool is_inferred = false;                      // no file: everything is
     std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
 };

@@ -70,7 +70,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     tool.shank_diameter = table.number("shank_diameter");
     tool.stick_out = table.number("stick_out");
     tool.gauge_length = table.number("gauge_length");
-    tool.touched_off = table.boolean("touched_off").value_or(false);
+    tool.touched_off = table.number("touched_off");
     read_holder(table, context, tool);
     const auto spindle = table.word("spindle", {"clockwise", "counterclockwise"});
     tool.cuts = spindle == "counterclockwise" ? core::SpindleDirection::counterclockwise

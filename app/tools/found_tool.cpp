@@ -95,9 +95,12 @@ double usual_flutes(const ToolDescription& tool) {
     }
 }
 
-void complete_lengths(ToolDescription& tool, std::vector<std::string>& assumed) {
+void complete_lengths(ToolDescription& tool, double least_flutes,
+                      std::vector<std::string>& assumed) {
     if (tool.flute_length <= 0.0 && tool.shape != ToolShape::lollipop) {
         tool.flute_length = usual_flutes(tool);
+        const bool undercuts = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
+        if (!undercuts) tool.flute_length = std::max(tool.flute_length, least_flutes);
         assumed.push_back(fmt::format("flutes {:.4g} mm", tool.flute_length));
     }
     if (!tool.shank_diameter) {
@@ -123,13 +126,13 @@ void complete_lengths(ToolDescription& tool, std::vector<std::string>& assumed) 
 
 } // namespace
 
-CompleteTool complete(const FoundTool& found) {
+CompleteTool complete(const FoundTool& found, double least_flutes) {
     CompleteTool whole{found.tool, {}};
     std::vector<std::string> assumed;
     if (!found.has_shape) assumed.emplace_back("its shape");
     if (!found.has_diameter) assumed.emplace_back("its diameter");
     complete_shape(whole.tool, assumed);
-    complete_lengths(whole.tool, assumed);
+    complete_lengths(whole.tool, least_flutes, assumed);
     if (whole.tool.holder.empty()) assumed.emplace_back("no holder");
     whole.assumed =
         fmt::format("tool {} is {} of {:.4g} mm, by {}; {} {} assumed",

@@ -18,11 +18,12 @@ struct FoundTool {
 
 /// A tool that can be assembled: what was not said is what such tools usually have.
 ///
-/// Result: `assumed` says in one sentence where it comes from and what was taken for granted.
+/// Flutes of which nothing is said are at least `least_flutes` long, what the program cuts with
+/// them. Result: `assumed` says in one sentence where it comes from and what was taken for granted.
 struct CompleteTool {
     core::ToolDescription tool;
     std::string assumed;
 };
-CompleteTool complete(const FoundTool& found);
+CompleteTool complete(const FoundTool& found, double least_flutes = 0.0);
 
 } // namespace app

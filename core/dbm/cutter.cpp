@@ -3,9 +3,6 @@
 namespace core {
 namespace {
 
-/// What a computed end of a stretch may be off by, mm (see line_interval).
-constexpr double rounding = 1e-9;
-
 /// The box of a piece about the profile's origin, its axis pointing anywhere.
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
     // Circles about the axis reach as far along X as the axis leans away from X.
@@ -25,29 +22,26 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     else
         for (const ProfileElement& element : flutes.elements)
             convex.push_back(RevolvedProfile{{element}});
-    Cutter cutter{.flutes = flutes};
+    Cutter cutter{.flutes = flutes, .path_error = path_error, .pieces = {}, .body = {}};
     for (const RevolvedProfile& piece : convex) {
         if (path_error == 0.0)
             cutter.pieces.push_back({piece, piece});
         else
             cutter.pieces.push_back({shrunk_within(piece, path_error), grown(piece, path_error)});
     }
+    for (const Cutter::Piece& piece : cutter.pieces) cutter.body.extend(bounds(piece.around));
     return cutter;
 }
 
 Aabb bounds(const CutterSweep& sweep) {
-    Aabb box;
-    for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-        Aabb body;
-        if (is_upright(sweep.orientation))
-            body = bounds(piece.around);
-        else
+    Aabb body = sweep.cutter->body;
+    if (!is_upright(sweep.orientation)) {
+        body = {};
+        for (const Cutter::Piece& piece : sweep.cutter->pieces)
             for (const ProfileElement& e : piece.around.elements)
                 body.extend(tilted_bounds(e, sweep.orientation[2]));
-        for (const Vec3& place : {sweep.from, sweep.to})
-            box.extend(Aabb{body.min + place, body.max + place});
     }
-    return box;
+    return {glm::min(sweep.from, sweep.to) + body.min, glm::max(sweep.from, sweep.to) + body.max};
 }
 
 std::optional<Interval> line_interval(const RevolvedProfile& convex, const CutterSweep& sweep,
@@ -82,8 +76,8 @@ std::optional<Interval> covered_heights(const RevolvedProfile& convex, const Cut
 }
 
 std::optional<Interval> safely_within(std::optional<Interval> swept) {
-    if (!swept || !(swept->lower + rounding < swept->upper - rounding)) return std::nullopt;
-    return Interval{swept->lower + rounding, swept->upper - rounding};
+    if (!swept || !(swept->lower + safely_less < swept->upper - safely_less)) return std::nullopt;
+    return Interval{swept->lower + safely_less, swept->upper - safely_less};
 }
 
 } // namespace core

@@ -16,7 +16,9 @@ struct Cutter {
         RevolvedProfile within, around;
     };
     RevolvedProfile flutes;
+    double path_error = 0.0;
     std::vector<Piece> pieces;
+    Aabb body; // round all of what it may cut, when it stands upright, about its tip
 };
 
 /// A cutter for paths that stay within `path_error` mm of the straight moves given for them.
@@ -42,6 +44,9 @@ std::optional<Interval> line_interval(const RevolvedProfile& convex, const Cutte
 /// corners, it covers every point between them.
 std::optional<Interval> covered_heights(const RevolvedProfile& convex, const CutterSweep& sweep,
                                         const Square& square);
+
+/// What a computed end of a stretch may be off by, mm (see tilted_line_interval).
+constexpr double safely_less = 1e-8;
 
 /// A computed stretch, shortened by what rounding may have added to it; empty if nothing is left.
 std::optional<Interval> safely_within(std::optional<Interval> swept);

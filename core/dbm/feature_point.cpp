@@ -35,13 +35,13 @@ void rotate(Matrix& a, Matrix& frame, size_t p, size_t q) {
 
 } // namespace
 
-Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& cell) {
+Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
     Vec3 middle(0.0);
-    for (const SurfacePoint& point : points) middle += point.place;
+    for (const TangentPlane& point : points) middle += point.place;
     middle /= static_cast<double>(points.size());
     Matrix a{}, frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Vec3 right(0.0);
-    for (const SurfacePoint& point : points) {
+    for (const TangentPlane& point : points) {
         const Vec3& n = point.normal;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
@@ -58,7 +58,7 @@ Vec3 feature_point(std::span<const SurfacePoint> points, const Aabb& cell) {
         const Vec3 direction(frame[0][k], frame[1][k], frame[2][k]);
         by += glm::dot(direction, right) / a[k][k] * direction;
     }
-    return glm::clamp(middle + by, cell.min, cell.max);
+    return glm::clamp(middle + by, room.min, room.max);
 }
 
 } // namespace core

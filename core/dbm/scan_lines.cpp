@@ -1,7 +1,6 @@
 #include "core/dbm/scan_lines.h"
 
 #include <atomic>
-#include <cassert>
 
 namespace core {
 namespace {
@@ -12,8 +11,6 @@ constexpr int tiles_for(int lines) {
 
 } // namespace
 
-const IntervalList ScanLines::nothing{};
-
 ScanLines::ScanLines(int axis, int u_count, int v_count)
     : axis_(axis),
       u_count_(u_count),
@@ -23,18 +20,29 @@ ScanLines::ScanLines(int axis, int u_count, int v_count)
     assert(axis >= 0 && axis < 3 && u_count >= 0 && v_count >= 0);
 }
 
-IntervalList& ScanLines::edit(int u, int v) {
-    auto& tile = tiles_[tile_of(u, v)];
+ScanLines::Edit& ScanLines::Edit::operator=(const LineView& matter) {
+    set_line(tile_, place_, matter);
+    return *this;
+}
+
+void ScanLines::Edit::add(const Interval& interval) {
+    IntervalList list = tile_.line(place_).list();
+    list.add(interval);
+    set_line(tile_, place_, list);
+}
+
+ScanTile& ScanLines::edit_tile(size_t index) {
+    auto& tile = tiles_[index];
     if (!tile) {
-        tile = std::make_shared<Tile>();
+        tile = std::make_shared<ScanTile>();
     } else if (tile.use_count() > 1) {
-        tile = std::make_shared<Tile>(*tile);
+        tile = std::make_shared<ScanTile>(*tile);
     } else {
         // use_count is a relaxed read: without the fence, reads of a snapshot that another thread
         // has just dropped could still be under way when we write.
         std::atomic_thread_fence(std::memory_order_acquire);
     }
-    return (*tile)[place_in_tile(u, v)];
+    return *tile;
 }
 
 bool ScanLines::shares_tile(const ScanLines& other, int u, int v) const {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cassert>
 #include <memory>
 #include <vector>
 
-#include "core/dbm/interval.h"
+#include "core/dbm/scan_tile.h"
 
 namespace core {
 
@@ -20,7 +19,21 @@ constexpr int v_axis(int axis) { return (axis + 2) % 3; }
 /// Copies may be edited from several threads; one and the same object, tile by tile.
 class ScanLines {
 public:
-    static constexpr int tile_side = 16;
+    static constexpr int tile_side = ScanTile::side;
+
+    /// A line about to be changed.
+    class Edit {
+    public:
+        Edit(ScanTile& tile, size_t place) : tile_(tile), place_(place) {}
+        Edit& operator=(const LineView& matter);
+        /// As IntervalList has them; new ends count as raw.
+        void add(const Interval& interval);
+        double subtract(const Interval& cut) { return core::subtract(tile_, place_, cut, 0); }
+
+    private:
+        ScanTile& tile_;
+        size_t place_;
+    };
 
     ScanLines() = default;
     ScanLines(int axis, int u_count, int v_count);
@@ -29,38 +42,48 @@ public:
     int u_count() const { return u_count_; }
     int v_count() const { return v_count_; }
 
-    const IntervalList& line(int u, int v) const {
+    LineView line(int u, int v) const {
         const auto& tile = tiles_[tile_of(u, v)];
-        return tile ? (*tile)[place_in_tile(u, v)] : nothing;
+        return tile ? tile->line(place_in_tile(u, v)) : LineView();
+    }
+    /// What made the ends of the line's interval `i`.
+    EndMarks marks(int u, int v, size_t i) const {
+        const auto& tile = tiles_[tile_of(u, v)];
+        return tile ? tile->marks_of(place_in_tile(u, v), i) : EndMarks();
     }
 
     /// The line, to be changed. Its tile is cloned first if another snapshot shares it.
-    IntervalList& edit(int u, int v);
+    Edit edit(int u, int v) { return {edit_tile(tile_of(u, v)), place_in_tile(u, v)}; }
+
+    /// Tiles are counted u fastest; null: no line of the tile holds anything.
+    size_t tile_count() const { return tiles_.size(); }
+    const ScanTile* tile(size_t index) const { return tiles_[index].get(); }
+    /// The tile, to be changed; the same rule as for lines.
+    ScanTile& edit_tile(size_t index);
+    /// Whether a snapshot holds the same tile.
+    bool is_shared(size_t index) const { return tiles_[index].use_count() > 1; }
+    size_t tile_of(int u, int v) const {
+        assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
+        return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
+    }
 
     /// Whether both hold the very same tile around the line, so that it need not be compared.
     bool shares_tile(const ScanLines& other, int u, int v) const;
 
+    /// Whether the same matter is on all lines, whatever made its ends.
     bool operator==(const ScanLines& other) const;
 
 private:
-    using Tile = std::array<IntervalList, static_cast<size_t>(tile_side) * tile_side>;
-
-    static const IntervalList nothing;
-
     static constexpr size_t place_in_tile(int u, int v) {
         return static_cast<size_t>(u % tile_side)
                + static_cast<size_t>(v % tile_side) * static_cast<size_t>(tile_side);
-    }
-    size_t tile_of(int u, int v) const {
-        assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
-        return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
     }
 
     int axis_ = 0;
     int u_count_ = 0;
     int v_count_ = 0;
     size_t u_tiles_ = 0;
-    std::vector<std::shared_ptr<Tile>> tiles_; // null: no line of the tile holds anything
+    std::vector<std::shared_ptr<ScanTile>> tiles_;
 };
 
 } // namespace core

@@ -5,6 +5,7 @@
 
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
+#include "core/dbm/surface_point.h"
 #include "core/geom/triangle_distance.h"
 
 namespace core {
@@ -17,7 +18,7 @@ constexpr double slack = 1e-6;
 
 /// Where a line passes the surface between two nodes.
 struct CrossedEdge {
-    SurfacePoint surface;
+    TangentPlane plane;
     std::optional<uint32_t> sweep;
 };
 
@@ -48,7 +49,6 @@ public:
     explicit Contouring(const CutModel& model)
         : model_(model),
           grid_(model.lines.grid),
-          sources_(model),
           bounds_(bounds(model.solid)),
           width_(grid_.count(0) + 2),
           depth_(grid_.count(1) + 2),
@@ -63,6 +63,7 @@ private:
     }
 
     NodeLayer nodes(int k);
+    std::optional<uint32_t> sweep_at(const LineEnd& end) const;
     CellLayer cells(const NodeLayer& below, const NodeLayer& above, int k);
     int32_t cross(int axis, const std::array<int, 3>& node, bool from_inside,
                   std::vector<CrossedEdge>& points);
@@ -73,16 +74,17 @@ private:
     void add_flat_quads(const NodeLayer& nodes, const CellLayer& below, const CellLayer& above);
     void add_upright_quads(const CellLayer& layer);
     int32_t vertex(const CellLayer& layer, int i, int j, size_t edge) const;
+    void measure_error();
     void add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards);
 
     const CutModel& model_;
     const ScanGrid& grid_;
-    BoundarySources sources_;
     Aabb bounds_;
     int width_, depth_;
     size_t size_;
     StockMesh result_;
-    size_t taken_ = 0; // boundary points that became part of the surface
+    std::vector<double> from_own_triangles_; // of each sample, mm
+    size_t taken_ = 0;                       // boundary points that became part of the surface
 };
 
 /// Which of the nodes along a line lie in its matter, from node 0 on.
@@ -135,28 +137,37 @@ int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_in
     const int v = node[static_cast<size_t>(v_axis(axis))] - 1;
     const int step = node[static_cast<size_t>(axis)] - 1;
     const double low = grid_.coordinate(axis, step), high = grid_.coordinate(axis, step + 1);
-    BoundaryPoint point{axis, u, v, 0.5 * (low + high), from_inside};
-    double best = slack;
+    const auto& matter = line(axis, u, v);
+    LineEnd end{axis, u, v, 0, from_inside};
+    double along = 0.5 * (low + high), best = slack;
     bool found = false;
-    for (const Interval& matter : line(axis, u, v)) {
-        const double end = from_inside ? matter.upper : matter.lower;
-        const double beyond = std::max({low - end, end - high, 0.0});
+    for (size_t i = 0; i < matter.size(); ++i) {
+        const double here = from_inside ? matter[i].upper : matter[i].lower;
+        const double beyond = std::max({low - here, here - high, 0.0});
         if (beyond > best || (found && beyond == best)) continue;
         best = beyond;
-        point.along = end;
+        along = here;
+        end.interval = i;
         found = true;
     }
     CrossedEdge edge;
     if (found) {
-        const BoundarySource source = sources_.at(point);
-        edge = {{Vec3(0.0), source.normal}, source.sweep};
+        edge = {{Vec3(0.0), surface_point(model_, end).normal}, sweep_at(end)};
         ++taken_;
     } else {
-        edge.surface.normal[axis] = from_inside ? 1.0 : -1.0;
+        edge.plane.normal[axis] = from_inside ? 1.0 : -1.0;
     }
-    edge.surface.place = point_on_line(grid_, axis, u, v, std::clamp(point.along, low, high));
+    edge.plane.place = point_on_line(grid_, axis, u, v, std::clamp(along, low, high));
     points.push_back(edge);
     return static_cast<int32_t>(points.size()) - 1;
+}
+
+/// The number of the cut that made an end; empty for raw stock.
+std::optional<uint32_t> Contouring::sweep_at(const LineEnd& end) const {
+    const EndMarks marks =
+        model_.lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
+    const uint32_t mark = end.upper ? marks.upper : marks.lower;
+    return mark > 0 ? std::optional(mark - 1) : std::nullopt;
 }
 
 CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int k) {
@@ -200,17 +211,20 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
     layer.first_vertex[at(i, j)] = static_cast<int32_t>(result_.mesh.vertices.size());
     const DualCell& pieces = dual_cell(static_cast<uint8_t>(inside));
     const EdgePoints edge_points = points_of(layer, below, above, i, j);
+    // Where a sharp edge leaves its cell through a side that lines pass on both flanks, only the
+    // cell knows of it: vertices may stand in the cell beyond.
     const auto corner = [&](int by) {
         const Vec3 node(grid_.coordinate(0, i - 1 + by), grid_.coordinate(1, j - 1 + by),
                         grid_.coordinate(2, k - 1 + by));
         return glm::clamp(node, bounds_.min, bounds_.max);
     };
+    const Aabb room{corner(-1), corner(2)};
     for (uint8_t piece = 0; piece < pieces.count; ++piece) {
-        std::array<SurfacePoint, 12> met;
+        std::array<TangentPlane, 12> met;
         size_t count = 0;
         for (size_t e = 0; e < 12; ++e)
-            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->surface;
-        result_.mesh.vertices.push_back(feature_point({met.data(), count}, {corner(0), corner(1)}));
+            if (pieces.piece[e] == piece) met[count++] = edge_points[e]->plane;
+        result_.mesh.vertices.push_back(feature_point({met.data(), count}, room));
     }
 }
 
@@ -255,7 +269,7 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edg
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
     const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
-    const Vec3& point = edge.surface.place;
+    const Vec3& point = edge.plane.place;
     double away[2];
     for (size_t k = 0; k < 2; ++k)
         away[k] = std::min(distance_to(point, {place(k), place(k + 1), place(k + 2)}),
@@ -264,7 +278,49 @@ void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edg
     result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
     result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
     result_.samples.push_back({point, edge.sweep});
-    result_.error = std::max(result_.error, away[k]);
+    from_own_triangles_.push_back(away[k]);
+}
+
+/// The quads at each vertex, one after the other.
+struct QuadsAtVertices {
+    std::vector<uint32_t> first, quads;
+
+    explicit QuadsAtVertices(const Mesh& mesh) : first(mesh.vertices.size() + 1, 0) {
+        const auto for_corners = [&](const auto& act) {
+            for (size_t t = 0; t < mesh.triangles.size(); ++t)
+                for (const uint32_t corner : mesh.triangles[t])
+                    act(corner, static_cast<uint32_t>(t / 2));
+        };
+        for_corners([&](uint32_t corner, uint32_t) { ++first[corner + 1]; });
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        quads.resize(first.back());
+        std::vector<uint32_t> next(first.begin(), first.end() - 1);
+        for_corners([&](uint32_t corner, uint32_t quad) { quads[next[corner]++] = quad; });
+    }
+};
+
+/// How far the samples are from the mesh at most: no more than from their own triangles, or from
+/// those that touch these; where a vertex stands outside of its cell, the sample lies on the
+/// latter.
+void Contouring::measure_error() {
+    std::vector<uint32_t> order;
+    for (uint32_t k = 0; k < from_own_triangles_.size(); ++k) order.push_back(k);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return from_own_triangles_[a] > from_own_triangles_[b];
+    });
+    const Mesh& mesh = result_.mesh;
+    const QuadsAtVertices near(mesh);
+    for (const uint32_t k : order) {
+        double away = from_own_triangles_[k];
+        if (away <= result_.error) return;
+        for (const uint32_t t : {2 * k, 2 * k + 1})
+            for (const uint32_t corner : mesh.triangles[t])
+                for (uint32_t i = near.first[corner]; i < near.first[corner + 1]; ++i)
+                    for (const uint32_t other : {2 * near.quads[i], 2 * near.quads[i] + 1})
+                        away = std::min(
+                            away, distance_to(result_.samples[k].place, mesh.triangle(other)));
+        result_.error = std::max(result_.error, away);
+    }
 }
 
 StockMesh Contouring::run() {
@@ -278,6 +334,7 @@ StockMesh Contouring::run() {
         below = std::move(above);
         last = std::move(layer);
     }
+    measure_error();
     result_.lost = point_count(model_.lines) - std::min(taken_, point_count(model_.lines));
     return std::move(result_);
 }

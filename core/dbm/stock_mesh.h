@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dbm/boundary_source.h"
+#include "core/dbm/cut_model.h"
 #include "core/geom/mesh.h"
 
 namespace core {

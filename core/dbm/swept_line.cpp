@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "core/dbm/line_algebra.h"
+#include "core/dbm/tilted_line.h"
 
 namespace core {
 namespace {
@@ -145,85 +146,14 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     return extent.interval();
 }
 
-/// The greatest value of a concave function over a range, by golden section.
-template <typename Function>
-double argmax(const Function& f, Range range) {
-    constexpr double golden = 0.6180339887498949;
-    double low = range.first, high = range.last;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double fa = f(a), fb = f(b);
-    for (int i = 0; i < 60; ++i) {
-        if (fa < fb) {
-            low = a;
-            a = b;
-            fa = fb;
-            fb = f(b = low + golden * (high - low));
-        } else {
-            high = b;
-            b = a;
-            fb = fa;
-            fa = f(a = high - golden * (high - low));
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/// The end of {f >= 0} between `inside`, where f >= 0, and `towards`.
-template <typename Function>
-double border(const Function& f, double inside, double towards) {
-    if (f(towards) >= 0.0) return towards;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (inside + towards);
-        (f(middle) >= 0.0 ? inside : towards) = middle;
-    }
-    return inside;
-}
-
-/// A disc with a margin (the rounded corner of a bull nose), by search on concave functions.
+/// A disc with a margin (the rounded corner of a bull nose).
 std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, double u, double v) {
     const ProfileElement& e = sweep.element;
-    const LineMotion line(sweep, axis, u, v);
-    const double disc = std::max(e.r0, e.r1);
     // Most lines near a sweep miss it: the cylinder round the piece tells them without a search.
-    const double widest = disc + e.margin;
+    const double widest = std::max(e.r0, e.r1) + e.margin;
     const ProfileElement round{e.z0 - e.margin, widest, e.z0 + e.margin, widest, 0.0};
     if (!line_interval({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
-    const auto reach = [&](double t) { // radius at the line's height
-        const double height = line[2](t) - e.z0;
-        return disc + std::sqrt(std::max(0.0, e.margin * e.margin - height * height));
-    };
-    const auto depth = [&](double t) { // how far the line lies within the body across itself
-        if (axis == 2) return disc + e.margin - std::hypot(line[0](t), line[1](t));
-        return reach(t) - std::abs(line[1 - axis](t));
-    };
-    // Only at the heights of the body is the depth concave.
-    Range level = whole_motion;
-    if (axis != 2) {
-        const Linear height{line[2].at - e.z0, line[2].by};
-        level = where_not_negative({e.margin - height.at, -height.by}, level);
-        level = where_not_negative({e.margin + height.at, height.by}, level);
-        if (level.first > level.last) return std::nullopt;
-    }
-    const double deepest = argmax(depth, level);
-    if (depth(deepest) < 0.0) return std::nullopt;
-    const Range range{border(depth, deepest, level.first), border(depth, deepest, level.last)};
-    const auto half = [&](double t) {
-        if (axis != 2) {
-            const double side = line[1 - axis](t);
-            const double r = reach(t);
-            return std::sqrt(std::max(0.0, r * r - side * side));
-        }
-        const double beyond = std::max(0.0, std::hypot(line[0](t), line[1](t)) - disc);
-        return std::sqrt(std::max(0.0, e.margin * e.margin - beyond * beyond));
-    };
-    const double middle = axis == 2 ? e.z0 : 0.0;
-    const auto high = [&](double t) { return middle - line[axis](t) + half(t); };
-    const auto low = [&](double t) { return middle - line[axis](t) - half(t); };
-    Extent extent;
-    for (const double t : {range.first, range.last, argmax(high, range),
-                           argmax([&](double at) { return -low(at); }, range)})
-        extent.add(low(t), high(t));
-    return extent.interval();
+    return tilted_line_interval(sweep, Mat3(1.0), axis, u, v);
 }
 
 } // namespace

@@ -19,7 +19,7 @@ struct ElementSweep {
 ///         cyclic order (X: y, z; Y: z, x; Z: x, y).
 /// Result: empty when the line misses the volume or only touches it. The ends lie in the volume up
 ///         to rounding (1e-9 mm within 2 m): the stretch is never longer than the true one.
-/// Cost:   closed form for cylinders, cones and balls; some 200 evaluations for a rounded corner.
+/// Cost:   closed form for cylinders, cones and balls; some 100 evaluations for a rounded corner.
 std::optional<Interval> line_interval(const ElementSweep& sweep, int axis, double u, double v);
 
 /// The same for a whole profile at rest: the union over its pieces.

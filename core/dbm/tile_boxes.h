@@ -8,16 +8,20 @@
 namespace core {
 
 /// A box round the matter in each tile of a family of lines or columns, and in each 4 x 4 block of
-/// a tile; empty where there is none.
+/// a tile; empty where there is none. Boxes of blocks that have been cut lately may still be those
+/// of before: too large, never too small.
 struct TileBoxes {
     static constexpr int block_side = 4;
     static constexpr int blocks_per_side = ScanLines::tile_side / block_side;
     static constexpr size_t blocks_per_tile = blocks_per_side * blocks_per_side;
+    static constexpr size_t most_stale = 64; // tiles that wait for their boxes to be fitted
 
     int u_tiles = 0;
     int v_tiles = 0;
-    std::vector<Aabb> boxes;  // u fastest
-    std::vector<Aabb> blocks; // of 4 x 4 lines, the 16 of a tile in a row, u fastest
+    std::vector<Aabb> boxes;           // u fastest
+    std::vector<Aabb> blocks;          // of 4 x 4 lines, the 16 of a tile in a row, u fastest
+    std::vector<uint16_t> stale;       // per tile: bit i, block i has been cut since it was fitted
+    std::vector<uint32_t> stale_tiles; // those with any
 
     size_t index(int u, int v) const {
         return static_cast<size_t>(v / ScanLines::tile_side) * static_cast<size_t>(u_tiles)
@@ -29,6 +33,13 @@ struct TileBoxes {
         const int along = v % ScanLines::tile_side / block_side;
         return index(u, v) * blocks_per_tile
                + static_cast<size_t>(along * blocks_per_side + across);
+    }
+
+    /// Remembers that blocks of a tile have been cut.
+    void note(size_t tile, uint32_t cut_blocks) {
+        if (cut_blocks == 0) return;
+        if (stale[tile] == 0) stale_tiles.push_back(static_cast<uint32_t>(tile));
+        stale[tile] = static_cast<uint16_t>(stale[tile] | cut_blocks);
     }
 };
 
@@ -45,6 +56,16 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
 /// The lines of one of its 4 x 4 blocks.
 LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
 
-TileBoxes empty_tile_boxes(const ScanLines& lines);
+/// Boxes for these lines, all empty and none of them fitted.
+TileBoxes unfitted_boxes(const ScanLines& lines);
+
+/// Fits what is stale to its lines: `places_u` and `places_v` say where line i and i + 1 of a
+/// column's cell stand, or the line itself with `columns` false.
+struct LinePlaces {
+    const double* u = nullptr;
+    const double* v = nullptr;
+    bool cells = false; // line i fills u[i] .. u[i + 1]
+};
+void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places);
 
 } // namespace core

@@ -19,7 +19,7 @@ ScanLines empty_columns(const OuterModel& model, int axis) {
     return {axis, cells_along(model, u_axis(axis)), cells_along(model, v_axis(axis))};
 }
 
-IntervalList grown(const IntervalList& list, double by) {
+IntervalList grown(const LineView& list, double by) {
     IntervalList wider;
     for (const Interval& i : list) wider.add({i.lower - by, i.upper + by});
     return wider;
@@ -43,7 +43,7 @@ CellRange cells_met(const OuterModel& model, int axis, const Interval& stretch) 
 }
 
 /// The parts of a list within a cell, both closed; a part may be a single point.
-void clip(const IntervalList& list, const Interval& cell, std::vector<Interval>& parts) {
+void clip(const LineView& list, const Interval& cell, std::vector<Interval>& parts) {
     parts.clear();
     for (const Interval& i : list) {
         const Interval part{std::max(i.lower, cell.lower), std::min(i.upper, cell.upper)};
@@ -123,7 +123,7 @@ private:
 };
 
 /// Whether one interval of a column holds the stretch, up to `error`.
-bool holds(const IntervalList& column, const Interval& stretch, double error) {
+bool holds(const LineView& column, const Interval& stretch, double error) {
     return std::any_of(column.begin(), column.end(), [&](const Interval& i) {
         return i.lower <= stretch.lower + error && i.upper >= stretch.upper - error;
     });

@@ -144,7 +144,7 @@ private:
     }
 
     /// A lower bound of the distance to the boxes of a column, or at least `limit`.
-    double bound_of(const Square& square, const IntervalList& column, double limit) {
+    double bound_of(const Square& square, const LineView& column, double limit) {
         double bound = infinity;
         for (const Interval& heights : column) {
             const Aabb box{{square.x0, square.y0, heights.lower},
@@ -174,7 +174,7 @@ private:
     bool decided_near() const { return upper_.upper < goal_.threshold; }
 
     /// Divides a square until its bound reaches the threshold; what stays below it is kept.
-    void refine(int i, int j, const Square& square, const IntervalList& column) {
+    void refine(int i, int j, const Square& square, const LineView& column) {
         const double bound = bound_of(square, column, goal_.threshold + same);
         const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
         if (bound >= goal_.threshold + same || decided_near() || side <= goal_.finest

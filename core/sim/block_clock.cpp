@@ -36,6 +36,7 @@ struct Adding {
     void operator()(const ToolChange&) { rest(); }
     void operator()(const SpindleChange&) { rest(); }
     void operator()(const LengthOffsetChange&) {}
+    void operator()(const FixtureChange&) { rest(); }
     void operator()(const PathModeChange& change) {
         clock.plan.blending = change.blending;
         clock.plan.tolerance = change.tolerance.value_or(default_blend_tolerance);

@@ -69,8 +69,14 @@ struct PathModeChange {
     std::optional<double> tolerance; // mm; empty: not stated
 };
 
+/// A fixture that somebody puts there or takes away, by its index in the set-up.
+struct FixtureChange {
+    size_t fixture = 0;
+    bool is_there = true;
+};
+
 /// What a block does to the machine, in order.
-using Event =
-    std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange, PathModeChange>;
+using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange,
+                           PathModeChange, FixtureChange>;
 
 } // namespace core

@@ -5,9 +5,10 @@
 namespace core {
 namespace {
 
-std::string rule_of(const PairClearance& pair, BlockMotion motion, bool spindle_runs) {
+std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spindle_runs) {
     if (pair.verdict == Verdict::undecided) return "undecided";
-    const bool rapid = motion == BlockMotion::rapid;
+    const bool rapid = move.motion == BlockMotion::rapid;
+    if (rapid && move.turns) return "rotary-with-tool-down";
     const bool fixture = pair.pair.fixture.has_value();
     if (pair.verdict == Verdict::violation)
         return rapid && fixture ? "rapid-near-clamp" : "near-miss";
@@ -34,6 +35,7 @@ std::string way_out(const PairClearance& pair, double missing) {
 std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body) {
     const bool fixture = pair.pair.fixture.has_value();
     if (rule == "rapid-in-stock") return "Raise the retract height, or feed through the material.";
+    if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
     if (rule == "spindle-off")
         return "Start the spindle the right way round before the tool feeds into the stock.";
     if (rule == "undecided")
@@ -55,9 +57,11 @@ std::string range(double low, double high) {
     return fmt::format("{:.3f} to {:.3f}", low, high);
 }
 
-std::string message_of(const PairClearance& pair, const std::string& rule, BlockMotion motion,
+std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
-    const char* kind = motion == BlockMotion::rapid ? "On a rapid, the" : "The";
+    const char* kind = move.turns                          ? "While rotary axes turn, the"
+                       : move.motion == BlockMotion::rapid ? "On a rapid, the"
+                                                           : "The";
     if (rule == "rapid-in-stock")
         return fmt::format("Rapid into material: the {} runs into the stock.", part);
     if (rule == "spindle-off")
@@ -91,20 +95,20 @@ Severity severity_of(const Setup& setup, const std::string& rule) {
                                     : default_severity(rule).value_or(Severity::warning);
 }
 
-Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion motion,
-                   const SimulatorState& state, double duration) {
+Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                   const SimulatorState& state) {
     const ToolAssembly* tool = nullptr;
     if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
     const std::string& part = part_name(setup, pair.pair);
     const std::string& body = body_name(setup, pair.pair);
-    const double at = duration > 0.0 ? pair.time / duration : 0.0;
+    const double at = move.duration > 0.0 ? pair.time / move.duration : 0.0;
     Finding finding;
-    finding.rule = rule_of(pair, motion, spindle_runs);
+    finding.rule = rule_of(pair, move, spindle_runs);
     // Whatever it is called, a collision is never passed over.
     finding.severity =
         pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, finding.rule);
-    finding.message = in_the_plural(message_of(pair, finding.rule, motion, part, body, at));
+    finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
     finding.cure = cure_of(pair, finding.rule, body);
     finding.pair = {part, body};
     finding.shortfall =

@@ -4,9 +4,16 @@
 
 namespace core {
 
+/// What a block moves, as far as it names what came of it.
+struct BlockMove {
+    BlockMotion motion = BlockMotion::none;
+    bool turns = false;    // rotary axes move
+    double duration = 0.0; // seconds
+};
+
 /// The finding for a pair that did not keep its allowance in a block, with its cure.
-Finding finding_of(const Setup& setup, const PairClearance& pair, BlockMotion motion,
-                   const SimulatorState& state, double duration);
+Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                   const SimulatorState& state);
 
 /// The severity of a rule in this set-up.
 Severity severity_of(const Setup& setup, const std::string& rule);

@@ -88,13 +88,15 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
 }
 
 void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs) {
-    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture)
+    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture) {
+        if (!fixtures_there_[fixture]) continue;
         for (const MovingBody& body : bodies_) {
             const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
             if (chips && setup_.fixtures[fixture].expendable) continue;
             if (is_exempt(setup_.machine, body, setup_.fixtures[fixture])) continue;
             check_fixture(leg, start, fixture, body, pairs);
         }
+    }
 }
 
 } // namespace core

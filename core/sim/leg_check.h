@@ -29,11 +29,12 @@ enum class FluteUse : uint8_t { cutting, not_cutting };
 class LegCheck {
 public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
-             CheckMemory& memory, Statistics& statistics)
+             const std::vector<bool>& fixtures_there, CheckMemory& memory, Statistics& statistics)
         : setup_(setup),
           tool_(tool),
           use_(use),
           block_(block),
+          fixtures_there_(fixtures_there),
           memory_(memory),
           statistics_(statistics),
           bodies_(moving_bodies(setup, tool)) {}
@@ -121,6 +122,7 @@ private:
     const ToolAssembly& tool_;
     FluteUse use_;
     BlockIndex block_;
+    const std::vector<bool>& fixtures_there_;
     CheckMemory& memory_;
     Statistics& statistics_;
     std::vector<MovingBody> bodies_;

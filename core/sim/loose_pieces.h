@@ -11,19 +11,19 @@ namespace core {
 /// What is known about the pieces of a stock while it is cut. A plain value.
 struct PieceWatch {
     PieceMap map;
-    size_t known = 1;             // pieces, without crumbs
-    std::vector<Aabb> loose = {}; // boxes of all but the largest
+    size_t known = 1; // pieces, without crumbs
 };
 
-/// The watch over an uncut stock.
+/// The watch over a stock at the start of a run.
 PieceWatch watch_of(const CutModel& stock);
 
-/// Looks whether the cuts from `first` on, by their numbers in the log, have parted the stock.
+/// Looks, with these of the fixtures in place, whether the cuts from `first` on, by their numbers
+/// in the log, have parted the stock.
 ///
 /// Result: a finding `loose-piece` for each new piece but the largest, without its block: how large
 ///         it is, where, and whether a fixture touches it, to within a mesh size.
 /// Cost:   some microseconds for cuts above solid matter, else that of PieceMap::pieces().
-std::vector<Finding> watch_pieces(const Setup& setup, const CutModel& stock, size_t first,
-                                  PieceWatch& watch);
+std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
+                                  const CutModel& stock, size_t first, PieceWatch& watch);
 
 } // namespace core

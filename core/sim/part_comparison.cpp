@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/dbm/stock_record.h"
 #include "core/geom/nearest_surface.h"
 #include "core/sim/verdict.h"
 
@@ -54,11 +55,10 @@ private:
     void add_whole_part();
     void measure_stock();
     void measure_part();
-    void measure_within(const Triangle& whole, const Vec3& normal, double spacing,
-                        SurfaceTracker& tracker);
-    void measure_part_at(const Vec3& place, const Vec3& normal, SurfaceTracker& tracker);
+    void measure_within(const Triangle& whole, double spacing, SurfaceTracker& tracker);
+    void measure_part_at(const Vec3& place, SurfaceTracker& tracker);
     double spacing_of_samples() const;
-    bool holds_matter(const Vec3& place) const;
+    bool has_matter_near(const Vec3& place) const;
     void add_regions(Deviation kind);
     void colour_vertices();
     double area(size_t sample) const;
@@ -69,7 +69,15 @@ private:
     SolidMesh stock_solid_;
     std::array<std::vector<Worst>, 2> worst_; // of each sample of the stock, by kind
     PartComparison result_;
+
+    std::optional<uint32_t> block_of(size_t sweep) const;
 };
+
+/// The block of this program that made a move.
+std::optional<uint32_t> Comparison::block_of(size_t sweep) const {
+    const uint32_t block = stock_.log.block(sweep);
+    return block == earlier_block ? std::nullopt : std::optional(block);
+}
 
 /// Nothing is left to measure to: all of the part is missing.
 void Comparison::add_whole_part() {
@@ -77,7 +85,7 @@ void Comparison::add_whole_part() {
     DeviationRegion region;
     region.amount = result_.largest_gouge = glm::length(box.size());
     region.place = box.center();
-    if (stock_.log.size() > 0) region.block = stock_.log[stock_.log.size() - 1].sweep.block;
+    if (stock_.log.size() > 0) region.block = block_of(stock_.log.size() - 1);
     result_.regions.push_back(region);
 }
 
@@ -120,18 +128,14 @@ void Comparison::measure_part() {
     const double spacing = spacing_of_samples();
     for (size_t i = 0; i < part_.solid.mesh->triangles.size(); ++i) {
         const Triangle t = part_.solid.mesh->triangle(i);
-        const Vec3 across = glm::cross(t.b - t.a, t.c - t.a);
-        if (!(glm::length(across) > 0.0)) continue;
-        const Vec3 normal = glm::normalize(across);
-        for (const Vec3& corner : {t.a, t.b, t.c}) measure_part_at(corner, normal, tracker);
-        measure_within(t, normal, spacing, tracker);
+        for (const Vec3& corner : {t.a, t.b, t.c}) measure_part_at(corner, tracker);
+        measure_within(t, spacing, tracker);
     }
 }
 
 /// Halves the triangle across its longest side until that is no longer than `spacing`: all corners
 /// of what is left are measured.
-void Comparison::measure_within(const Triangle& whole, const Vec3& normal, double spacing,
-                                SurfaceTracker& tracker) {
+void Comparison::measure_within(const Triangle& whole, double spacing, SurfaceTracker& tracker) {
     std::vector<Triangle> open = {whole};
     while (!open.empty()) {
         Triangle t = open.back();
@@ -147,29 +151,37 @@ void Comparison::measure_within(const Triangle& whole, const Vec3& normal, doubl
         else if (glm::distance(t.c, t.a) == longest)
             t = {t.c, t.a, t.b};
         const Vec3 middle = 0.5 * (t.a + t.b);
-        measure_part_at(middle, normal, tracker);
+        measure_part_at(middle, tracker);
         open.push_back({t.a, middle, t.c});
         open.push_back({middle, t.b, t.c});
     }
 }
 
-void Comparison::measure_part_at(const Vec3& place, const Vec3& normal, SurfaceTracker& tracker) {
+void Comparison::measure_part_at(const Vec3& place, SurfaceTracker& tracker) {
     ++result_.samples;
     const NearestSurface nearest = tracker.at(place);
     if (nearest.distance <= part_.tolerance || holds(stock_solid_, place)) return;
     // The mesh of the stock is off its true surface between the lines; the cuts themselves are not.
-    if (holds_matter(place - part_.tolerance * normal)) return;
+    if (has_matter_near(place)) return;
     worst(Deviation::gouge)[nearest.triangle / 2].offer(nearest.distance, place);
 }
 
-bool Comparison::holds_matter(const Vec3& place) const {
+/// Whether matter is found within the tolerance of a place, on nine lines along Z round it.
+bool Comparison::has_matter_near(const Vec3& place) const {
     const ScanGrid& grid = stock_.lines.grid;
-    const auto cell = [&](int axis) {
-        const double line = (place[axis] - grid.coordinate(axis, 0)) / grid.spacing;
+    const auto cell = [&](const Vec3& at, int axis) {
+        const double line = (at[axis] - grid.coordinate(axis, 0)) / grid.spacing;
         return static_cast<int>(
             std::clamp(std::floor(line) + 1.0, 0.0, static_cast<double>(grid.count(axis))));
     };
-    return fresh_line(stock_, cell(0), cell(1), place.x, place.y).contains(place.z);
+    for (const double x : {0.0, -0.6, 0.6})
+        for (const double y : {0.0, -0.6, 0.6}) {
+            const double up = part_.tolerance * std::sqrt(1.0 - x * x - y * y);
+            const Vec3 at = place + part_.tolerance * Vec3(x, y, 0.0);
+            for (const Interval& matter : fresh_line(stock_, cell(at, 0), cell(at, 1), at.x, at.y))
+                if (matter.lower <= at.z + up && matter.upper >= at.z - up) return true;
+        }
+    return false;
 }
 
 double Comparison::area(size_t sample) const {
@@ -222,7 +234,7 @@ void Comparison::add_regions(Deviation kind) {
         uint32_t& last = sweeps.try_emplace(at, *sweep).first->second;
         last = std::max(last, *sweep);
     }
-    for (const auto& [at, sweep] : sweeps) regions[at].block = stock_.log[sweep].sweep.block;
+    for (const auto& [at, sweep] : sweeps) regions[at].block = block_of(sweep);
     const size_t first = result_.regions.size();
     for (const auto& [at, region] : regions) result_.regions.push_back(region);
     std::stable_sort(result_.regions.begin() + static_cast<std::ptrdiff_t>(first),

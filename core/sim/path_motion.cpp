@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/sim/kinematics.h"
 #include "core/sim/path.h"
 
 namespace core {
@@ -95,6 +96,52 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisNumbers& by)
     return path;
 }
 
+/// The way of the axes while the control keeps the tip on a line, from places at even steps of it.
+///
+/// The linear axes make up for w radians of turning at a distance of at most r and for the tip's
+/// way v: per share of the motion they go no faster than w r + v, bend no more than 2 w (w r + v),
+/// and that changes by no more than 3 w^2 (w r + v). So what lies between the steps is bounded,
+/// too.
+PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisNumbers& by,
+                     double length) {
+    constexpr int steps = 64;
+    const TipPath& tip = *motion.tip;
+    std::array<AxisValues, steps + 1> at;
+    for (int k = 0; k <= steps; ++k) {
+        const double share = static_cast<double>(k) / steps;
+        for (size_t i = 0; i < by.size(); ++i)
+            at[static_cast<size_t>(k)][i] = motion.from[i].value_or(0.0) + share * by[i];
+        const auto reached = reach_tip(machine, at[static_cast<size_t>(k)],
+                                       tip.from + share * (tip.to - tip.from), tip.tool_length);
+        if (!reached) return along_line(by, length);
+        at[static_cast<size_t>(k)] = *reached;
+    }
+    const double turn = turn_of(machine, at.front(), at.back());
+    const double reach = std::max(tip_reach(machine, tip.from, tip.tool_length),
+                                  tip_reach(machine, tip.to, tip.tool_length));
+    const double unseen =
+        3.0 * turn * turn * (turn * reach + glm::distance(tip.from, tip.to)) / steps;
+    PathMotion path = along_line(by, length);
+    for (size_t i = 0; i < 3; ++i) {
+        const auto rate = [&](int k) {
+            const auto n = static_cast<size_t>(k);
+            return (at[n + 1][i] - at[n][i]) * steps / length;
+        };
+        double bend = 0.0, fastest = 0.0;
+        for (int k = 0; k < steps; ++k) fastest = std::max(fastest, std::abs(rate(k)));
+        for (int k = 0; k + 1 < steps; ++k)
+            bend = std::max(bend, std::abs(rate(k + 1) - rate(k)) * steps / length);
+        if (turn > 0.0) bend += unseen / (length * length);
+        path.start[i] = rate(0) - 0.5 * (rate(1) - rate(0));
+        path.end[i] = rate(steps - 1) + 0.5 * (rate(steps - 1) - rate(steps - 2));
+        path.fastest[i] = fastest + 0.5 * bend * length / steps;
+        // Speeding up and bending may act along one axis at once, other than on a circle: each
+        // gets half of the acceleration.
+        path.bend[i] = turn > 0.0 ? std::numbers::sqrt3 * bend : 0.0;
+    }
+    return path;
+}
+
 double rapid_speed(const Machine& machine, const PathMotion& path) {
     double speed = infinity;
     for (size_t i = 0; i < machine.axes.size(); ++i)
@@ -124,7 +171,7 @@ std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machi
     if (motion.arc)
         path = along_arc(motion, *by);
     else if (const double length = feed_length(motion, *by); length > 0.0)
-        path = along_line(*by, length);
+        path = motion.tip ? along_tip(motion, machine, *by, length) : along_line(*by, length);
     if (path) path->speed = rapid ? rapid_speed(machine, *path) : motion.feed / seconds_per_minute;
     return path;
 }

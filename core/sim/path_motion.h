@@ -14,6 +14,7 @@ MachineLimits limits_of(const Machine& machine);
 ///
 /// Units:  the speed of a feed is along X, Y and Z if one of these moves, else along U, V and W,
 ///         else along the rotary axes, degrees.
+///         Where the control follows the tip, along the tip's way.
 /// Result: empty when nothing moves, when nobody knows how far it goes, for a feed of 0, and for a
 ///         dog-leg rapid, whose axes do not move along one path.
 std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machine);

@@ -1,5 +1,7 @@
 #include "core/sim/simulator.h"
 
+#include <thread>
+
 #include <fmt/format.h>
 
 #include "core/sim/finding_text.h"
@@ -21,6 +23,7 @@ struct BlockRun {
     SimulatorState& state;
     BlockResult result = {};
     std::vector<TimedLeg> legs = {};
+    bool turns = false; // rotary axes move
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -43,14 +46,15 @@ struct BlockRun {
     /// What checks the legs of a motion, with whatever is in the spindle.
     LegCheck leg_check(FluteUse use) {
         static const ToolAssembly nothing;
-        return {setup,           tool() ? *tool() : nothing, use, block.block, state.memory,
+        return {setup,           tool() ? *tool() : nothing, use,
+                block.block,     state.fixtures_there,       state.memory,
                 state.statistics};
     }
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-        const bool turns = tool() && turns_to_cut(state.spindle, *tool());
-        return feeds && turns ? FluteUse::cutting : FluteUse::not_cutting;
+        const bool cuts = tool() && turns_to_cut(state.spindle, *tool());
+        return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
     }
 
     void carry_out(const Motion& motion);
@@ -59,6 +63,7 @@ struct BlockRun {
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
     void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
+    void carry_out(const FixtureChange& change);
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
@@ -121,6 +126,7 @@ void BlockRun::carry_out(const Motion& motion) {
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
+    for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
@@ -171,6 +177,13 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
 }
 
+void BlockRun::carry_out(const FixtureChange& change) {
+    state.fixtures_there[change.fixture] = change.is_there;
+    const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
+    if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, result.pairs);
+}
+
 void BlockRun::check_tool_change() {
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, setup.machine, 0.0);
@@ -215,7 +228,7 @@ void BlockRun::conclude() {
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear)
-            add(finding_of(setup, pair, result.motion, state, result.duration));
+            add(finding_of(setup, pair, {result.motion, turns, result.duration}, state));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();
@@ -239,11 +252,13 @@ const char* name_of(BlockMotion motion) {
 }
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
-    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size));
+    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
+    if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
+    for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
     state.pieces = watch_of(state.stock);
     return state;
 }
@@ -257,7 +272,8 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
         std::visit([&](const auto& e) { run.carry_out(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
-    for (Finding& finding : watch_pieces(setup, state.stock, cuts_before, state.pieces))
+    for (Finding& finding :
+         watch_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
         run.add(std::move(finding));
     run.conclude();
     state.time += run.result.duration;

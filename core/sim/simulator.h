@@ -16,9 +16,10 @@ namespace core {
 /// Everything a run leaves behind for its next block. A plain value: copy it to go back in time.
 struct SimulatorState {
     CutModel stock;
-    std::optional<ToolNumber> tool; // what is in the spindle; empty: nothing, or nobody knows
-    bool tool_known = false;        // something was called, if only an empty spindle
-    AxisPosition position;          // where the last motion ended
+    std::optional<ToolNumber> tool;   // what is in the spindle; empty: nothing, or nobody knows
+    bool tool_known = false;          // something was called, if only an empty spindle
+    AxisPosition position;            // where the last motion ended
+    std::vector<bool> fixtures_there; // of the set-up's fixtures
     SpindleChange spindle;
     LengthOffsetChange length_offset;
     PieceWatch pieces; // of the stock

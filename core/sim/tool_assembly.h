@@ -25,7 +25,7 @@ struct ToolPart {
 struct ToolAssembly {
     ToolDescription description;
     std::vector<ToolPart> parts; // those that exist, from the flutes up
-    double length = 0.0;         // gauge length: tip to gauge line, mm; 0 if it was touched off
+    double length = 0.0; // gauge length: tip to gauge line, mm; as stated if it was touched off
 };
 
 /// The solid parts of a tool. A neck is part of the shank. A shank that is not described fills the

@@ -58,7 +58,7 @@ struct ToolDescription {
     std::optional<double> shank_diameter; // of the cylinder that fills a stick-out
     std::optional<double> stick_out;      // tip to the holder's face
     std::optional<double> gauge_length;   // tip to the gauge line
-    bool touched_off = false;             // the work offset has its length in it, which is 0 then
+    std::optional<double> touched_off;    // what the control takes its length for, and rightly so
     SpindleDirection cuts = SpindleDirection::clockwise;
     bool cuts_at_centre = true;
     double centre_radius = 0.0; // up to here it does not cut when it goes straight down

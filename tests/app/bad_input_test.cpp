@@ -115,10 +115,6 @@ TEST_F(BadInput, OfAMissingSetup) {
 
 TEST_F(BadInput, OfAFolderForASetup) { expect_refused(check("good.nc", "."), {"is a folder"}); }
 
-TEST_F(BadInput, OfNoSetupAtAll) {
-    expect_refused(feeler({"check", folder / "good.nc", "-o", folder / "old.txt"}), {"--setup"});
-}
-
 TEST_F(BadInput, OfAMissingMesh) {
     std::filesystem::remove(folder / "clamp.stl");
     --files;

@@ -47,11 +47,13 @@ TEST(Part, IsAnErrorWhereItIsGouged) {
     ASSERT_EQ(checked.findings.size(), 1u);
     EXPECT_EQ(checked.findings[0].rule, "gouge");
     EXPECT_EQ(checked.findings[0].severity, "error");
+    EXPECT_EQ(checked.findings[0].line, test_support::first_line + 2);
     EXPECT_EQ(checked.findings[0].message.find("5.000 mm of the part are missing"), 0u);
     const auto part = part_of(slot, part_up_to("0"));
     EXPECT_NEAR(part["largest_gouge"].get<double>(), 5.0, 1e-6);
     ASSERT_EQ(part["regions"].size(), 1u);
     EXPECT_EQ(part["regions"][0]["kind"], "gouge");
+    EXPECT_EQ(part["regions"][0]["line"], test_support::first_line + 2);
     EXPECT_NEAR(part["regions"][0]["at"][1].get<double>(), 50.0, 5.01);
 }
 

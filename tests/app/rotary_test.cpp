@@ -61,6 +61,7 @@ TEST(Rotary, ARapidTurnIntoTheToolIsACollision) {
     EXPECT_EQ(checked.verdict, "collision");
     EXPECT_EQ(checked.at_line(8).verdict, "collision");
     EXPECT_EQ(checked.at_line(8).pair("flutes stock").verdict, "collision");
+    EXPECT_EQ(checked.errors(), "rotary-with-tool-down 8");
     EXPECT_EQ(checked.status, 1);
 }
 

@@ -83,5 +83,54 @@ TEST(SaveStock, DoesNotWriteOverWhatItReads) {
     EXPECT_EQ(test_support::bytes_of(part), slot);
 }
 
+/// What a second program removes from the block that the first one left.
+double removed_after(const ScopedFolder& folder, const std::string& stock,
+                     const std::string& second) {
+    const auto ran = feeler({"check", folder.write("second.nc", second), "--setup",
+                             folder.write("second.toml", SetupWriter().stock(stock).text()),
+                             "--format", "json"});
+    EXPECT_EQ(ran.status, 0) << ran.err << ran.out;
+    double removed = 0.0;
+    const auto report = nlohmann::json::parse(ran.out);
+    for (const auto& block : report["blocks"]) removed += block["removed"].get<double>();
+    return removed;
+}
+
+TEST(SaveStock, IsTheStockOfALaterSetUp) {
+    const ScopedFolder folder;
+    ASSERT_EQ(save(folder, slot, folder / "op10.feeler").status, 0);
+    EXPECT_NEAR(removed_after(folder, "model = \"op10.feeler\"", slot), 0.0, 1e-6);
+    const std::string across = program({"G0 X50. Y-20.", "Z-5.", "G1 Y120. F2000.", "G0 Z60."});
+    EXPECT_NEAR(removed_after(folder, "model = \"op10.feeler\"", across), 90.0 * 10.0 * 5.0, 1.0);
+}
+
+TEST(SaveStock, CanBeTurnedOverForTheOtherSide) {
+    const ScopedFolder folder;
+    ASSERT_EQ(save(folder, slot, folder / "op10.feeler").status, 0);
+    // Over about X: what was Y0 is Y100, what was Z0 is Z-30.
+    const std::string over =
+        "model = \"op10.feeler\"\nrotate_deg = [180, 0, 0]\nat = [0, 100, -30]";
+    // A slot across on the other side, 27 deep: it meets the first one 2 mm above its floor.
+    std::vector<std::string> blocks = {"G0 X50. Y-20."};
+    for (int depth = 9; depth <= 27; depth += 9) {
+        blocks.push_back("G0 Z-" + std::to_string(depth) + ".");
+        blocks.push_back("G1 Y120. F2000.");
+        blocks.push_back("G0 Z60.");
+        blocks.push_back("G0 Y-20.");
+    }
+    const double removed = removed_after(folder, over, program(blocks));
+    EXPECT_NEAR(removed, 10.0 * (100.0 * 27.0 - 10.0 * 2.0), 2.0);
+}
+
+TEST(SaveStock, OfAnotherProgramThatIsDamagedIsRefused) {
+    const ScopedFolder folder;
+    folder.write("bad.feeler", "feeler stock 1\nabcdefghijkl");
+    const auto ran =
+        feeler({"check", folder.write("part.nc", slot), "--setup",
+                folder.write("setup.toml", SetupWriter().stock("model = \"bad.feeler\"").text())});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_NE(ran.err.find("bad.feeler\": is damaged"), std::string::npos) << ran.err;
+}
+
 } // namespace
 } // namespace app_test

@@ -111,14 +111,9 @@ TEST(SetupFile, RefusesANumberWhereATextOrATableIsMeant) {
         expect_error(SetupWriter().root(root + std::string(" = 1\n")), {root, "must be"});
 }
 
-TEST(SetupFile, NeedsAStock) {
-    expect_error(SetupWriter().without_stock(), {"[stock] is missing"});
-}
-
 TEST(SetupFile, NeedsExactlyOneShape) {
     const std::string cylinder = "cylinder = { radius = 1, height = 1 }\n";
     expect_error(SetupWriter().stock(box + cylinder), {"a single shape"});
-    expect_error(SetupWriter().stock("frame = \"G54\"\n"), {"one of box, cylinder, mesh"});
     expect_error(SetupWriter().also(fixture(box + cylinder)), {"a single shape"});
     expect_error(SetupWriter().also(fixture("")), {"one of box, cylinder, mesh"});
 }

@@ -128,6 +128,32 @@ TEST(PartComparison, MeasuresAGougedWall) {
     EXPECT_EQ(result.regions[0].block, 11u);
 }
 
+TEST(PartComparison, NamesTheBlockOfTheDeepestPlace) {
+    CutModel stock = slotted_model();
+    cut_in_block(stock, 9, 4.0, {45, 8, -3}, {45, 8, 5});
+    cut_in_block(stock, 12, 2.0, {49, 8, -1}, {52, 8, -1});
+    const PartComparison result = compare(stock, part_of(slotted_part()));
+    ASSERT_EQ(result.regions.size(), 1u);
+    EXPECT_EQ(result.regions[0].block, 9u);
+}
+
+/// The stock's mesh is as coarse as its lines, the part is ten times as fine.
+TEST(PartComparison, TakesACoarseMeshForNoGouge) {
+    const auto bumps = [](double h) {
+        CutModel model = *make_cut_model({SolidBox{block}, 0.0}, h);
+        for (double y = 4.0; y < 40.0; y += 4.0) {
+            const RevolvedProfile ball{{{3, 0, 3, 0, 3}, {3, 3, 30, 3, 0}}};
+            cut(model,
+                {std::make_shared<Cutter>(make_cutter(ball, 0.0)), {-10, y, -4}, {70, y, -4}});
+        }
+        return model;
+    };
+    const Part part = part_of(stock_mesh(bumps(0.4)).mesh, 0.02);
+    const PartComparison result = compare(bumps(1.6), part);
+    EXPECT_EQ(count(result, Deviation::gouge), 0u);
+    EXPECT_LT(result.largest_excess, 0.02);
+}
+
 TEST(PartComparison, SeesWhatWasNeverCut) {
     const PartComparison result = compare(block_model(), part_of(slotted_part()));
     EXPECT_EQ(result.largest_gouge, 0.0);

@@ -35,21 +35,21 @@ TEST(ScanLines, ShareTheTilesThatNobodyTouched) {
     for (int v = 0; v < 40; ++v)
         for (int u = 0; u < 40; ++u) {
             const bool touched = u / 16 == 1 && v / 16 == 0;
-            EXPECT_EQ(&lines.line(u, v) == &snapshot.line(u, v), !touched);
+            EXPECT_EQ(lines.line(u, v).begin() == snapshot.line(u, v).begin(), !touched);
             EXPECT_EQ(lines.shares_tile(snapshot, u, v), !touched);
         }
 }
 
 TEST(ScanLines, CloneATileOnlyWhileItIsShared) {
     ScanLines lines = filled(8, 8);
-    const IntervalList* const before = &lines.line(3, 3);
-    EXPECT_EQ(&lines.edit(3, 3), before);
+    const ScanTile* const before = lines.tile(0);
+    EXPECT_EQ(&lines.edit_tile(0), before);
     {
         const ScanLines snapshot = lines;
-        EXPECT_NE(&lines.edit(3, 3), before);
+        EXPECT_NE(&lines.edit_tile(0), before);
     }
-    const IntervalList* const after = &lines.line(3, 3);
-    EXPECT_EQ(&lines.edit(3, 3), after);
+    const ScanTile* const after = lines.tile(0);
+    EXPECT_EQ(&lines.edit_tile(0), after);
 }
 
 TEST(ScanLines, AreEmptyUntilEdited) {

@@ -152,6 +152,24 @@ TEST(StockPieces, NeedNoLookWhereSolidMatterIsBelow) {
     EXPECT_FALSE(cannot_have_parted(model, {{7, 17, -21}, {53, 23, 9}}));
 }
 
+TEST(StockPieces, NeedALookWhereAnOverhangIsCut) {
+    CutModel model = block_model(1.0);
+    mill(model, 8.0, {60, -10, -15}, {60, 50, -15}, 5.0); // a plate of 10 mm overhangs X 52 to 60
+    mill(model, 0.6, {54, -5, -10.5}, {54, 45, -10.5});
+    EXPECT_FALSE(cannot_have_parted(model, {{53.4, -5.6, -10.5}, {54.6, 45.6, 19.5}}));
+    EXPECT_EQ(PieceMap().pieces(model).size(), 2u);
+}
+
+TEST(StockPieces, NeedALookWhereAThinSlotIsBelow) {
+    // Sawn from below between two lines, up to a bridge of 3 mm; then the bridge goes.
+    CutModel model = block_model(1.0);
+    mill(model, 0.1, {20.0, -5, -21}, {20.0, 45, -21}, 18.0);
+    EXPECT_EQ(PieceMap().pieces(model).size(), 1u);
+    mill(model, 2.0, {20.0, -5, -4}, {20.0, 45, -4});
+    EXPECT_FALSE(cannot_have_parted(model, {{18, -7, -4}, {22, 47, 26}}));
+    EXPECT_EQ(PieceMap().pieces(model).size(), 2u);
+}
+
 /// The simulator with a 4 mm mill that saws the block through at X 20.
 struct Saw {
     Setup setup;
@@ -218,8 +236,21 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
     auto found = saw.run(sawing);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
+    // Within the box of the piece, but above its step.
+    saw.setup.fixtures.push_back({"above", clamp({1, 15, -4}, {6, 25, 0})});
+    std::vector<Vec3> stepped = {
+        {2, -10, -10}, {2, 50, -10}, {6, 50, -10}, {6, -10, -10}, {10, -10, -10}};
+    stepped.insert(stepped.end(), sawing.begin(), sawing.end());
+    found = saw.run(stepped);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
     saw.setup.fixtures.push_back({"near", clamp({-10, 10, -20}, {0, 30, -10})});
-    found = saw.run(sawing);
+    saw.setup.fixtures.back().is_there = false;
+    found = saw.run(stepped);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
+    saw.setup.fixtures.back().is_there = true;
+    found = saw.run(stepped);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NE(found[0].message.find("near still touches it"), std::string::npos);
 }

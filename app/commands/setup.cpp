@@ -1,0 +1,45 @@
+#include <memory>
+
+#include "app/commands/commands.h"
+#include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
+#include "app/report/setup_text.h"
+#include "app/session/inferred_setup.h"
+
+namespace app {
+namespace {
+
+struct Options {
+    std::string program, output;
+    ProgramArguments reading;
+};
+
+core::Result<void> write_setup(const Options& options) {
+    if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
+    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
+    FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
+    FEELER_TRY(const SetupFile setup, infer_setup(program, settings));
+    return write_output(options.output, setup_text(setup, options.program));
+}
+
+ExitCode setup(const Options& options) {
+    auto written = write_setup(options);
+    if (written) return ExitCode::clear;
+    if (written.error().file.empty()) written.error().file = options.program;
+    print_error(written.error());
+    return ExitCode::failed;
+}
+
+} // namespace
+
+void add_setup(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command =
+        *cli.add_subcommand("setup", "Write a set-up file from what a program says");
+    command.add_option("program", options->program, "NC program")->required();
+    command.add_option("-o,--output", options->output, "File for the set-up");
+    add_program_arguments(command, options->reading);
+    command.callback([options, &exit_code] { exit_code = setup(*options); });
+}
+
+} // namespace app

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "core/dbm/lane_plan.h"
+#include "core/dbm/scan_grid.h"
+#include "core/dbm/scan_tile.h"
+
+namespace core {
+
+/// The part of a tile that a sweep may change, and where its lines run.
+struct TileTask {
+    const double* u = nullptr; // places of the lines in a row, also of those beyond the last one
+    const double* v = nullptr; // places of the rows
+    int row_first = 0, row_last = 0;        // rows of the tile, first .. last - 1
+    uint32_t lanes = 0;                     // bit i: line i of a row may be met
+    double low = 0.0, high = 0.0;           // what is cut lies between these heights
+    uint32_t mark = 0;                      // for the ends that the cut makes
+    const ScanGrid* count_points = nullptr; // for lines along Z: count grid points that go, too
+};
+
+/// A stretch that must be taken out of a line by hand: it divides an interval or removes one.
+struct HandCut {
+    uint32_t place;
+    double lower, upper;
+};
+
+/// What a cut did to a tile.
+struct TileCut {
+    alignas(64) std::array<double, ScanTile::side> length{}; // removed, by lane
+    alignas(64) std::array<double, ScanTile::side> points{}; // grid points removed, by lane
+    uint32_t blocks = 0;                                     // bit i: 4 x 4 block i has changed
+    size_t by_hand_count = 0;
+    std::array<HandCut, ScanTile::lines> by_hand; // not done yet
+};
+
+/// Stretches of the lines in a row, (+inf, -inf) where there is none.
+struct alignas(64) RowStretches {
+    std::array<double, ScanTile::side> lower, upper;
+};
+
+/// The inner loops of cutting, for the best instruction set of this processor. Each does the same
+/// operations in the same order in every lane, without fused multiply-add: all of them give the
+/// same bits.
+struct LaneCut {
+    /// The stretches of a row of lines at `u` and `v` in what the plan sweeps; the ends lie in the
+    /// swept volume up to rounding (1e-9 mm within 2 m). Lines that are not `wanted`, bit by bit,
+    /// may come out empty.
+    void (*stretches)(const LanePlan& plan, const double* u, double v, uint32_t wanted,
+                      RowStretches& out);
+
+    /// What the four corners of each cell in a row share, shortened at both ends by `less`: corners
+    /// 0 .. 15 in front and at the back, and the last one of either.
+    void (*shared)(const RowStretches& front, const RowStretches& back, const Interval& front_end,
+                   const Interval& back_end, double less, RowStretches& out);
+
+    /// Whether cutting the tile would change it.
+    bool (*changes)(const LanePlan& plan, const TileTask& task, const ScanTile& tile);
+
+    /// Takes what the plan sweeps out of the tile, but for what is left to be done by hand.
+    void (*cut)(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done);
+
+    /// The lines of a row that hold matter between two heights.
+    uint32_t (*lines_with_matter)(const ScanTile& tile, int row, double low, double high);
+
+    /// The lines of a row out of which these stretches would take something.
+    uint32_t (*lines_met)(const ScanTile& tile, int row, const RowStretches& gone);
+
+    /// Takes the stretches out of a row, but for what is left to be done by hand.
+    void (*take)(const TileTask& task, int row, const RowStretches& gone, ScanTile& tile,
+                 TileCut& done);
+};
+
+/// The loops to use now.
+const LaneCut& lane_cut();
+
+} // namespace core

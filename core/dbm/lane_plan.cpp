@@ -1,0 +1,149 @@
+#include "core/dbm/lane_plan.h"
+
+namespace core {
+namespace {
+
+/// Components of a move shorter than this count as none, mm; what is neglected stays below what
+/// computed ends may be off by.
+constexpr double least_move = 1e-10;
+
+/// What a ball and a circle have in common; `steep` is how far the surface that they sweep leans
+/// along the lines, 0 for a circle.
+CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radius) {
+    const int ua = u_axis(axis), va = v_axis(axis);
+    Vec3 from = sweep.from;
+    from.z += z0;
+    const Vec3 by = sweep.to - sweep.from;
+    CapsuleLanes c{};
+    c.from_a = from[axis];
+    c.from_u = from[ua];
+    c.from_v = from[va];
+    c.by_a = by[axis];
+    c.radius = radius;
+    c.length = std::sqrt(by[ua] * by[ua] + by[va] * by[va]);
+    c.u_most = c.v_most = infinity;
+    if (c.length > least_move) {
+        c.cos_u = by[ua] / c.length;
+        c.cos_v = by[va] / c.length;
+        c.per_length = 1.0 / c.length;
+    } else {
+        c.cos_u = 1.0;
+        c.cos_v = c.length = c.per_length = 0.0;
+    }
+    return c;
+}
+
+/// A ball begins where the cylinder that it sweeps does, at the moment when it touches there.
+CapsuleLanes ball_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e) {
+    CapsuleLanes c = capsule(sweep, axis, e.z0, e.margin);
+    const double whole = std::sqrt(c.length * c.length + c.by_a * c.by_a);
+    const double lean = whole > 0.0 ? c.by_a / whole * c.per_length : 0.0;
+    c.low_by_half = -lean;
+    c.high_by_half = lean;
+    if (c.length == 0.0) {
+        c.low_at = c.by_a < 0.0 ? 1.0 : 0.0;
+        c.high_at = c.by_a > 0.0 ? 1.0 : 0.0;
+    }
+    return c;
+}
+
+/// A cylinder's stretch begins and ends at its faces, when the line comes in or goes out.
+CapsuleLanes upright_lanes(const CutterSweep& sweep, const ProfileElement& e) {
+    CapsuleLanes c = capsule(sweep, 2, 0.0, e.r0);
+    c.low_end = e.z0;
+    c.high_end = e.z1;
+    c.low_by_half = c.by_a < 0.0 ? c.per_length : -c.per_length;
+    c.high_by_half = -c.low_by_half;
+    if (c.length == 0.0) {
+        c.low_at = c.by_a < 0.0 ? 1.0 : 0.0;
+        c.high_at = 1.0 - c.low_at;
+    }
+    return c;
+}
+
+AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e) {
+    const int side = 1 - axis;
+    const Vec3 by = sweep.to - sweep.from;
+    AcrossLanes c{};
+    c.side_is_u = u_axis(axis) == side;
+    c.from_a = sweep.from[axis];
+    c.from_side = sweep.from[side];
+    c.from_z = sweep.from.z;
+    c.by_a = by[axis];
+    c.by_side = by[side];
+    c.by_z = by.z;
+    c.radius = e.r0;
+    c.z0 = e.z0;
+    c.z1 = e.z1;
+    c.per_z = std::abs(by.z) > least_move ? 1.0 / by.z : 0.0;
+    if (std::abs(by[side]) > least_move) {
+        c.per_side = 1.0 / by[side];
+        // The circle's foremost points across its own path.
+        const double whole = std::sqrt(c.by_a * c.by_a + c.by_side * c.by_side);
+        const double touching = e.r0 * c.by_a / whole;
+        const double shift = std::copysign(touching, touching * by[side]) * c.per_side;
+        c.low_at = -shift;
+        c.high_at = shift;
+    } else {
+        c.by_side = 0.0;
+        c.low_at = c.by_a < 0.0 ? 1.0 : 0.0;
+        c.high_at = 1.0 - c.low_at;
+    }
+    return c;
+}
+
+bool is_ball(const ProfileElement& e) { return e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0; }
+bool is_cylinder(const ProfileElement& e) { return e.margin == 0.0 && e.r0 == e.r1 && e.z0 < e.z1; }
+
+/// Whether ball `i` has a shaft of its own width from its centre up.
+bool has_shaft(const std::vector<ProfileElement>& all, size_t i) {
+    return i + 1 < all.size() && is_cylinder(all[i + 1]) && all[i + 1].r0 == all[i].margin
+           && all[i + 1].z0 == all[i].z0 && all[i + 1].z1 >= all[i].z0 + all[i].margin;
+}
+
+/// Lets the stretches end at the height up to which the body reaches at every moment, if that is
+/// above all stock.
+bool open_up(CapsuleLanes& c, double reached, double top) {
+    if (reached < top) return false;
+    c.opens_up = true;
+    c.high_end = reached;
+    return true;
+}
+
+} // namespace
+
+LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis, double top) {
+    LanePlan plan;
+    plan.axis = axis;
+    plan.piece = &convex;
+    plan.sweep = &sweep;
+    if (!is_upright(sweep.orientation)) return plan;
+    const auto& all = convex.elements;
+    const double lowest = std::min(sweep.from.z, sweep.to.z);
+    const double highest = std::max(sweep.from.z, sweep.to.z);
+    for (size_t i = 0; i < all.size(); ++i) {
+        const ProfileElement& e = all[i];
+        if (is_ball(e) && plan.balls < LanePlan::most) {
+            CapsuleLanes& c = plan.ball[plan.balls++];
+            c = ball_lanes(sweep, axis, e);
+            if (!has_shaft(all, i)) continue;
+            // Over its centre, wherever that is, the shaft holds all of the ball.
+            if (axis == 0) c.v_most = highest + e.z0;
+            if (axis == 1) c.u_most = highest + e.z0;
+            if (axis == 2 && open_up(c, lowest + all[i + 1].z1, top)) ++i;
+        } else if (is_cylinder(e) && axis == 2 && plan.uprights < LanePlan::most) {
+            CapsuleLanes& c = plan.upright[plan.uprights++];
+            c = upright_lanes(sweep, e);
+            open_up(c, lowest + e.z1, top);
+        } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
+            plan.level[plan.across++] = across_lanes(sweep, axis, e);
+        } else {
+            plan.balls = plan.uprights = plan.across = 0;
+            return plan;
+        }
+    }
+    plan.by_lanes = true;
+    return plan;
+}
+
+} // namespace core

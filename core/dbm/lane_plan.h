@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+
+#include "core/dbm/cutter.h"
+
+namespace core {
+
+/// A ball, or the circle that an upright cylinder is from above, along one move: what lines of one
+/// family meet of it. Coordinates: along the lines (a), and across them (u, v).
+///
+/// Seen along the lines the move has a direction (cos_u, cos_v) and a length; a line passes it at g
+/// along it and e beside it. The moments at which its stretch begins and ends are
+/// t = g * per_length + w * by_half + at, w = sqrt(r^2 - e^2), kept within 0..1. For moves along
+/// the lines per_length and by_half are 0.
+struct CapsuleLanes {
+    double from_a, from_u, from_v;
+    double by_a;
+    double radius;
+    double cos_u, cos_v, length, per_length;
+    double low_by_half, low_at, high_by_half, high_at;
+    double low_end, high_end; // added to the ends of a cylinder's stretch: its end faces
+    bool opens_up;            // there is nothing above: every stretch may end at high_end itself
+    double u_most, v_most;    // beyond this height another element holds all that this one does
+};
+
+/// An upright cylinder met from the side: (a, s) is the plane of its circle, z the height.
+struct AcrossLanes {
+    bool side_is_u; // else the height is
+    double from_a, from_side, from_z;
+    double by_a, by_side, by_z;
+    double radius, z0, z1;
+    double per_side, per_z; // 1 / by_side, 1 / by_z; 0 when there is none to speak of
+    double low_at, high_at; // the moments are side * per_side + these
+};
+
+/// How one convex piece along one move meets the lines of one family, in numbers made for lanes.
+struct LanePlan {
+    static constexpr size_t most = 4;
+
+    int axis = 0;
+    bool by_lanes = false; // else line by line: with RevolvedProfile and CutterSweep below
+    size_t balls = 0, uprights = 0, across = 0;
+    std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
+    std::array<AcrossLanes, most> level;          // cylinders met by lines along X and Y
+    const RevolvedProfile* piece = nullptr;
+    const CutterSweep* sweep = nullptr;
+};
+
+/// The plan for a convex piece; it points to both arguments. Stretches along Z need not be true
+/// above `top`, where there is no stock.
+LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis,
+                   double top = infinity);
+
+} // namespace core

@@ -1,0 +1,198 @@
+#include "core/dbm/tile_cutting.h"
+
+namespace core {
+namespace {
+
+constexpr int side = ScanLines::tile_side;
+
+/// The places first .. last - 1 of an evenly spaced grid that lie within lower .. upper.
+std::pair<int, int> places_between(const ScanGrid& grid, int axis, double lower, double upper) {
+    const double first = grid.coordinate(axis, 0);
+    const double count = grid.count(axis);
+    const double from = std::ceil((lower - first) / grid.spacing);
+    const double to = std::floor((upper - first) / grid.spacing) + 1.0;
+    return {static_cast<int>(std::clamp(from, 0.0, count)),
+            static_cast<int>(std::clamp(to, 0.0, count))};
+}
+
+/// Bits for the places of `range` among those that begin at `first`.
+uint32_t lanes_of(int first, int range_first, int range_last) {
+    const int from = std::max(range_first - first, 0), to = std::min(range_last - first, side);
+    return ((1U << to) - 1U) & ~((1U << from) - 1U);
+}
+
+/// How many of the grid's points along Z lie within, ends not included.
+double points_in(const ScanGrid& grid, const LineView& matter) {
+    const auto below = [&](double x, bool itself) {
+        const double index =
+            std::nearbyint((x - grid.centre.z) / grid.spacing + (grid.half_count[2] - 0.5));
+        const double there = grid.centre.z + (index - grid.half_count[2] + 0.5) * grid.spacing;
+        return index + (there < x || (itself && there == x) ? 1.0 : 0.0);
+    };
+    double points = 0.0;
+    for (const Interval& i : matter)
+        points += std::max(0.0, below(i.upper, false) - below(i.lower, true));
+    return points;
+}
+
+double sum_of(const std::array<double, ScanTile::side>& lanes) {
+    std::array<double, 8> halves;
+    for (size_t i = 0; i < 8; ++i) halves[i] = lanes[i] + lanes[i + 8];
+    std::array<double, 4> quarters;
+    for (size_t i = 0; i < 4; ++i) quarters[i] = halves[i] + halves[i + 4];
+    return (quarters[0] + quarters[2]) + (quarters[1] + quarters[3]);
+}
+
+/// Does what the lanes have left, and sums up.
+LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
+    LineSums sums{sum_of(done.length), task.count_points ? sum_of(done.points) : 0.0};
+    for (size_t i = 0; i < done.by_hand_count; ++i) {
+        const auto& [place, lower, upper] = done.by_hand[i];
+        const auto points = [&] {
+            return task.count_points ? points_in(*task.count_points, tile.line(place)) : 0.0;
+        };
+        const double before = points();
+        sums.length += subtract(tile, place, {lower, upper}, task.mark);
+        sums.points += before - points();
+    }
+    return sums;
+}
+
+struct TilePlace {
+    int u, v; // of its first line
+};
+
+TilePlace place_of(const TileBoxes& boxes, size_t tile) {
+    return {static_cast<int>(tile % static_cast<size_t>(boxes.u_tiles)) * side,
+            static_cast<int>(tile / static_cast<size_t>(boxes.u_tiles)) * side};
+}
+
+/// The stretches on the corners of a row of cells, worked out only when they are asked for.
+class CornerRows {
+public:
+    CornerRows(const LanePlan& plan, const double* u, const double* v, uint32_t lanes)
+        : loops_(lane_cut()), plan_(plan), u_(u), v_(v), lanes_(lanes) {}
+
+    void shared(int row, double less, RowStretches& out) {
+        const Corners& front = at(row);
+        const Corners& back = at(row + 1);
+        loops_.shared(front.row, back.row, front.end, back.end, less, out);
+    }
+
+private:
+    struct Corners {
+        int of = -1;
+        RowStretches row;
+        Interval end; // of the corner after the last one in the row
+    };
+
+    const Corners& at(int row) {
+        Corners& kept = rows_[static_cast<size_t>(row % 2)];
+        if (kept.of == row) return kept;
+        kept.of = row;
+        loops_.stretches(plan_, u_, v_[row], lanes_ | (lanes_ << 1U), kept.row);
+        kept.end = {infinity, -infinity};
+        if (lanes_ >> (side - 1U)) {
+            RowStretches next;
+            loops_.stretches(plan_, u_ + side, v_[row], 1U, next);
+            kept.end = {next.lower[0], next.upper[0]};
+        }
+        return kept;
+    }
+
+    const LaneCut& loops_;
+    const LanePlan& plan_;
+    const double* u_;
+    const double* v_;
+    uint32_t lanes_;
+    std::array<Corners, 2> rows_;
+};
+
+} // namespace
+
+LineRange tiles_of(const LineRange& lines) {
+    return {lines.u_first / side, (lines.u_last + side - 1) / side, lines.v_first / side,
+            (lines.v_last + side - 1) / side};
+}
+
+void fit_boxes(CutModel& model) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto family = static_cast<size_t>(axis);
+        fit(model.line_boxes[family], model.lines.families[family],
+            {model.places[static_cast<size_t>(u_axis(axis))].data(),
+             model.places[static_cast<size_t>(v_axis(axis))].data(), false});
+    }
+    fit(model.column_boxes, model.columns,
+        {model.corners[0].data(), model.corners[1].data(), true});
+}
+
+LineRange lines_in(const CutModel& model, int axis, const Aabb& box) {
+    const int ua = u_axis(axis), va = v_axis(axis);
+    const ScanGrid& grid = model.lines.grid;
+    const auto [u0, u1] = places_between(grid, ua, box.min[ua], box.max[ua]);
+    const auto [v0, v1] = places_between(grid, va, box.min[va], box.max[va]);
+    return {u0, u1, v0, v1};
+}
+
+LineRange cells_in(const CutModel& model, const Aabb& box) {
+    const LineRange lines = lines_in(model, 2, box.grown(model.lines.grid.spacing));
+    // Cell i lies between lines i - 1 and i; the lines beyond the last one are not in the range.
+    return {lines.u_first, std::min(lines.u_last + 1, model.columns.u_count()), lines.v_first,
+            std::min(lines.v_last + 1, model.columns.v_count())};
+}
+
+TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
+                      const ReadySweep& ready) {
+    const int axis = plan.axis;
+    ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+    const TileBoxes& boxes = model.line_boxes[static_cast<size_t>(axis)];
+    if (family.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
+    const auto [u, v] = place_of(boxes, tile);
+    const TileTask task{
+        .u = &model.places[static_cast<size_t>(u_axis(axis))][static_cast<size_t>(u)],
+        .v = &model.places[static_cast<size_t>(v_axis(axis))][static_cast<size_t>(v)],
+        .row_first = std::max(range.v_first - v, 0),
+        .row_last = std::min(range.v_last - v, side),
+        .lanes = lanes_of(u, range.u_first, range.u_last),
+        .low = ready.front.min[axis],
+        .high = ready.front.max[axis],
+        .mark = ready.mark,
+        .count_points = axis == 2 ? &model.lines.grid : nullptr};
+    const LaneCut& loops = lane_cut();
+    if (family.is_shared(tile) && !loops.changes(plan, task, *family.tile(tile))) return {};
+    ScanTile& own = family.edit_tile(tile);
+    if (own.marks.empty()) own.keep_marks();
+    TileCut done;
+    loops.cut(plan, task, own, done);
+    if (done.blocks == 0) return {};
+    return {finish(task, own, done), done.blocks};
+}
+
+TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
+                        const ReadySweep& ready) {
+    const TileBoxes& boxes = model.column_boxes;
+    if (model.columns.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
+    const auto [u, v] = place_of(boxes, tile);
+    const uint32_t lanes = lanes_of(u, range.u_first, range.u_last);
+    CornerRows corners(plan, &model.corners[0][static_cast<size_t>(u)],
+                       &model.corners[1][static_cast<size_t>(v)], lanes);
+    const LaneCut& loops = lane_cut();
+    const TileTask task;
+    TileCut done;
+    ScanTile* own = nullptr;
+    RowStretches gone;
+    for (int row = std::max(range.v_first - v, 0); row < std::min(range.v_last - v, side); ++row) {
+        const ScanTile& now = *model.columns.tile(tile);
+        if ((loops.lines_with_matter(now, row, ready.front.min.z, ready.front.max.z) & lanes) == 0)
+            continue;
+        corners.shared(row, safely_less, gone);
+        if ((loops.lines_met(now, row, gone) & lanes) == 0) continue;
+        if (own == nullptr) own = &model.columns.edit_tile(tile);
+        loops.take(task, row, gone, *own, done);
+    }
+    if (own == nullptr) return {};
+    finish(task, *own, done);
+    return {{}, done.blocks};
+}
+
+} // namespace core

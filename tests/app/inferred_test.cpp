@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/checked.h"
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+using test_support::ScopedFolder;
+using test_support::SetupWriter;
+
+const std::string pocket = "%\nO1\n(T3 D=6. CR=0. - ZMIN=-5. - FLAT END MILL)\nG21 G90 G17 G54\n"
+                           "T3 M6\nS5000 M3\nG0 G43 H3 Z20.\nX10. Y10.\nZ2.\nG1 Z-5. F200\n"
+                           "X40. F600\nY30.\nX10.\nY10.\nG0 Z20.\nM5\nM30\n%\n";
+
+struct Inferred {
+    int status = -1;
+    json report;
+    std::string err;
+
+    bool assumes(const std::string& words) const {
+        for (const std::string each : report["assumptions"])
+            if (each.find(words) != std::string::npos) return true;
+        return false;
+    }
+};
+
+Inferred infer(const std::string& program, const std::vector<std::string>& more = {},
+               const std::string& name = "p.nc") {
+    const ScopedFolder folder;
+    std::vector<std::string> words = {"check", folder.write(name, program), "--format", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const test_support::Ran ran = feeler(words);
+    Inferred result{ran.status, json::parse(ran.out, nullptr, false), ran.err};
+    EXPECT_FALSE(result.report.is_discarded()) << ran.err;
+    return result;
+}
+
+TEST(InferredSetup, IsWhatTheProgramReaches) {
+    const Inferred run = infer(pocket);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.report["verdict"], "clear");
+    EXPECT_TRUE(run.assumes("tool 3 is a flat end mill of 6 mm, by the comment in line 3"));
+    EXPECT_TRUE(
+        run.assumes("X 7.000 to 43.000, Y 7.000 to 33.000, Z -7.000 (2 mm below the deepest "
+                    "cut) to 0.000 (at Z0"));
+    EXPECT_TRUE(run.assumes("no fixtures"));
+    double removed = 0.0; // the ring of 6 mm round a rectangle of 30 x 20, its outer corners round
+    for (const json& block : run.report["blocks"]) removed += block.value("removed", 0.0);
+    const double ring = 6.0 * 100.0 + 3.14159265 * 9.0 - 4.0 * 9.0;
+    EXPECT_NEAR(removed, 5.0 * ring, 0.01 * 5.0 * ring);
+}
+
+TEST(InferredSetup, StillSeesARapidThroughMaterial) {
+    std::string through = pocket;
+    through.replace(through.find("G0 Z20.\nM5"), 7, "G0 X25. Y20.\nZ20.");
+    const Inferred run = infer(through);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.report["verdict"], "collision");
+}
+
+TEST(InferredSetup, PutsTheTopAtTheHighestCutWhenZeroIsBelow) {
+    const Inferred run =
+        infer("G21 G90\nM3 S1000\nG0 Z30\nG0 X0 Y0\nG1 Z12 F100\nX50\nZ4\nX0\nG0 Z30\n"
+              "X5\nM2\n");
+    EXPECT_TRUE(run.assumes("Z 2.000 (2 mm below the deepest cut) to 12.000 (at the highest cut)"));
+    EXPECT_EQ(run.status, 0) << run.report.dump();
+}
+
+TEST(InferredSetup, TakesAnUnknownToolByItsUse) {
+    const std::string head = "G21 G90\nT1 M6\nS1000 M3\nG43 H1 Z20\nG0 X5 Y5\n";
+    const Inferred drill = infer(head + "G81 Z-9 R2 F100\nX15\nG80\nG0 Z20\nM2\n");
+    EXPECT_TRUE(drill.assumes("tool 1 is a drill of 6 mm, by its use alone"));
+    const Inferred mill = infer(head + "G1 Z-1 F100\nX15\nG0 Z20\nM2\n");
+    EXPECT_TRUE(mill.assumes("tool 1 is a flat end mill of 6 mm, by its use alone"));
+}
+
+TEST(InferredSetup, AssumesHandworkWhereTheProgramLeavesIt) {
+    const Inferred run = infer("G21 G90\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\nX3\nM2\n");
+    EXPECT_TRUE(run.assumes("never starts the spindle"));
+    EXPECT_TRUE(run.assumes("offsets no tool's length"));
+    EXPECT_EQ(run.status, 0) << run.report["findings"].dump();
+    const Inferred speed = infer("G21 G90\nM3\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\nX3\nM2\n");
+    EXPECT_TRUE(speed.assumes("how fast the spindle turns"));
+    EXPECT_EQ(speed.status, 0) << speed.report["findings"].dump();
+}
+
+TEST(InferredSetup, TellsAForgottenLengthOffsetWhereOthersAreThere) {
+    std::string forgotten = pocket;
+    forgotten.replace(forgotten.find("G0 Z20.\nM5"), 7,
+                      "G0 Z20.\nT4 M6\nS5000 M3\nG49\nG0 Z10.\nG1 Z-1.\nX12.\nG0 Z20.");
+    const Inferred run = infer(forgotten);
+    bool told = false;
+    for (const json& finding : run.report["findings"])
+        told = told || finding["rule"] == "missing-length-offset";
+    EXPECT_TRUE(told);
+}
+
+TEST(InferredSetup, DoesNotFailOnAProgramThatCutsNothing) {
+    const Inferred run = infer("G21 G90\nG0 X1 Y1 Z1\nM2\n");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(run.assumes("the program cuts nothing"));
+}
+
+TEST(InferredSetup, IsWrittenAsAFileThatMeansTheSame) {
+    const std::string first_words = "G21 G90\nM3\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\n";
+    for (const std::string& program :
+         {pocket, first_words + "M2\n", first_words + "T1 M6\nG43 H1 Z3\nG1 X5\nM2\n",
+          std::string("(T0 : 3.0)\nG21\nT0 M6\nM3 S1000\nG0 Z3\nG1 Z-1 F100\nX9\nG0 Z3\nM2\n"),
+          std::string(
+              "(60 deg v-bit 1/4\")\nG20 G90\nT2 M6\nM3 S1\nG43 H2 Z1\nG1 Z-.1 F5\nX1\nM2\n")}) {
+        const ScopedFolder folder;
+        const std::string file = folder.write("p.nc", program);
+        const test_support::Ran written = feeler({"setup", file, "-o", folder / "s.toml"});
+        ASSERT_EQ(written.status, 0) << written.err;
+        const auto run = [&](std::vector<std::string> words) {
+            words.insert(words.begin(), {"check", file, "--format", "json"});
+            const test_support::Ran ran = feeler(words);
+            const json report = json::parse(ran.out, nullptr, false);
+            EXPECT_FALSE(report.is_discarded()) << ran.err;
+            return std::make_pair(ran.status, report);
+        };
+        const auto [status, alone] = run({});
+        const auto [again, by_file] = run({"--setup", folder / "s.toml"});
+        EXPECT_EQ(status, again) << program;
+        for (const char* key : {"blocks", "findings", "verdict", "mesh_size"})
+            EXPECT_EQ(alone[key], by_file[key]) << key << program;
+    }
+}
+
+TEST(SetupCommand, NeverWritesOverItsProgram) {
+    const ScopedFolder folder;
+    const std::string file = folder.write("p.nc", pocket);
+    EXPECT_EQ(feeler({"setup", file, "-o", file}).status, 2);
+    EXPECT_EQ(feeler({"setup", folder / "none.nc"}).status, 2);
+}
+
+TEST(StockEnvelope, CountsInASetUpAsWell) {
+    const std::string program =
+        "G21 G90 G54\nT1 M6\nS1000 M3\nG43 H1 Z60\nG0 X10 Y10\nG1 Z-5 F100\n"
+        "X40\nG0 Z60\nX10\nM30\n";
+    const auto assumed = [&](const SetupWriter& setup) {
+        const Checked checked = check(setup, program);
+        EXPECT_EQ(checked.status, 0) << checked.err << checked.errors();
+        for (const std::string& each : checked.assumptions)
+            if (each.find("the stock is what the tools reach") == 0) return each;
+        return std::string();
+    };
+    EXPECT_NE(assumed(SetupWriter().without_stock()).find("X 5.000 to 45.000"), std::string::npos);
+    EXPECT_NE(assumed(SetupWriter().stock("margin = 3\n"))
+                  .find("X 2.000 to 48.000, Y 2.000 to "
+                        "18.000, Z -8.000 (3 mm below"),
+              std::string::npos);
+    const ScopedFolder folder;
+    const auto status = [&](const SetupWriter& setup, const std::string& text) {
+        return feeler({"check", folder.write("p.nc", text), "--setup",
+                       folder.write("s.toml", setup.text())})
+            .status;
+    };
+    const std::string box = "box = [[0, 0, 0], [1, 1, 1]]\n";
+    EXPECT_EQ(status(SetupWriter().stock("margin = 3\n" + box), program), 2);
+    EXPECT_EQ(status(SetupWriter().stock("margin = -1\n"), program), 2);
+    EXPECT_EQ(status(SetupWriter().stock("at = [1, 2, 3]\n"), program), 2);
+    EXPECT_EQ(status(SetupWriter().without_stock(), "G21\nG0 X1\nM30\n"), 2);
+}
+
+TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {
+    const ScopedFolder folder;
+    folder.write("t.tbl", "T1 P1 D20 Z50\nT2 P2 D8 Z70 ;ball nose\n");
+    const std::string setup =
+        folder.write("s.toml", SetupWriter().root("tool_library = \"t.tbl\"\n").lengths("").text());
+    const std::string program =
+        folder.write("p.nc", "G21 G90 G54\nT1 M6\nG43 H1 Z60\nT2 M6\nG43 H2 Z60\nM30\n");
+    const Checked checked = check_files(program, setup);
+    EXPECT_EQ(checked.status, 0) << checked.err;
+    std::string all;
+    for (const std::string& each : checked.assumptions) all += each + "\n";
+    EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, by"), std::string::npos) << all;
+    EXPECT_EQ(all.find("tool 1 is a"), std::string::npos) << all; // the set-up has it
+}
+
+} // namespace
+} // namespace app_test
