@@ -25,13 +25,21 @@ bool moves(const Execution& execution) {
     return std::any_of(commands.begin(), commands.end(), is_motion);
 }
 
+bool has_g53_1(const Execution& execution) {
+    const auto codes = execution.statement.codes();
+    return std::any_of(codes.begin(), codes.end(), [](const CodeWord& entry) {
+        return entry.code->letter == 'G' && entry.code->tenths == tenths(53, 1);
+    });
+}
+
 bool has_code(const Execution& execution, ModalGroup group, int tenths_of_code) {
     const CodeWord* entry = execution.statement.of(group);
     return entry && entry->code->tenths == tenths_of_code;
 }
 
-/// G28, G30, G53: places of the machine, not of the work.
+/// G28, G30, G53: places of the machine, not of the work; G53.1 turns rotary axes alone.
 bool goes_to_machine_place(const Execution& execution) {
+    if (has_g53_1(execution)) return true;
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action) return false;
     return action->code->tenths == tenths(28) || action->code->tenths == tenths(30)
@@ -93,6 +101,7 @@ void look_at_length(Execution& execution, const ModalState& before) {
     if (!watch.lacks_length && !watch.length_cancelled) return;
     const ModalState& modal = execution.modal();
     if (goes_to_machine_place(execution) || modal.position[2] == before.position[2]) return;
+    if (!moves(execution)) return; // a frame gave the place another name
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
     const std::string cure = fmt::format("Write G43 H{} before the first motion in Z.", tool);

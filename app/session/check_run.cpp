@@ -279,7 +279,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
 
     const Clock::time_point modelling = Clock::now();
     run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
-    if (job.before_model) job.before_model(run.memory);
+    if (job.before_model && run.memory <= run.setup.memory_limit) job.before_model(run.memory);
     auto state = core::start_of_run(run.setup, file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     state->spindle.direction = run.setup.spindle_at_start;

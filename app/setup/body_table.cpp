@@ -245,8 +245,10 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
                 table.refuse("fixture",
                              fmt::format("\"{}\" is the name of a body of the machine", body.name));
         if (body.link == core::LinkId::base || core::is_on_table_side(setup.machine, body.link))
-            setup.fixtures.push_back(
-                {body.name, body.body, false, {body.link, {}}, /*is_machine=*/true});
+            setup.fixtures.push_back({.name = body.name,
+                                      .body = body.body,
+                                      .mount = {body.link, {}},
+                                      .is_machine = true});
     }
 }
 

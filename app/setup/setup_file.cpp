@@ -116,6 +116,8 @@ void check_allowance_names(TableReader& table, const core::Setup& setup) {
                 known = known || name == word;
             for (const core::Fixture& fixture : setup.fixtures)
                 known = known || name == fixture.name;
+            for (const core::MachineBody& body : setup.machine.bodies)
+                known = known || name == body.name;
             if (!known)
                 table.refuse("allowance", fmt::format("between: there is no body \"{}\"", name));
         }

@@ -32,7 +32,8 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
                                         const MovingBody& body, const PairClearance& known) {
     const Fixture& fixture = setup_.fixtures[*known.pair.fixture];
     const Allowance& allowance = known.allowance;
-    const double limit = std::min(setup_.search_limit, known.upper);
+    const double limit =
+        std::min(setup_.search_limit, known.upper) + (relative.turns ? relative.error : 0.0);
     const Separation found = widened(
         distance_over(relative, body, fixture.body, limit, statistics_.shape_tests), relative);
     PairClearance now{.pair = known.pair, .allowance = allowance};
@@ -70,10 +71,16 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return merge(known, look_at_fixture(leg, start, relative, body, known));
     // A body that turns: half of the way at a time, until it is far or seen sharply enough.
-    if (relative.error < infinity) {
+    const double apart = distance(bounds(body, relative), bounds(setup_.fixtures[fixture].body));
+    if (apart >= std::min(known.upper, setup_.search_limit)) {
+        known.lower = std::min(known.lower, setup_.search_limit);
+        known.at_end = apart;
+        return;
+    }
+    if (!is_too_vague(relative)) {
         PairClearance now = look_at_fixture(leg, start, relative, body, known);
         if (now.lower >= std::min(known.upper, setup_.search_limit)
-            || relative.error <= std::max(finest_error(body), 0.02 * now.lower))
+            || relative.error <= std::max(finest_error(body), sharp_share * now.lower))
             return merge(known, now);
         if (now.lower <= 0.0) {
             const Leg still = still_half_way(leg);

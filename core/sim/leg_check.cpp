@@ -56,8 +56,7 @@ double LegCheck::finest_error(const MovingBody& body) const {
 Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                               double threshold, double limit, double shrink) {
     // Most bodies of a machine are far away, and made of many triangles.
-    if (body.body && distance(bounds(*body.body, leg), stock.outer_box) >= limit)
-        return {.lower = limit};
+    if (body.body && distance(bounds(body, leg), stock.outer_box) >= limit) return {.lower = limit};
     const std::vector<ConvexShape> shapes =
         !body.profile  ? shapes_of(*body.body, leg)
         : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
@@ -91,8 +90,8 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
                                         const CutModel& stock, double nearest) {
     const Allowance allowance = allowance_of(setup_, pair_of(body));
     const RelativeLeg relative = against_stock(body, leg);
-    const double limit = std::min(setup_.search_limit, nearest);
     const double error = relative.error;
+    const double limit = std::min(setup_.search_limit, nearest) + (relative.turns ? error : 0.0);
     Observation seen{.travel = relative.travel};
     const double threshold = deciding_distance(allowance) + (relative.turns ? error : 0.0);
     seen.plain = to_stock(body, relative, stock, threshold, limit);
@@ -132,7 +131,7 @@ PairClearance LegCheck::clearance(const MovingBody& body, const Leg& leg, double
                                   const Observation& before, const Observation& after) const {
     PairClearance now{.pair = pair_of(body)};
     now.allowance = allowance_of(setup_, now.pair);
-    now.lower = before.plain.lower;
+    now.lower = std::min(before.plain.lower, setup_.search_limit);
     if (after.plain.found()) {
         now.upper = after.plain.upper;
         now.on_tool = after.plain.point_a;
@@ -151,7 +150,7 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     std::vector<BodyCheck> checks;
     bool settled = true;
     for (const MovingBody& body : bodies_) {
-        if (body.kind == PartKind::flutes) continue;
+        if (body.kind == PartKind::flutes || (only_tool_ && body.body)) continue;
         PairClearance& known = entry(pairs, pair_of(body), setup_);
         if (stays_away(known, leg, against_stock(body, leg))) continue;
         const Observation before = observe(body, leg, stock, known.upper);
@@ -204,6 +203,7 @@ bool LegCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
                             std::vector<PairClearance>& pairs) {
     bool gouged = false;
     for (const MovingBody& body : bodies_) {
+        if (only_tool_ && body.body) continue;
         PairClearance& known = entry(pairs, pair_of(body), setup_);
         if (stays_away(known, leg, against_stock(body, leg))) continue;
         const Observation seen = observe(body, leg, stock, known.upper);
@@ -244,54 +244,6 @@ double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
                        .to = way.places.back(),
                        .orientation = way.orientation,
                        .block = value_of(block_)});
-}
-
-bool LegCheck::turns_too_far(const Leg& leg) const {
-    if (!setup_.machine.has_rotary() || leg.places.size() != 2) return false;
-    for (const MovingBody& body : bodies_) {
-        const RelativeLeg relative = against_stock(body, leg);
-        if (relative.turns && relative.error > finest_error(body)) return true;
-    }
-    return false;
-}
-
-bool LegCheck::is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
-                                 std::vector<PairClearance>& pairs) {
-    std::vector<PairClearance> seen;
-    for (const MovingBody& body : bodies_) {
-        const RelativeLeg relative = against_stock(body, leg);
-        if (relative.error == infinity) return false;
-        const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
-        const PairClearance* known = nullptr;
-        for (const PairClearance& pair : pairs)
-            if (pair.pair == pair_of(body)) known = &pair;
-        const double nearest = known && !chips ? known->upper : infinity;
-        Observation look{.travel = relative.travel};
-        look.plain = widened(
-            to_stock(body, relative, stock, 0.0, std::min(setup_.search_limit, nearest)), relative);
-        const double lower = look.plain.lower;
-        if (lower <= 0.0) return false;
-        if (chips) continue;
-        const PairClearance now = clearance(body, leg, start, look, look);
-        if (now.verdict != Verdict::clear) return false;
-        if (lower < std::min(nearest, setup_.search_limit)
-            && relative.error > std::max(finest_error(body), 0.02 * lower))
-            return false;
-        seen.push_back(now);
-    }
-    for (const PairClearance& now : seen) merge(entry(pairs, now.pair, setup_), now);
-    return true;
-}
-
-double LegCheck::check_stock(const Leg& leg, double start, CutModel& stock,
-                             std::vector<PairClearance>& pairs) {
-    if (turns_too_far(leg)) {
-        if (is_seen_from_afar(leg, start, stock, pairs)) return 0.0;
-        return check_stock(stretch(leg, 0.0, 0.5), start, stock, pairs)
-               + check_stock(stretch(leg, 0.5, 1.0), start, stock, pairs);
-    }
-    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
-                                     : check_not_cutting(leg, start, stock, pairs);
 }
 
 double LegCheck::run(const Leg& leg, double start, CutModel& stock,

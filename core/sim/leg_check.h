@@ -63,6 +63,9 @@ private:
         double travel = 0.0; // how far the body goes at most
     };
 
+    /// A body that turns is seen sharply enough when the error is this share of its clearance.
+    static constexpr double sharp_share = 0.02;
+
     static Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});
     const MovingBody& body_of(const Pair& pair) const;
     RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
@@ -88,7 +91,17 @@ private:
     double check_stock(const Leg& leg, double start, CutModel& stock,
                        std::vector<PairClearance>& pairs);
     bool turns_too_far(const Leg& leg) const;
-    /// Whether one look at a leg that turns tells enough of every body; adds what it told if so.
+    /// Whether a look at a leg could not be sharp enough, whatever it sees within the limit.
+    bool is_too_vague(const RelativeLeg& relative) const;
+    double check_turning(const Leg& leg, double start, CutModel& stock,
+                         std::vector<PairClearance>& pairs);
+    /// How far a body of the machine really keeps from a box over a leg, at least.
+    double distance_to_box(const MovingBody& body, const RelativeLeg& leg, const Aabb& box);
+    /// A body of the machine over a leg that turns, against the stock as it is at the leg's start:
+    /// `lower` alone, where the box of the raw stock is far enough.
+    void check_turning_body(const MovingBody& body, const Leg& leg, double start,
+                            const CutModel& stock, std::vector<PairClearance>& pairs);
+    /// Whether one look at a leg that turns tells enough of the tool; adds what it told if so.
     bool is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
                            std::vector<PairClearance>& pairs);
 
@@ -126,6 +139,7 @@ private:
     CheckMemory& memory_;
     Statistics& statistics_;
     std::vector<MovingBody> bodies_;
+    bool only_tool_ = false; // bodies of the machine have been held against the stock already
 };
 
 } // namespace core

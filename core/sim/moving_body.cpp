@@ -63,8 +63,8 @@ bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fi
     return carrier(a) == b || carrier(b) == a;
 }
 
-Aabb bounds(const ExactBody& body, const RelativeLeg& leg) {
-    const Aabb box = bounds(body);
+Aabb bounds(const MovingBody& body, const RelativeLeg& leg) {
+    const Aabb box = body.profile ? bounds(*body.profile) : bounds(*body.body);
     const Vec3 centre = leg.orientation * box.center();
     Vec3 half(0.0);
     for (int axis = 0; axis < 3; ++axis)

@@ -25,8 +25,8 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
 /// neighbours.
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture);
 
-/// The box of a machine's body over a leg.
-Aabb bounds(const ExactBody& body, const RelativeLeg& leg);
+/// A box that holds the body wherever it really is over a leg; infinite where its error is.
+Aabb bounds(const MovingBody& body, const RelativeLeg& leg);
 
 /// Convex shapes whose union is the profile, as they pass over a leg.
 std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const RelativeLeg& leg);

@@ -61,7 +61,7 @@ TEST(SaveStock, RefusesAnEndingItDoesNotKnow) {
     const ScopedFolder folder;
     const auto ran = save(folder, slot, folder / "left.step");
     EXPECT_EQ(ran.status, 2);
-    EXPECT_NE(ran.err.find("must end in .stl or .ply"), std::string::npos);
+    EXPECT_NE(ran.err.find("must end in .stl, .ply or .feeler"), std::string::npos);
     EXPECT_EQ(ran.out, "");
 }
 
