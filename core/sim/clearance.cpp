@@ -47,6 +47,7 @@ void merge(PairClearance& known, const PairClearance& later) {
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
     known.at_end = later.lower;
+    known.drift = 0.0;
     if (later.upper >= known.upper) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;

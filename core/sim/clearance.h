@@ -33,6 +33,7 @@ struct PairClearance {
     double time = 0.0; // of the witness, seconds after the block's start
     Verdict verdict = Verdict::clear;
     double at_end = 0.0; // a lower bound of the clearance where the last leg ended
+    double drift = 0.0;  // the way that this bound has lost since the pair was measured
 
     bool found() const { return upper < infinity; }
     double margin() const { return (found() ? upper : lower) - allowance.distance; }

@@ -199,6 +199,7 @@ void LegCheck::conclude(const BodyCheck& check, const Leg& leg, double start, co
     if (check.clear && !check.before.whole
         && is_beside_the_point(known.allowance, check.before.plain.lower, pairs)) {
         merge(known, clearance(check.body, leg, start, check.before, {}));
+        known.drift = travel_;
         return;
     }
     const bool is_told = check.before.whole && !cut;
@@ -207,6 +208,7 @@ void LegCheck::conclude(const BodyCheck& check, const Leg& leg, double start, co
     if (now.verdict == Verdict::collision)
         now.time = start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
     merge(known, now);
+    known.drift = travel_;
 }
 
 void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
@@ -216,8 +218,10 @@ void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
     // The stock of before is gone; the bound that let this wait holds for it.
     Observation before;
     before.plain.lower = known.at_end - travel_;
+    const double drift = known.drift + travel_;
     const Observation after = look_again({body, before, true, known.upper}, leg, stock);
     merge(known, clearance(body, leg, start, before, after));
+    known.drift = drift;
 }
 
 bool LegCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
@@ -259,6 +263,7 @@ bool LegCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
         const PairClearance now = clearance(*body, leg, start, seen, seen);
         gouged = gouged || (body->kind == PartKind::flutes && now.verdict == Verdict::collision);
         merge(known, now);
+        known.drift = travel_;
     }
     return gouged;
 }

@@ -15,6 +15,7 @@ namespace core {
 struct PairBound {
     Pair pair;
     double apart = 0.0;
+    double drift = 0.0; // the way since the pair was measured
 };
 
 /// What a check keeps from leg to leg to be faster; no verdict depends on it.

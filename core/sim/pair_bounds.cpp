@@ -20,7 +20,10 @@ PairClearance& LegCheck::known_pair(std::vector<PairClearance>& pairs, const Pai
         if (known.pair == pair) return known;
     PairClearance& begun = entry(pairs, pair, setup_);
     for (const PairBound& bound : memory_.bounds)
-        if (bound.pair == pair) begun.at_end = bound.apart;
+        if (bound.pair == pair) {
+            begun.at_end = bound.apart;
+            begun.drift = bound.drift;
+        }
     return begun;
 }
 
@@ -29,6 +32,7 @@ bool LegCheck::says_nothing(PairClearance& known, const std::vector<PairClearanc
     if (!is_beside_the_point(known.allowance, apart, pairs)) return false;
     known.lower = std::min({known.lower, apart, setup_.search_limit});
     known.at_end = apart;
+    known.drift += travel_;
     return true;
 }
 
@@ -46,7 +50,9 @@ bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
 bool LegCheck::says_likely_nothing(const PairClearance& known) const {
     const double apart = known.at_end - travel_;
     const double must_keep = known.allowance.distance + resolution;
-    constexpr double slack = 0.1; // mm: how much more room the next block often has
+    constexpr double slack = 0.1;   // mm: how much more room the next block often has
+    constexpr double far_ago = 2.0; // mm: a bound that has lost more would say too little
+    if (known.drift + travel_ > far_ago) return false;
     return setup_.detail == Detail::deciding_pair && memory_.deciding
            && !(known.pair == *memory_.deciding) && apart > must_keep
            && apart - must_keep > memory_.margin + 2.0 * travel_ + slack;

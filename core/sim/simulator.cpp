@@ -241,7 +241,7 @@ void BlockRun::conclude() {
         CheckMemory& memory = state.memory;
         memory.bounds.clear();
         for (const PairClearance& pair : result.pairs)
-            memory.bounds.push_back({pair.pair, pair.at_end});
+            memory.bounds.push_back({pair.pair, pair.at_end, pair.drift});
         memory.deciding.reset();
         if (result.deciding) {
             memory.deciding = result.pairs[*result.deciding].pair;
