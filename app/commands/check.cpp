@@ -6,6 +6,8 @@
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/commands/progress.h"
+#include "app/report/csv_report.h"
 #include "app/report/json_report.h"
 #include "app/report/text_report.h"
 #include "app/session/part_check.h"
@@ -24,6 +26,8 @@ struct Options {
 };
 
 std::string report(const Options& options, const CheckRun& run) {
+    if (options.format == "csv") return csv_report(run);
+    if (options.format == "jsonl") return json_lines_report(run, options.pairs);
     if (options.format == "json") return json_report(run, options.pairs);
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
@@ -93,6 +97,12 @@ ExitCode check(const Options& options) {
     const bool needs_surface = !options.stock.empty() || !options.comparison.empty();
     std::optional<double> memory_limit;
     if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
+    stop_on_interrupt();
+    ProgressLine line;
+    const auto show = [&line](const CheckProgress& progress) {
+        line.show(progress);
+        return !is_interrupted();
+    };
     auto run = run_check({.program = options.program,
                           .setup = options.setup,
                           .allowance = options.allowance,
@@ -101,7 +111,9 @@ ExitCode check(const Options& options) {
                           .detail = detail_of(options),
                           .needs_surface = needs_surface,
                           .before_model = say_memory,
+                          .after_block = show,
                           .settings = *settings});
+    line.clear();
     if (!run) {
         print_error(run.error());
         return ExitCode::failed;
@@ -139,8 +151,10 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                     "What the model of the stock may take, MB (8590 unless said)")
         ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
-    command.add_option("--format", options->format, "text or json")
-        ->check(CLI::IsMember({"text", "json"}))
+    command
+        .add_option("--format", options->format,
+                    "text, json, jsonl (an object to a line) or csv (a row to a block)")
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     command.add_option("--save-stock", options->stock,

@@ -36,9 +36,7 @@ void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, 
 /// A motion of which no pair came within the limit or had to be measured, or of which nothing can
 /// be said.
 void add_no_pair(Json& json, const CheckRun& run, const core::BlockResult& result) {
-    double lower = result.checked ? run.setup.search_limit : 0.0;
-    for (const core::PairClearance& pair : result.pairs) lower = std::min(lower, pair.lower);
-    json["clearance"] = {{"lower", lower}, {"upper", nullptr}};
+    json["clearance"] = {{"lower", least_clearance(run.setup, result)}, {"upper", nullptr}};
     for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
 }
 
@@ -146,9 +144,8 @@ Json saved_json(const SavedStock& saved) {
             {"lost_points", saved.lost}};
 }
 
-} // namespace
-
-std::string json_report(const CheckRun& run, bool pairs) {
+/// What is said of the program as a whole, before its blocks.
+Json heading_json(const CheckRun& run) {
     Json json;
     json["feeler"] = version;
     json["schema"] = 1;
@@ -162,17 +159,50 @@ std::string json_report(const CheckRun& run, bool pairs) {
     json["verdict"] = core::name_of(run.verdict);
     json["cycle_time"] = run.cycle_time;
     if (run.stopped) json["error"] = error_json(*run.stopped);
+    return json;
+}
+
+/// What is said after them.
+void add_ending(Json& json, const CheckRun& run) {
+    if (run.comparison) json["part"] = part_json(run);
+    if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
+    json["statistics"] = statistics_json(run);
+}
+
+// Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
+std::string dumped(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json record(const char* name, Json values) {
+    Json json = {{"record", name}};
+    json.update(values);
+    return json;
+}
+
+} // namespace
+
+std::string json_report(const CheckRun& run, bool pairs) {
+    Json json = heading_json(run);
     json["blocks"] = Json::array();
     for (const CheckedBlock& block : run.blocks)
         json["blocks"].push_back(block_json(run, block, pairs));
     json["findings"] = Json::array();
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
-    if (run.comparison) json["part"] = part_json(run);
-    if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
-    json["statistics"] = statistics_json(run);
-    // Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    add_ending(json, run);
+    return dumped(json, 1);
+}
+
+std::string json_lines_report(const CheckRun& run, bool pairs) {
+    std::string lines = dumped(record("program", heading_json(run)), -1);
+    for (const CheckedBlock& block : run.blocks)
+        lines += dumped(record("block", block_json(run, block, pairs)), -1);
+    for (const core::Finding& finding : run.findings)
+        lines += dumped(record("finding", finding_json(run, finding)), -1);
+    Json ending = {{"record", "end"}};
+    add_ending(ending, run);
+    return lines + dumped(ending, -1);
 }
 
 } // namespace app

@@ -129,6 +129,7 @@ struct Runner {
     const gcode::Program& program;
     const gcode::Environment& environment;
     CheckRun& run;
+    const std::function<bool(const CheckProgress&)>& after_block;
     bool speed_by_hand = false;
     gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
                                   environment.search_path};
@@ -136,6 +137,7 @@ struct Runner {
     gcode::InterpreterState place = gcode::initial_state(environment);
     gcode::Lowering lowering = gcode::initial_lowering(environment);
     core::BlockClock clock = core::start_clock(run.setup.machine);
+    uint32_t last_line = 0; // of the main program
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
@@ -199,6 +201,13 @@ struct Runner {
         run.cycle_time = clock.time;
     }
 
+    CheckProgress progress(const gcode::BlockResult& block) {
+        if (block.file.empty()) last_line = block.line;
+        return {run.blocks.size(),
+                static_cast<double>(last_line) / static_cast<double>(program.line_count()),
+                run.findings.size()};
+    }
+
     void run_blocks(core::SimulatorState& state) {
         while (true) {
             const auto next = interpreter.next(place);
@@ -209,6 +218,15 @@ struct Runner {
             if (!*next) break;
             if (const auto refused = block(**next, state)) {
                 run.stopped = named(*refused, program.file);
+                return;
+            }
+            if (after_block && !after_block(progress(**next))) {
+                run.stopped = named({core::ErrorCode::io,
+                                     {.line = (*next)->line, .column = 1},
+                                     "the check was stopped after this block: the rest of the "
+                                     "program is not checked",
+                                     std::string((*next)->file)},
+                                    program.file);
                 return;
             }
         }
@@ -252,6 +270,12 @@ bool CheckRun::has_errors() const {
     });
 }
 
+double least_clearance(const core::Setup& setup, const core::BlockResult& result) {
+    double lower = result.checked ? setup.search_limit : 0.0;
+    for (const core::PairClearance& pair : result.pairs) lower = std::min(lower, pair.lower);
+    return lower;
+}
+
 core::Result<CheckRun> run_check(const CheckJob& job) {
     const Clock::time_point begin = Clock::now();
     CheckRun run;
@@ -288,7 +312,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
-    Runner{*program, file.environment, run, file.speed_by_hand}.to_the_end(*state);
+    Runner{*program, file.environment, run, job.after_block, file.speed_by_hand}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
     run.stock = std::move(state->stock);

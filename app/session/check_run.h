@@ -56,6 +56,16 @@ struct CheckRun {
     bool has_errors() const;
 };
 
+/// What is known to be kept in a block by all pairs, where none decides; 0 if nothing is known.
+double least_clearance(const core::Setup& setup, const core::BlockResult& result);
+
+/// How far a check has come.
+struct CheckProgress {
+    size_t blocks = 0;
+    double share = 0.0; // of the program's lines, 0..1; a program with loops goes back and forth
+    size_t findings = 0;
+};
+
 /// What a user asks to be checked.
 struct CheckJob {
     std::string program;
@@ -64,9 +74,10 @@ struct CheckJob {
     std::optional<double> mesh_size;
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     core::Detail detail = core::Detail::deciding_pair;
-    bool needs_surface = false;              // that of the stock is wanted, also without a part
+    bool needs_surface = false; // that of the stock is wanted, also without a part
     std::function<void(double)> before_model = {}; // told the bytes that the model will take
-    ProgramSettings settings;                      // replace what the set-up says under [program]
+    std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
+    ProgramSettings settings; // replace what the set-up says under [program]
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

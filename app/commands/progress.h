@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+
+#include "app/session/check_run.h"
+
+namespace app {
+
+/// From now on Ctrl-C asks a check to stop, once; the next one ends the process.
+void stop_on_interrupt();
+
+/// Whether it was pressed.
+bool is_interrupted();
+
+/// A line on standard error that says how far a check has come; nothing unless that is a terminal.
+class ProgressLine {
+public:
+    ProgressLine();
+    ~ProgressLine() { clear(); }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    void show(const CheckProgress& progress);
+    void clear();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    bool is_terminal_;
+    bool is_shown_ = false;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
+
+/// What the line says, `seconds` after the start. No longer than 79 characters.
+std::string progress_text(const CheckProgress& progress, double seconds);
+
+} // namespace app

@@ -1,0 +1,87 @@
+#include "app/report/csv_report.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace app {
+namespace {
+
+constexpr const char* column_names =
+    "block,file,line,calls,text,motion,tool,time,duration,removed,lower,upper,allowance,part,body,"
+    "at,part_x,part_y,part_z,body_x,body_y,body_z,verdict,rules\r\n";
+
+/// Quoted where it has to be.
+std::string cell(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string joined(const std::vector<uint32_t>& lines) {
+    std::string text;
+    for (const uint32_t line : lines) text += fmt::format("{}{}", text.empty() ? "" : " ", line);
+    return text;
+}
+
+using FindingsOfBlocks = std::map<core::BlockIndex, std::vector<const core::Finding*>>;
+
+FindingsOfBlocks by_block(const CheckRun& run) {
+    FindingsOfBlocks findings;
+    for (const core::Finding& finding : run.findings)
+        if (finding.block) findings[*finding.block].push_back(&finding);
+    for (auto& [block, some] : findings)
+        std::stable_sort(some.begin(), some.end(),
+                         [](const auto* a, const auto* b) { return a->severity > b->severity; });
+    return findings;
+}
+
+std::string rules_of(const FindingsOfBlocks& findings, core::BlockIndex block) {
+    std::string rules;
+    if (const auto found = findings.find(block); found != findings.end())
+        for (const core::Finding* finding : found->second)
+            rules += (rules.empty() ? "" : " ") + finding->rule;
+    return rules;
+}
+
+/// From `lower` to `body_z`; all empty for a block that does not move.
+std::string clearance_cells(const CheckRun& run, const core::BlockResult& result) {
+    constexpr const char* nothing = ",,,,,,,,,,,";
+    if (result.motion == core::BlockMotion::none) return nothing;
+    if (!result.deciding)
+        return fmt::format("{:.6f}", least_clearance(run.setup, result)) + nothing;
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    std::string cells = fmt::format("{:.6f},", pair.lower);
+    if (pair.found()) cells += fmt::format("{:.6f}", pair.upper);
+    cells += fmt::format(",{:.6f},{},{}", pair.allowance.distance,
+                         cell(core::part_name(run.setup, pair.pair)),
+                         cell(core::body_name(run.setup, pair.pair)));
+    if (!pair.found()) return cells + ",,,,,,,";
+    cells += fmt::format(",{:.6f}", result.duration > 0.0 ? pair.time / result.duration : 0.0);
+    for (const core::Vec3& point : {pair.on_tool, pair.on_body})
+        cells += fmt::format(",{:.6f},{:.6f},{:.6f}", point.x, point.y, point.z);
+    return cells;
+}
+
+} // namespace
+
+std::string csv_report(const CheckRun& run) {
+    const FindingsOfBlocks findings = by_block(run);
+    std::string text = column_names;
+    for (const CheckedBlock& block : run.blocks) {
+        const core::BlockResult& result = block.result;
+        const std::string tool =
+            result.tool ? fmt::format("{}", core::value_of(*result.tool)) : std::string();
+        text +=
+            fmt::format("{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{}\r\n",
+                        core::value_of(block.block), cell(block.file), block.line,
+                        joined(block.calls), cell(block.text), core::name_of(result.motion), tool,
+                        result.time, result.duration, result.removed, clearance_cells(run, result),
+                        core::name_of(result.verdict), rules_of(findings, block.block));
+    }
+    return text;
+}
+
+} // namespace app
