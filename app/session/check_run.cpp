@@ -238,7 +238,10 @@ void look_for_judged_motions(CheckRun& run) {
 
 /// Nobody shall take a program for checked whose motions were not looked at.
 void say_not_judged(CheckRun& run, const std::string& why) {
-    if (why.empty()) return;
+    const auto moves = [](const CheckedBlock& block) {
+        return block.result.motion != core::BlockMotion::none;
+    };
+    if (why.empty() || std::none_of(run.blocks.begin(), run.blocks.end(), moves)) return;
     core::Finding finding;
     finding.rule = "undecided";
     finding.severity = core::Severity::error;

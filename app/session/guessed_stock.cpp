@@ -36,6 +36,16 @@ Top top_of(const ProgramSurvey& seen, double zero) {
     return {highest, "at the highest cut"};
 }
 
+/// A top above zero is no higher than where rapids go down to, holes before they are drilled.
+void lower_top(const std::vector<UncutPlunge>& plunges, double zero, Aabb& box, Top& top) {
+    for (const UncutPlunge& plunge : plunges) {
+        const double z = plunge.tip.z;
+        if (z < zero || z >= box.max.z || z < box.min.z + smallest_height) continue;
+        box.max.z = z;
+        top.why = fmt::format("where line {} goes down to by rapid", plunge.line);
+    }
+}
+
 /// The sides of a box that go back, and the plunge that each ends at.
 struct Sides {
     Aabb whole, box;
@@ -100,15 +110,16 @@ GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double 
     if (!seen.feeds)
         return {{frame + Vec3(-5, -5, -5), frame + Vec3(5, 5, 0)},
                 "the program cuts nothing, so the stock is a cube of 10 mm at its zero"};
-    const Top top = top_of(seen, seen.zero.z);
+    Top top = top_of(seen, seen.zero.z);
     const double below = std::max(margin, below_the_cuts);
     Aabb box{seen.cutting.min - Vec3(margin, margin, 0.0),
              seen.cutting.max + Vec3(margin, margin, 0.0)};
     box.min.z = seen.lowest - below;
     box.max.z = std::max(top.z + seen.zero.z, box.min.z + smallest_height);
+    lower_top(plunges, seen.zero.z, box, top);
     Sides sides{box, box};
     for (const UncutPlunge& plunge : plunges)
-        if (sides.holds(plunge)) sides.go_back(plunge);
+        if (plunge.tip.z < box.max.z && sides.holds(plunge)) sides.go_back(plunge);
     const Vec3 low = sides.box.min - frame, high = sides.box.max - frame;
     return {sides.box,
             fmt::format("the stock is what the tools reach on cutting moves{}: X {:.3f} to {:.3f}, "

@@ -30,6 +30,16 @@ ToolNumber free_number(const ProgramSurvey& seen) {
     return ToolNumber{number};
 }
 
+/// A tool that is called a drill and cuts sideways is some mill of that width.
+FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
+    const auto use = seen.mills.find(tool.tool.number);
+    const bool mills = use != seen.mills.end() && use->second;
+    if (!mills || tool.tool.shape != core::ToolShape::drill || tool.tool.point_deg) return tool;
+    tool.tool.shape = core::ToolShape::flat;
+    tool.source += " and its use, as no drill cuts sideways";
+    return tool;
+}
+
 /// What is known of the tools that the program uses and the set-up has not.
 core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
                                                    const ProgramSurvey& seen) {
@@ -47,7 +57,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
         if (found != offered.tools.end())
-            missing.push_back(found->second);
+            missing.push_back(file.is_inferred ? as_used(found->second, seen) : found->second);
         else if (file.is_inferred)
             missing.push_back(unknown_tool(number, mills(number), unit));
     }
@@ -113,7 +123,9 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     const Vec3 frame = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
     const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
-    const auto stated = file.is_inferred ? stated_stock(program, unit) : std::nullopt;
+    std::optional<core::Aabb> reach;
+    if (seen.feeds) reach = core::Aabb{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
+    const auto stated = file.is_inferred ? stated_stock(program, unit, reach) : std::nullopt;
     GuessedStock stock;
     if (stated) {
         const Vec3 shift = seen.zero - frame;
@@ -174,14 +186,17 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         "the program offsets no tool's length: the work offset is set again with every tool");
 }
 
-/// Large stocks take a coarser model, so that its memory stays that of an ordinary one.
+/// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small
+/// ones a finer one.
 void choose_mesh_size(SetupFile& file) {
-    constexpr double cells = 600.0, finest = 0.5;
+    constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 100.0;
     const auto* box = std::get_if<core::SolidBox>(&file.setup.stock.shape);
     if (!file.is_inferred || !box) return;
     const Vec3 size = box->box.size();
     const double longest = std::max({size.x, size.y, size.z});
-    file.setup.mesh_size = std::max(finest, std::ceil(10.0 * longest / cells) / 10.0);
+    const double fine = std::ceil(longest / least_cells / finest) * finest; // of a small stock
+    file.setup.mesh_size =
+        std::max(std::min(usual, fine), std::ceil(10.0 * longest / cells) / 10.0);
 }
 
 } // namespace
@@ -197,10 +212,12 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
     for (size_t axis = 0; axis < 3; ++axis)
         if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
+    if (!file.environment.home) file.environment.home = gcode::AxisValues{};
     file.assumptions = notes;
     file.assumptions.push_back(
         fmt::format("no set-up: no fixtures, no limits of axes; all work offsets are at one place, "
-                    "and the machine's zero, where it starts, is {:g} mm above it",
+                    "and the machine's zero, where it starts and has its home, is {:g} mm above "
+                    "it",
                     zero_above_program));
     file.assumptions.push_back("every tool was touched off: the control knows its true length");
     return file;
@@ -243,8 +260,10 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     const double top =
         core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
-    for (const std::vector<std::string>& notes : {put_tools(file, tools, first, deep), about_stock})
-        file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
+    std::vector<std::string> notes = put_tools(file, tools, first, deep);
+    if (!file.not_judged.empty()) notes.clear(); // mills that turn nothing
+    notes.insert(notes.end(), about_stock.begin(), about_stock.end());
+    file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
 }
 

@@ -15,8 +15,12 @@ struct StatedStock {
     std::string source; // "BLK FORM in line 3", as it ends a sentence
 };
 
-/// What Klartext's BLK FORM 0.1 and 0.2 or Siemens' WORKPIECE with a box say; empty without them,
-/// and where they describe no body. The last one that is said counts.
-std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit);
+/// What Klartext's BLK FORM 0.1 and 0.2, Siemens' WORKPIECE with a box or the header of Vectric's
+/// programs say; empty without them, and where they describe no body. The last one counts.
+///
+/// `reach` is what the program cuts, in its coordinates: it tells where the zero lies that a header
+/// with a size alone leaves open, at a corner or in the middle.
+std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit,
+                                        const std::optional<core::Aabb>& reach = {});
 
 } // namespace app

@@ -33,10 +33,13 @@ public:
         }
     }
 
-    /// Whether a tool that stands there stands in what no feed has cut, well inside its outline.
+    /// Whether a tool that stands there stands in what no feed has cut. Cells count by their
+    /// middle; between two places of a cut, its side is that much nearer than its radius.
     bool is_uncut(const Vec3& tip, double radius) const {
+        const double missed = 0.01 + cell_ * cell_ / (8.0 * std::max(radius, cell_));
         bool uncut = false;
-        visit(tip, radius - cell_, [&](size_t at) { uncut |= heights_[at] > tip.z + same_height; });
+        visit(tip, radius - missed,
+              [&](size_t at) { uncut |= heights_[at] > tip.z + same_height; });
         return uncut;
     }
 

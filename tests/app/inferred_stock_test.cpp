@@ -111,6 +111,35 @@ TEST(StatedStock, IsReadInInches) {
     EXPECT_EQ(stock->box.max, core::Vec3(50.8, 76.2, 0));
 }
 
+const std::string vectric = "( Cross2 )\n( Material Size )\n( X=96 mm, Y=120.0, Z=6 )\n";
+
+TEST(StatedStock, IsTheMaterialOfAHeader) {
+    const auto top = stated(vectric
+                            + "( Z Origin for Material = Material Surface)\n"
+                              "( XY Origin for Job = Center)\n");
+    ASSERT_TRUE(top);
+    EXPECT_EQ(top->box.min, core::Vec3(-48, -60, -6));
+    EXPECT_EQ(top->box.max, core::Vec3(48, 60, 0));
+    const auto table = stated(vectric + "( Z Origin = Table Surface)\n( XY Origin = Top Right)\n");
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->box.min, core::Vec3(-96, -120, 0));
+    EXPECT_EQ(table->box.max, core::Vec3(0, 0, 6));
+}
+
+TEST(StatedStock, LiesWhereItsSizeHoldsWhatIsCut) {
+    const auto low_corner = [&](const core::Aabb& reach) -> std::optional<core::Vec3> {
+        const ScopedFolder folder;
+        const auto program = gcode::read_program(folder.write("p.tap", vectric));
+        EXPECT_TRUE(program);
+        const auto stock = app::stated_stock(*program, gcode::LengthUnit::mm, reach);
+        return stock ? std::optional(stock->box.min) : std::nullopt;
+    };
+    EXPECT_EQ(low_corner({{-2, -2, -6}, {98, 122, 0}}), core::Vec3(0, 0, -6));
+    EXPECT_EQ(low_corner({{-45, -50, -6}, {45, 50, 0}}), core::Vec3(-48, -60, -6));
+    EXPECT_EQ(low_corner({{200, 0, -6}, {250, 50, 0}}), std::nullopt);
+    EXPECT_FALSE(stated(vectric)); // nothing is cut
+}
+
 TEST(StatedStock, IsNoneWithoutABody) {
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n"));
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n2 BLK FORM 0.2 X+0 Y+3 Z+0\n"));
@@ -186,6 +215,32 @@ TEST(NamedTool, IsWhatItsNameSays) {
               "p.mpf");
     EXPECT_THAT(run.assumed, HasSubstr("tool 1 is a drill of 8.5 mm, by its name in line 2"));
     EXPECT_THAT(run.assumed, HasSubstr("tool 2 is a ball end mill of 6 mm, by its name in line 7"));
+}
+
+TEST(NamedTool, IsNoDrillWhereItCutsSideways) {
+    const Inferred run =
+        infer("N10 G17 G710 G90 G54\nN20 T=\"DRILL 8.5\" M6\nN30 M3 S1000\nN40 G0 X0 Y0 Z10 D1\n"
+              "N50 G1 Z-5 F100\nN60 X50\nN70 G0 Z10\nN80 M30\n",
+              "p.mpf");
+    EXPECT_THAT(run.assumed, HasSubstr("tool 1 is a flat end mill of 8.5 mm, by its name in line 2 "
+                                       "and its use, as no drill cuts sideways"));
+}
+
+TEST(GuessedStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {
+    const Inferred run = infer("G21 G90 G54\nM3 S1000\nG0 Z10\nX0 Y0\nG1 X60 F500\nY40\n"
+                               "G0 X30 Y20\nG81 R1 Z-4 F100\nG80\nG0 Z9\nM2\n");
+    EXPECT_EQ(run.count("collision") + run.count("rapid-in-stock"), 0u);
+    EXPECT_DOUBLE_EQ(run.stock().max.z, 1.0);
+}
+
+TEST(MeshSize, FollowsTheSizeOfASmallStock) {
+    const auto mesh_size = [](const std::string& x) {
+        return infer("G21 G90\nM3 S1\nG0 Z3\nX0 Y0\nG1 Z-1 F9\nX" + x + "\nG0 Z3\nM2\n")
+            .run.setup.mesh_size;
+    };
+    EXPECT_DOUBLE_EQ(mesh_size("0.5"), 0.1); // 6.5 mm with the tool
+    EXPECT_DOUBLE_EQ(mesh_size("80"), 0.5);
+    EXPECT_DOUBLE_EQ(mesh_size("594"), 1.0);
 }
 
 } // namespace
