@@ -170,6 +170,7 @@ std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::Le
                                         const std::optional<core::Aabb>& reach) {
     Scan scan{unit};
     for (size_t line = 1; line <= program.line_count(); ++line) scan.line(program.line(line), line);
+    scan.end(reach);
     return scan.found;
 }
 
