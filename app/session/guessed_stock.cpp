@@ -69,7 +69,7 @@ struct Sides {
     }
 
     void go_back(const UncutPlunge& plunge) {
-        constexpr double most = 1.0 / 3.0; // of the whole, from both sides together
+        constexpr double most = 0.2; // of the whole, from both sides together
         double least = most;
         std::optional<size_t> chosen;
         for (size_t side = 0; side < 4; ++side) {

@@ -17,7 +17,7 @@ struct GuessedStock {
 /// What the tools reach on cutting moves, with a margin around; a small cube where nothing is cut.
 ///
 /// Where the program goes down beside its cuts by rapid, the material is taken to end: `plunges`
-/// are those that would end in the box. A side goes back by a third at most, and only the one that
+/// are those that would end in the box. A side goes back by a fifth at most, and only the one that
 /// has to go back least; a plunge that is too far inside stays in the material. A top above zero
 /// goes down to where a plunge ends.
 /// The words count from `frame`, where the stock's frame stands.

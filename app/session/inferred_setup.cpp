@@ -189,7 +189,7 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
 /// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small
 /// ones a finer one.
 void choose_mesh_size(SetupFile& file) {
-    constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 100.0;
+    constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
     const auto* box = std::get_if<core::SolidBox>(&file.setup.stock.shape);
     if (!file.is_inferred || !box) return;
     const Vec3 size = box->box.size();

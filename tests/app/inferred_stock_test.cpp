@@ -239,7 +239,7 @@ TEST(MeshSize, FollowsTheSizeOfASmallStock) {
         return infer("G21 G90\nM3 S1\nG0 Z3\nX0 Y0\nG1 Z-1 F9\nX" + x + "\nG0 Z3\nM2\n")
             .run.setup.mesh_size;
     };
-    EXPECT_DOUBLE_EQ(mesh_size("0.5"), 0.1); // 6.5 mm with the tool
+    EXPECT_DOUBLE_EQ(mesh_size("0.5"), 0.2); // 6.5 mm with the tool
     EXPECT_DOUBLE_EQ(mesh_size("80"), 0.5);
     EXPECT_DOUBLE_EQ(mesh_size("594"), 1.0);
 }
