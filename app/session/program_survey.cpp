@@ -24,6 +24,28 @@ std::optional<double> plane_of(const std::map<long, double>& travel) {
     return std::nullopt;
 }
 
+/// Ways sideways at one height each, by heights in tenths of a millimetre.
+struct Travel {
+    std::map<long, double> of_rapids, of_feeds;
+    bool has_rapids = false;
+
+    void note(bool rapid, const TipTrack& path) {
+        has_rapids = has_rapids || rapid;
+        const core::Vec3 &from = path.places[0], &to = path.places.back();
+        if (!path.sideways || from.z != to.z) return;
+        (rapid ? of_rapids : of_feeds)[std::lround(10.0 * path.lowest())] +=
+            glm::distance(from, to);
+    }
+
+    /// The plane in which the program travels; without any rapid, the highest one above zero.
+    std::optional<double> plane(double zero) const {
+        if (has_rapids) return plane_of(of_rapids);
+        if (of_feeds.empty()) return std::nullopt;
+        const double height = 0.1 * static_cast<double>(of_feeds.rbegin()->first);
+        return height > zero ? std::optional(height) : std::nullopt;
+    }
+};
+
 /// What a program says beside its motions.
 struct Notes {
     ProgramSurvey& result;
@@ -105,27 +127,24 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
                      const SurveyTools& tools, const std::optional<size_t>& place) {
     ProgramSurvey result;
     Notes notes{result};
-    std::map<long, double> travel; // of rapids sideways, by height in tenths of a millimetre
+    Travel travel;
     visit_events(program, environment, [&](const ProgramEvent& event) {
         std::visit(notes, event.event);
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
         const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
         if (!path) return;
-        if (motion->kind != MotionKind::rapid) {
-            const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
-            bool& mills = result.mills[tool];
-            mills = mills || path->sideways;
-            result.control_lengths.try_emplace(tool, notes.length);
-            result.feeds_before_call = result.feeds_before_call || !result.calls_tools;
-            note_place(event, *path, environment, result);
-        } else if (path->sideways && path->places[0].z == path->places.back().z) {
-            travel[std::lround(10.0 * path->lowest())] +=
-                glm::distance(path->places[0], path->places.back());
-        }
+        travel.note(motion->kind == MotionKind::rapid, *path);
+        if (motion->kind == MotionKind::rapid) return;
+        const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
+        bool& mills = result.mills[tool];
+        mills = mills || path->sideways;
+        result.control_lengths.try_emplace(tool, notes.length);
+        result.feeds_before_call = result.feeds_before_call || !result.calls_tools;
+        note_place(event, *path, environment, result);
     });
     result.zero = zero_of_place(environment, place, result);
-    result.retract = plane_of(travel);
+    result.retract = travel.plane(result.zero.z);
     const auto look_at_cuts = [&] {
         visit_events(program, environment, [&](const ProgramEvent& event) {
             const auto* motion = std::get_if<Motion>(&event.event);

@@ -70,6 +70,15 @@ TEST(GuessedStock, StaysUnderAPlungeIntoAHoleThatIsCut) {
     EXPECT_EQ(run.assumed.find("beside it"), std::string::npos);
 }
 
+TEST(GuessedStock, EndsBelowThePlaneOfTravelOfAProgramWithoutRapids) {
+    const Inferred run =
+        infer("G21 G90\nM3 S1000\nG1 Z5 F900\nX0 Y0\nZ-2\nX40\nZ5\nY20\nZ-2\nX0\nZ5\nX9\nM2\n");
+    EXPECT_FALSE(run.run.has_errors());
+    EXPECT_DOUBLE_EQ(run.stock().max.z, 0.0);
+    const Inferred flat = infer("G21 G90\nM3 S1000\nG1 Z5 F900\nX0 Y0\nX40\nY20\nX0\nM2\n");
+    EXPECT_DOUBLE_EQ(flat.stock().max.z, 5.0);
+}
+
 TEST(StatedStock, IsTheBlankOfKlartext) {
     const Inferred run = infer("0 BEGIN PGM P MM\n1 BLK FORM 0.1 Z X-10 Y+0 Z-20\n"
                                "2 BLK FORM 0.2 X+90 Y+50 Z+0\n3 TOOL CALL 1 Z S2000\n"
@@ -228,8 +237,9 @@ TEST(NamedTool, IsNoDrillWhereItCutsSideways) {
 }
 
 TEST(GuessedStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {
-    const Inferred run = infer("G21 G90 G54\nM3 S1000\nG0 Z10\nX0 Y0\nZ6\nG1 X60 F500\nY40\nG0 Z10\n"
-                               "G0 X30 Y20\nG81 R1 Z-4 F100\nG80\nG0 Z9\nM2\n");
+    const Inferred run =
+        infer("G21 G90 G54\nM3 S1000\nG0 Z10\nX0 Y0\nZ6\nG1 X60 F500\nY40\nG0 Z10\n"
+              "G0 X30 Y20\nG81 R1 Z-4 F100\nG80\nG0 Z9\nM2\n");
     EXPECT_EQ(run.count("collision") + run.count("rapid-in-stock"), 0u);
     EXPECT_DOUBLE_EQ(run.stock().max.z, 1.0);
 }
