@@ -67,6 +67,7 @@ struct BlockRun {
 
     void move_without_tool(const Motion& motion);
     void check_tool_change();
+    void forget_bounds();
     void check_limits(const Motion& motion);
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
@@ -128,6 +129,7 @@ void BlockRun::carry_out(const Motion& motion) {
                                  "speed is not stated");
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
+    if (motion.from != state.position) forget_bounds();
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
@@ -142,6 +144,11 @@ void BlockRun::carry_out(const Motion& motion) {
         }
     }
     result.duration += path.duration;
+}
+
+void BlockRun::forget_bounds() {
+    state.memory.bounds.clear();
+    for (PairClearance& pair : result.pairs) pair.at_end = -infinity;
 }
 
 void BlockRun::move_without_tool(const Motion& motion) {
@@ -165,6 +172,7 @@ void BlockRun::move_without_tool(const Motion& motion) {
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
+    forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
     state.told_unchecked_tool = false;
@@ -178,6 +186,7 @@ void BlockRun::carry_out(const ToolChange& change) {
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
+    forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
@@ -209,7 +218,9 @@ void settle_time(BlockRun& run, PairClearance& pair) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
-        const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
+        const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
+        const double share =
+            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
     }
@@ -225,6 +236,17 @@ void BlockRun::conclude() {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
         settle_time(*this, result.pairs[*result.deciding]);
         result.verdict = worst->verdict;
+    }
+    if (result.motion != BlockMotion::none) {
+        CheckMemory& memory = state.memory;
+        memory.bounds.clear();
+        for (const PairClearance& pair : result.pairs)
+            memory.bounds.push_back({pair.pair, pair.at_end});
+        memory.deciding.reset();
+        if (result.deciding) {
+            memory.deciding = result.pairs[*result.deciding].pair;
+            memory.margin = result.pairs[*result.deciding].margin();
+        }
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear)
