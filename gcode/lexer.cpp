@@ -169,6 +169,11 @@ tl::unexpected<core::Error> Lexer::unexpected_character() {
                           fmt::format("the byte 0x{:02X} has no meaning outside of a comment",
                                       static_cast<unsigned char>(c)),
                           where);
+    if (c == '[')
+        return core::fail(ErrorCode::syntax,
+                          "'[' has no meaning here: a value in brackets stands behind a letter, "
+                          "and comments in brackets (WinCNC) are written in ( and )",
+                          where);
     return core::fail(ErrorCode::syntax, fmt::format("'{}' has no meaning here", c), where);
 }
 

@@ -104,6 +104,19 @@ std::string program_text(const SetupFile& setup) {
     return text;
 }
 
+/// The axes with the home that was assumed.
+std::string machine_text(const SetupFile& setup) {
+    if (!setup.environment.home) return {};
+    constexpr const char* directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
+    std::string text;
+    for (size_t axis = 0; axis < 3; ++axis)
+        text += fmt::format("\n[[machine.axis]]{}\nname = \"{}\"\ndirection = {}\nhome = {}\n",
+                            axis == 0 ? "     # add min, max and rapid (mm/min)" : "",
+                            gcode::axis_letters[axis], directions[axis],
+                            number((*setup.environment.home)[axis]));
+    return text;
+}
+
 std::string offsets_text(const SetupFile& setup) {
     std::string text = "\n[offsets]     # machine coordinates of each origin\n";
     for (size_t i = 0; i < std::size(offset_keys); ++i) {
@@ -142,7 +155,7 @@ std::string setup_text(const SetupFile& setup, const std::string& program) {
     text += "#\n";
     for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
     text += fmt::format("\nmesh_size = {}\n", number(setup.setup.mesh_size));
-    text += program_text(setup) + offsets_text(setup) + stock_text(setup);
+    text += program_text(setup) + machine_text(setup) + offsets_text(setup) + stock_text(setup);
     for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_text(tool.description);
     return text + rules_text(setup);
 }

@@ -42,8 +42,11 @@ std::string wrapped(const std::string& text, size_t indent, size_t hang) {
 std::string line_ranges(std::vector<uint32_t> lines) {
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    constexpr size_t most = 12; // ranges: more of them tell nothing
     std::string text;
+    size_t ranges = 0;
     for (size_t i = 0; i < lines.size();) {
+        if (ranges++ == most) return text + fmt::format(" and others up to {}", lines.back());
         size_t last = i;
         while (last + 1 < lines.size() && lines[last + 1] == lines[last] + 1) ++last;
         if (!text.empty()) text += ", ";

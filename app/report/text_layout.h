@@ -18,7 +18,7 @@ std::string clipped(const std::string& text, size_t width);
 /// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.
 std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
 
-/// "4, 7-9, 12".
+/// "4, 7-9, 12"; after a dozen ranges, only where they end.
 std::string line_ranges(std::vector<uint32_t> lines);
 
 /// "1 error", "2 errors".

@@ -104,13 +104,19 @@ std::string counts_text(const CheckRun& run) {
                        counted(counts[core::Severity::note], "note"));
 }
 
+/// The line that is read first.
+std::string outcome_text(const CheckRun& run) {
+    if (run.stopped) return "STOPPED, not checked to its end";
+    if (run.verdict == core::Verdict::clear && run.has_errors())
+        return "ERRORS in the program; all distances are kept";
+    return verdict_text(run.verdict);
+}
+
 std::string summary_text(const CheckRun& run) {
     size_t moving = 0;
     for (const CheckedBlock& block : run.blocks)
         moving += block.result.motion != core::BlockMotion::none;
-    std::string text =
-        fmt::format("{}: {}\n", trimmed(run.program_file),
-                    run.stopped ? "STOPPED, not checked to its end" : verdict_text(run.verdict));
+    std::string text = fmt::format("{}: {}\n", trimmed(run.program_file), outcome_text(run));
     text += fmt::format("  findings   {}\n", counts_text(run));
     text += fmt::format("  blocks     {}, {} of them move; dialect {}\n", run.blocks.size(), moving,
                         gcode::dialect(run.dialect).name);

@@ -254,6 +254,21 @@ void look_for_judged_motions(CheckRun& run) {
     run.findings.push_back(finding);
 }
 
+/// Nobody shall take a program for checked whose motions were not looked at.
+void say_not_judged(CheckRun& run, const std::string& why) {
+    const auto moves = [](const CheckedBlock& block) {
+        return block.result.motion != core::BlockMotion::none;
+    };
+    if (why.empty() || std::none_of(run.blocks.begin(), run.blocks.end(), moves)) return;
+    core::Finding finding;
+    finding.rule = "undecided";
+    finding.severity = core::Severity::error;
+    finding.message = "The motions were not checked: " + why + ".";
+    finding.cure = "Check the program on the lathe's own control.";
+    run.verdict = std::max(run.verdict, core::Verdict::undecided);
+    run.findings.push_back(finding);
+}
+
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
     run.points = core::point_count(state.stock.lines);
@@ -315,6 +330,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     Runner{*program, file.environment, run, job.after_block, file.speed_by_hand}.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
+    say_not_judged(run, file.not_judged);
     run.stock = std::move(state->stock);
     if (!run.stopped && (job.needs_surface || run.setup.part))
         run.surface = core::stock_mesh(*run.stock);

@@ -5,20 +5,22 @@
 
 #include <fmt/format.h>
 
+#include "app/session/guessed_stock.h"
 #include "app/session/inferred_tools.h"
+#include "app/session/program_kind.h"
 #include "app/session/program_survey.h"
+#include "app/session/stated_stock.h"
+#include "app/session/uncut_plunge.h"
+#include "app/session/work_places.h"
 #include "app/tools/program_tools.h"
 
 namespace app {
 namespace {
 
-using core::Aabb;
 using core::ToolNumber;
 using core::Vec3;
 
 constexpr double zero_above_program = 500.0; // mm, of the machine
-constexpr double below_the_cuts = 2.0;       // mm of stock under the deepest cut
-constexpr double smallest_height = 1.0;
 
 /// A number that no tool has.
 ToolNumber free_number(const ProgramSurvey& seen) {
@@ -26,6 +28,16 @@ ToolNumber free_number(const ProgramSurvey& seen) {
     while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
         ++number;
     return ToolNumber{number};
+}
+
+/// A tool that is called a drill and cuts sideways is some mill of that width.
+FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
+    const auto use = seen.mills.find(tool.tool.number);
+    const bool mills = use != seen.mills.end() && use->second;
+    if (!mills || tool.tool.shape != core::ToolShape::drill || tool.tool.point_deg) return tool;
+    tool.tool.shape = core::ToolShape::flat;
+    tool.source += " and its use, as no drill cuts sideways";
+    return tool;
 }
 
 /// What is known of the tools that the program uses and the set-up has not.
@@ -45,7 +57,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
         if (found != offered.tools.end())
-            missing.push_back(found->second);
+            missing.push_back(file.is_inferred ? as_used(found->second, seen) : found->second);
         else if (file.is_inferred)
             missing.push_back(unknown_tool(number, mills(number), unit));
     }
@@ -99,51 +111,62 @@ SurveyTools sizes(const SetupFile& file, bool calls_tools) {
     return known;
 }
 
-/// Where the top of the material lies, and why, in the frame of the stock.
-struct Top {
-    double z = 0.0;
-    std::string why;
-};
-
-Top top_of(const ProgramSurvey& seen, double origin) {
-    constexpr double near = 2.0, share = 0.25; // how far above zero ramps and leads begin
-    const double lowest = seen.lowest - origin;
-    if (seen.retract && *seen.retract - origin < 0.0 && *seen.retract > seen.lowest)
-        return {*seen.retract - origin, "where rapids travel"};
-    if (!seen.cuts_sideways)
-        return lowest < 0.0 ? Top{0.0, "at Z0, where cuts go below it"}
-                            : Top{lowest + smallest_height, "just above the deepest feed"};
-    const double highest = seen.highest_cut - origin;
-    const bool at_zero = lowest < 0.0 && highest <= std::max(near, -share * lowest);
-    if (at_zero) return {0.0, "at Z0, where cuts go below it"};
-    return {highest, "at the highest cut"};
-}
-
-core::Result<std::vector<std::string>> complete_stock(SetupFile& file, const ProgramSurvey& seen) {
+/// Puts the stock where the program shows that it is, or says that it is.
+core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
+                                                      const gcode::Program& program,
+                                                      const ProgramSurvey& seen,
+                                                      const SurveyTools& tools) {
     if (!seen.feeds && !file.is_inferred)
         return core::fail(core::ErrorCode::invalid_value,
                           "[stock] is missing, and the program has no cutting move that it could "
                           "be inferred from");
-    const Vec3 origin = file.setup.stock_mount.link_from_body.translation;
+    const Vec3 frame = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
-    Aabb box{{-5, -5, -5}, {5, 5, 0}};
-    std::string why = "the program cuts nothing, so the stock is a cube of 10 mm at its zero";
-    if (seen.feeds) {
-        const Top top = top_of(seen, origin.z);
-        const Vec3 sides(margin, margin, 0.0);
-        box = {seen.cutting.min - origin - sides, seen.cutting.max - origin + sides};
-        box.min.z = seen.lowest - origin.z - std::max(margin, below_the_cuts);
-        box.max.z = std::max(top.z, box.min.z + smallest_height);
-        why = fmt::format("the stock is what the tools reach on cutting moves{}: X {:.3f} to "
-                          "{:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} ({:g} mm below the deepest cut) to "
-                          "{:.3f} ({})",
-                          margin > 0.0 ? fmt::format(" and {:g} mm around", margin) : "", box.min.x,
-                          box.max.x, box.min.y, box.max.y, box.min.z,
-                          std::max(margin, below_the_cuts), box.max.z, top.why);
+    const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
+    std::optional<core::Aabb> reach;
+    if (seen.feeds) reach = core::Aabb{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
+    const auto stated = file.is_inferred ? stated_stock(program, unit, reach) : std::nullopt;
+    GuessedStock stock;
+    if (stated) {
+        const Vec3 shift = seen.zero - frame;
+        stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
+                 fmt::format("the stock is the box of {}: {}", stated->source,
+                             box_text({stated->box.min + shift, stated->box.max + shift}))};
+    } else {
+        stock = guessed_stock(seen, frame, margin);
+        if (seen.feeds && file.is_inferred)
+            stock = guessed_stock(seen, frame, margin,
+                                  uncut_plunges(program, file.environment, tools, stock.box));
     }
     const double tolerance = file.setup.stock.tolerance;
-    file.setup.stock = {core::SolidBox{box}, tolerance};
-    return std::vector<std::string>{why};
+    file.setup.stock = {core::SolidBox{{stock.box.min - frame, stock.box.max - frame}}, tolerance};
+    return std::vector<std::string>{stock.why};
+}
+
+/// A program that cuts nothing that could be known: no stock is put where it moves.
+///
+/// Result: why, empty for all others.
+std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
+    if (!file.is_inferred) return std::nullopt;
+    std::string why;
+    if (const auto turning = turning_reason(program)) {
+        why =
+            fmt::format("this is a program for a lathe, because {}. Turning is not checked: there "
+                        "is no stock, and only what the codes themselves tell is judged",
+                        *turning);
+        file.not_judged = why;
+    } else if (const auto line = line_that_asks_for_places(program)) {
+        why =
+            fmt::format("line {} asks where the axes stand, so what is done depends on where they "
+                        "were jogged: no stock is assumed",
+                        *line);
+    } else {
+        return std::nullopt;
+    }
+    file.setup.rules["missing-length-offset"] = core::Severity::off;
+    file.setup.rules["tool-change-unsafe"] = core::Severity::off;
+    file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
+    return why;
 }
 
 /// What an operator does who runs such a program.
@@ -163,14 +186,17 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         "the program offsets no tool's length: the work offset is set again with every tool");
 }
 
-/// Large stocks take a coarser model, so that its memory stays that of an ordinary one.
+/// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small
+/// ones a finer one.
 void choose_mesh_size(SetupFile& file) {
-    constexpr double cells = 600.0, finest = 0.5;
+    constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
     const auto* box = std::get_if<core::SolidBox>(&file.setup.stock.shape);
     if (!file.is_inferred || !box) return;
     const Vec3 size = box->box.size();
     const double longest = std::max({size.x, size.y, size.z});
-    file.setup.mesh_size = std::max(finest, std::ceil(10.0 * longest / cells) / 10.0);
+    const double fine = std::ceil(longest / least_cells / finest) * finest; // of a small stock
+    file.setup.mesh_size =
+        std::max(std::min(usual, fine), std::ceil(10.0 * longest / cells) / 10.0);
 }
 
 } // namespace
@@ -186,10 +212,12 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
     for (size_t axis = 0; axis < 3; ++axis)
         if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
+    if (!file.environment.home) file.environment.home = gcode::AxisValues{};
     file.assumptions = notes;
     file.assumptions.push_back(
         fmt::format("no set-up: no fixtures, no limits of axes; all work offsets are at one place, "
-                    "and the machine's zero, where it starts, is {:g} mm above it",
+                    "and the machine's zero, where it starts and has its home, is {:g} mm above "
+                    "it",
                     zero_above_program));
     file.assumptions.push_back("every tool was touched off: the control knows its true length");
     return file;
@@ -212,20 +240,30 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
     put_tools(file, tools, first, 0.0);
-    if (file.is_inferred) assume_handwork(file, first);
-    if (!file.needs_stock && tools.empty()) return {};
-    const ProgramSurvey seen = survey(program, file.environment, sizes(file, first.calls_tools));
     std::vector<std::string> about_stock;
-    if (file.needs_stock) {
-        FEELER_TRY(about_stock, complete_stock(file, seen));
+    if (file.is_inferred) {
+        assume_handwork(file, first);
+        about_stock = move_apart(file.environment, first);
+    }
+    if (!file.needs_stock && tools.empty()) return {};
+    const SurveyTools known = sizes(file, first.calls_tools);
+    const auto place = file.is_inferred ? main_place(first) : std::nullopt;
+    const ProgramSurvey seen = survey(program, file.environment, known, place);
+    if (const auto why = leave_out_stock(file, program)) {
+        about_stock = {*why};
+    } else if (file.needs_stock) {
+        FEELER_TRY(const auto notes, complete_stock(file, program, seen, known));
+        about_stock.insert(about_stock.end(), notes.begin(), notes.end());
         choose_mesh_size(file);
     }
     // Flutes of which nothing is said are as long as the program needs them.
     const double top =
         core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
-    for (const std::vector<std::string>& notes : {put_tools(file, tools, first, deep), about_stock})
-        file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
+    std::vector<std::string> notes = put_tools(file, tools, first, deep);
+    if (!file.not_judged.empty()) notes.clear(); // mills that turn nothing
+    notes.insert(notes.end(), about_stock.begin(), about_stock.end());
+    file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
 }
 

@@ -17,7 +17,7 @@ void visit_events(const gcode::Program& program, const gcode::Environment& envir
         if (!block || !*block) return;
         for (const core::Event& event : gcode::lower(**block, lowering)) {
             if (const auto* change = std::get_if<core::ToolChange>(&event)) tool = change->tool;
-            visit({event, tool, (*block)->line, (*block)->is_cycle});
+            visit({event, tool, lowering.offsets, (*block)->line, (*block)->is_cycle});
         }
     }
 }

@@ -6,14 +6,16 @@
 #include "core/sim/event.h"
 #include "gcode/environment.h"
 #include "gcode/interpreter.h"
+#include "gcode/offsets.h"
 
 namespace app {
 
 /// What a program does next, as far as it can be read: one event of one block, the tool that is in
-/// the spindle, and the line it comes from.
+/// the spindle, the offsets that are in effect, and the line it comes from.
 struct ProgramEvent {
     const core::Event& event;
     std::optional<core::ToolNumber> tool;
+    const gcode::Offsets& offsets;
     uint32_t line = 0;
     bool is_cycle = false;
 };

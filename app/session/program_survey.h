@@ -10,6 +10,13 @@
 
 namespace app {
 
+/// What a program feeds in the coordinates of one work offset.
+struct WorkPlace {
+    core::Vec3 zero = core::Vec3(0.0); // of the program at the first feed, machine frame
+    core::Aabb reach;                  // of the tip
+    double way = 0.0;                  // of the tip, mm
+};
+
 /// What a program does as a whole, which its set-up can be guessed from.
 struct ProgramSurvey {
     std::vector<core::ToolNumber> tools; // in the order in which they are first called
@@ -22,10 +29,14 @@ struct ProgramSurvey {
     std::map<core::ToolNumber, double> control_lengths; // that are in effect as a tool first feeds
     std::map<core::ToolNumber, bool> mills; // of each tool that feeds: it feeds sideways
 
-    bool feeds = false;
-    core::Aabb cutting;       // of the tip on feeds below the retract plane; machine frame
-    double lowest = 0.0;      // where the tip feeds, machine Z
-    double highest_cut = 0.0; // of feeds sideways below the retract plane
+    std::map<size_t, WorkPlace> places; // of each work offset, 0 is G54, where it feeds
+    bool sets_offsets = false;          // writes a work offset that it then uses
+
+    core::Vec3 zero = core::Vec3(0.0); // of the place that is looked at, machine frame
+    bool feeds = false;                // there
+    core::Aabb cutting;                // of the tip on feeds below the retract plane; machine frame
+    double lowest = 0.0;               // where the tip feeds, machine Z
+    double highest_cut = 0.0;          // of feeds sideways below the retract plane
     bool cuts_sideways = false;
     std::optional<double> retract; // the height of most rapid travel
 };
@@ -35,7 +46,13 @@ struct SurveyTools {
     std::map<core::ToolNumber, double> lengths, radii; // those that are not there count as 0
 };
 
+/// The size of the tool that is in the spindle; the one without a number serves before any call.
+double size_of(const std::map<core::ToolNumber, double>& sizes,
+               const std::optional<core::ToolNumber>& tool);
+
+/// Looks at a whole program; at what it cuts only in the coordinates of the work offset `place`, if
+/// there is one.
 ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
-                     const SurveyTools& tools);
+                     const SurveyTools& tools, const std::optional<size_t>& place = {});
 
 } // namespace app

@@ -28,6 +28,7 @@ struct SetupFile {
     std::optional<double> stock_margin;            // round what is inferred
     bool speed_by_hand = false;                    // M3 turns the spindle without an S
     bool is_inferred = false;                      // no file: everything is
+    std::string not_judged;               // why the motions of the program are not; empty: they are
     std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
 };
 

@@ -1,5 +1,6 @@
 #include "app/tools/program_tools.h"
 
+#include <algorithm>
 #include <charconv>
 #include <deque>
 
@@ -65,8 +66,11 @@ struct Scan {
     bool calls_tools = false;
     size_t moves_since_call = 0;
 
+    std::vector<std::string> names{}; // of Siemens' T="NAME", as their numbers count
+
     void comment(const std::string& words, size_t line);
     void code(const std::string& code, size_t line);
+    void name(std::string_view text, size_t line);
     void note(int number, const ToolComment& comment, size_t line);
     std::optional<FoundTool> tool_of(const ToolComment& comment, size_t line) const;
     std::optional<FoundTool> best_waiting() const;
@@ -183,6 +187,28 @@ void Scan::code(const std::string& code, size_t line) {
     if (calls_tools) waiting.clear();
 }
 
+/// T="DRILL 8.5": the name says what the tool is. Names are numbered as they come, as the
+/// interpreter does.
+void Scan::name(std::string_view text, size_t line) {
+    const size_t at = text.find("T=\""), end = text.find('"', at + 3);
+    if (at == std::string_view::npos || end == std::string_view::npos) return;
+    if (text.substr(0, at).find(';') != std::string_view::npos) return;
+    const std::string called(text.substr(at + 3, end - at - 3));
+    if (called.empty() || std::all_of(called.begin(), called.end(), is_digit)) return;
+    if (std::find(names.begin(), names.end(), called) != names.end()) return;
+    names.push_back(called);
+    std::string words = called;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    ToolComment said;
+    said.text = read_tool_text(words, unit);
+    said.whole = said.text.shape && said.text.diameter;
+    auto tool = tool_of(said, line);
+    if (!tool) return;
+    tool->source = fmt::format("its name in line {}", line);
+    tool->tool.number = ToolNumber{static_cast<int>(names.size())};
+    found.tools.try_emplace(tool->tool.number, *tool);
+}
+
 /// G20, G70, G700 and the like in a block of code, or the unit of a Klartext program.
 std::optional<gcode::LengthUnit> unit_in(const std::string& code) {
     using gcode::LengthUnit;
@@ -209,6 +235,7 @@ ProgramTools tools_of_program(const gcode::Program& program, gcode::LengthUnit u
     Scan scan{unit};
     for (size_t line = 1; line <= program.line_count(); ++line) {
         const LineParts parts = parts_of_line(program.line(line));
+        scan.name(program.line(line), line);
         for (const std::string& comment : parts.comments) scan.comment(comment, line);
         if (!parts.code.empty()) scan.code(parts.code, line);
     }
