@@ -154,9 +154,12 @@ HWY_INLINE void add_level_across(const LevelLanes& level, const Row& u, double v
     const ProfileElement& e = level.element;
     const Row s = (c.side_is_u ? u : row_of(v)) - c.from_side;
     const Row z = (c.side_is_u ? row_of(v) : u) - c.from_z;
+    // The heights of the piece that come by: one, or a stretch on the way up or down.
+    const Row low = z - std::max(0.0, c.by_z), high = z - std::min(0.0, c.by_z);
     Moments at{row_of(0.0), row_of(1.0), {}};
     if (e.margin > 0.0) {
-        const Row rise = z - e.z0, under = (row_of(e.margin) - rise) * (rise + e.margin);
+        const Row off = most(most(low - e.z0, row_of(e.z0) - high), row_of(0.0));
+        const Row under = (row_of(e.margin) - off) * (off + e.margin);
         at.met = at_most(row_of(0.0), under);
         if (any(at.met))
             add_circles(c, s, root(under) + std::max(e.r0, e.r1),
@@ -164,9 +167,11 @@ HWY_INLINE void add_level_across(const LevelLanes& level, const Row& u, double v
         return;
     }
     const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
-    at.met = at_most(row_of(e.z0), z) & at_most(z, row_of(e.z1));
+    const Row lowest = most(low, row_of(e.z0)), highest = least(high, row_of(e.z1));
+    at.met = at_most(lowest, highest);
     if (any(at.met))
-        add_circles(c, s, (z - e.z0) * slope + e.r0, row_of(1.0 / (1.0 + slope * slope)), at, all);
+        add_circles(c, s, ((slope > 0.0 ? highest : lowest) - e.z0) * slope + e.r0,
+                    row_of(1.0 / (1.0 + slope * slope)), at, all);
 }
 
 HWY_INLINE void add_level_along(const LevelLanes& level, const Row& u, double v, Swept& all) {
@@ -179,12 +184,14 @@ HWY_INLINE void add_level_along(const LevelLanes& level, const Row& u, double v,
     const Row past = g - within_move(g * c.per_length) * c.length;
     const Row away = root(aside * aside + past * past);
     const RowMask met = at_most(away, row_of(c.radius));
+    const double lowest = c.from_a + std::min(0.0, c.by_a);
+    const double highest = c.from_a + std::max(0.0, c.by_a);
     if (e.margin > 0.0) {
         const Row beyond = most(away - std::max(e.r0, e.r1), row_of(0.0));
         const Row half = root((row_of(e.margin) - beyond) * (beyond + e.margin));
         const Row facing = half * half * (1.0 / (e.margin * e.margin));
-        unite_low(all, met, row_of(c.from_a + e.z0) - half, facing);
-        unite_high(all, met, half + (c.from_a + e.z0), facing);
+        unite_low(all, met, row_of(lowest + e.z0) - half, facing);
+        unite_high(all, met, half + (highest + e.z0), facing);
         return;
     }
     const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
@@ -192,9 +199,10 @@ HWY_INLINE void add_level_along(const LevelLanes& level, const Row& u, double v,
     const Row inside = least(most(slant, row_of(e.z0)), row_of(e.z1));
     const Row leans = row_of(slope * slope / (1.0 + slope * slope));
     const Row facing = choose(at_most(slant, inside) & at_most(inside, slant), leans, row_of(1.0));
-    const Row end = inside + c.from_a, face = row_of(c.from_a + (slope > 0.0 ? e.z1 : e.z0));
-    unite_low(all, met, slope > 0.0 ? end : face, slope > 0.0 ? facing : row_of(1.0));
-    unite_high(all, met, slope > 0.0 ? face : end, slope > 0.0 ? row_of(1.0) : facing);
+    const Row flat = row_of(1.0);
+    const bool widens = slope > 0.0;
+    unite_low(all, met, (widens ? inside : row_of(e.z0)) + lowest, widens ? facing : flat);
+    unite_high(all, met, (widens ? row_of(e.z1) : inside) + highest, widens ? flat : facing);
 }
 
 HWY_INLINE void add_level(const LanePlan& plan, const LevelLanes& level, const Row& u, double v,

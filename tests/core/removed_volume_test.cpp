@@ -41,6 +41,25 @@ TEST(RemovedVolume, IsThatOfARoundHole) {
         }
 }
 
+TEST(RemovedVolume, IsThatOfADrilledHole) {
+    std::mt19937 rng(905);
+    std::uniform_real_distribution<double> place(9.0, 11.0);
+    for (double diameter = 3.0; diameter <= 12.0; diameter += 0.5)
+        for (int i = 0; i < 3; ++i) {
+            CutModel model = block_anywhere(rng, {20, 20, 25});
+            const double r = 0.5 * diameter, tip = r / std::tan(59.0 * pi / 180.0);
+            const RevolvedProfile drill{{{0, 0, tip, r, 0}, {tip, r, 50, r, 0}}};
+            const Vec3 at(place(rng), place(rng), 0.0);
+            const double depth = tip + place(rng);
+            double removed = 0.0;
+            for (int peck = 1; peck <= 3; ++peck)
+                removed += cut(model, {cutter(drill), at + Vec3(0, 0, 1),
+                                       at - Vec3(0, 0, depth * peck / 3.0)});
+            const double truth = pi * r * r * (depth - tip * 2.0 / 3.0);
+            EXPECT_NEAR(removed, truth, share * truth) << diameter << ' ' << i;
+        }
+}
+
 TEST(RemovedVolume, IsThatOfASlotInAnyDirection) {
     std::mt19937 rng(902);
     std::uniform_real_distribution<double> place(-0.5, 0.5), turn(0.0, 2.0 * pi), width(3.0, 9.0);
