@@ -72,6 +72,7 @@ struct BlockRun {
     void watch_centre(const Motion& motion, const Leg& leg);
     Finding finding_about(const PairClearance& pair) const;
     void check_tool_change();
+    void forget_bounds();
     void check_limits(const Motion& motion);
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
@@ -133,6 +134,7 @@ void BlockRun::carry_out(const Motion& motion) {
                                  "speed is not stated");
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
+    if (motion.from != state.position) forget_bounds();
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
@@ -185,6 +187,11 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
     return finding;
 }
 
+void BlockRun::forget_bounds() {
+    state.memory.bounds.clear();
+    for (PairClearance& pair : result.pairs) pair.at_end = -infinity;
+}
+
 void BlockRun::move_without_tool(const Motion& motion) {
     if (!state.tool && (state.tool_known || motion.kind == MotionKind::rapid)) {
         if (!state.tool_known)
@@ -206,6 +213,7 @@ void BlockRun::move_without_tool(const Motion& motion) {
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
+    forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
     state.told_unchecked_tool = false;
@@ -219,6 +227,7 @@ void BlockRun::carry_out(const ToolChange& change) {
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
+    forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
@@ -250,7 +259,9 @@ void settle_time(BlockRun& run, PairClearance& pair) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
-        const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
+        const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
+        const double share =
+            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
     }
@@ -266,6 +277,17 @@ void BlockRun::conclude() {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
         settle_time(*this, result.pairs[*result.deciding]);
         result.verdict = worst->verdict;
+    }
+    if (result.motion != BlockMotion::none) {
+        CheckMemory& memory = state.memory;
+        memory.bounds.clear();
+        for (const PairClearance& pair : result.pairs)
+            memory.bounds.push_back({pair.pair, pair.at_end});
+        memory.deciding.reset();
+        if (result.deciding) {
+            memory.deciding = result.pairs[*result.deciding].pair;
+            memory.margin = result.pairs[*result.deciding].margin();
+        }
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear) add(finding_about(pair));
