@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/tool_holder.h"
+#include "core/sim/centre_watch.h"
 
 namespace app {
 namespace {
@@ -47,9 +48,10 @@ void note_what_is_open(const core::ToolDescription& tool, std::vector<std::strin
         notes.push_back(fmt::format(
             "tool {} has no holder in the set-up: only what is described is checked", number));
     if (!tool.cuts_at_centre)
-        notes.push_back(fmt::format("tool {} does not cut within {:g} mm of its axis; this version "
-                                    "cuts as if it did",
-                                    number, tool.centre_radius));
+        notes.push_back(
+            fmt::format("tool {} does not cut within {:g} mm of its axis, where its face "
+                        "is taken to stand back by {:.3g} mm",
+                        number, tool.centre_radius, core::centre_recess(tool)));
     if (tool.shape == core::ToolShape::threadmill && !tool.pitch)
         notes.push_back(fmt::format("tool {} has no pitch: it cuts as the cylinder round its "
                                     "crests, so the threads are gone after it",

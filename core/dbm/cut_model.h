@@ -45,8 +45,8 @@ Result<CutModel> make_cut_model(Solid solid, double spacing,
 
 /// Removes what one move of a cutter sweeps, and returns the volume, mm3.
 ///
-/// The volume is h^2 times the length that all lines lost, less 2 h^3 for every grid point, through
-/// which three lines run: additive over cuts, and true to first order for faces of any direction.
+/// The volume counts grid points and what ends lie beyond their cells, weighed by the normals there
+/// (README.md, "Volume"): additive over cuts, and true to first order for faces of any direction.
 /// One small cut alone may come out below 0; such a remainder is taken off the next ones, so that
 /// nothing that is reported is negative and all of it adds up.
 double cut(CutModel& model, const CutterSweep& sweep);

@@ -84,7 +84,7 @@ void fit_when_many_are_stale(CutModel& model) {
 /// What is to be reported of a volume that has been removed.
 double reported(CutModel& model, const LineSums& sums) {
     const double h = model.lines.grid.spacing;
-    model.volume_owed += h * h * sums.length - 2.0 * h * h * h * sums.points;
+    model.volume_owed += h * h * (sums.beyond + h * sums.points);
     const double now = std::max(0.0, model.volume_owed);
     model.volume_owed -= now;
     return now;
@@ -143,7 +143,7 @@ private:
         });
         std::vector<LineSums> sums(ready_.size());
         for (const KeptOutcome& one : all) {
-            sums[one.sweep].length += one.outcome.removed.length;
+            sums[one.sweep].beyond += one.outcome.removed.beyond;
             sums[one.sweep].points += one.outcome.removed.points;
             boxes_of(model_, one.family).note(one.tile, one.outcome.blocks);
         }
@@ -167,7 +167,7 @@ double cut(CutModel& model, const CutterSweep& sweep) {
         cut_tiles(
             model, *ready, [](int, size_t) { return true; },
             [&](int family, size_t tile, const TileOutcome& outcome) {
-                sums.length += outcome.removed.length;
+                sums.beyond += outcome.removed.beyond;
                 sums.points += outcome.removed.points;
                 boxes_of(model, family).note(tile, outcome.blocks);
             });

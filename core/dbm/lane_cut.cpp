@@ -7,322 +7,18 @@
 #include <hwy/foreach_target.h> // includes this file once for each instruction set
 #include <hwy/highway.h>
 
+#include "core/dbm/lane_stretch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace core {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr size_t side = ScanTile::side;
-
-using Tag = hn::CappedTag<double, 8>;
-using Vec = hn::Vec<Tag>;
-using Mask = hn::Mask<Tag>;
-
-constexpr size_t lanes = hn::MaxLanes(Tag());
-constexpr size_t vectors = side / lanes;
-
-/// A number for each line of a row. Each operation is done for the whole row before the next one,
-/// so that none of them waits for the one before.
-struct Row {
-    Vec part[vectors];
-};
-struct RowMask {
-    Mask part[vectors];
-};
-
-template <typename Out, typename Act>
-HWY_INLINE Out each(const Act& act) {
-    Out out;
-    for (size_t k = 0; k < vectors; ++k) out.part[k] = act(k);
-    return out;
-}
-
-HWY_INLINE Vec set(double x) { return hn::Set(Tag(), x); }
-HWY_INLINE Row row_of(double x) {
-    return each<Row>([&](size_t) HWY_ATTR { return set(x); });
-}
-HWY_INLINE Row load(const double* from) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::LoadU(Tag(), from + k * lanes); });
-}
-HWY_INLINE void store(const Row& row, double* to) {
-    for (size_t k = 0; k < vectors; ++k) hn::StoreU(row.part[k], Tag(), to + k * lanes);
-}
-HWY_INLINE Row operator+(const Row& a, const Row& b) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Add(a.part[k], b.part[k]); });
-}
-HWY_INLINE Row operator-(const Row& a, const Row& b) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Sub(a.part[k], b.part[k]); });
-}
-HWY_INLINE Row operator*(const Row& a, const Row& b) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Mul(a.part[k], b.part[k]); });
-}
-HWY_INLINE Row operator+(const Row& a, double b) { return a + row_of(b); }
-HWY_INLINE Row operator-(const Row& a, double b) { return a - row_of(b); }
-HWY_INLINE Row operator*(const Row& a, double b) { return a * row_of(b); }
-HWY_INLINE Row least(const Row& a, const Row& b) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Min(a.part[k], b.part[k]); });
-}
-HWY_INLINE Row most(const Row& a, const Row& b) {
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Max(a.part[k], b.part[k]); });
-}
-HWY_INLINE Row root(const Row& x) {
-    return each<Row>([&](size_t k)
-                         HWY_ATTR { return hn::Sqrt(hn::Max(x.part[k], hn::Zero(Tag()))); });
-}
-/// A root good to seven digits, for what need not be exact: half the cost.
-HWY_INLINE Row rough_root(const Row& x) {
-    const hn::Rebind<float, Tag> f;
-    return each<Row>([&](size_t k) HWY_ATTR {
-        const Vec positive = hn::Max(x.part[k], hn::Zero(Tag()));
-        return hn::PromoteTo(Tag(), hn::Sqrt(hn::DemoteTo(f, positive)));
-    });
-}
-HWY_INLINE Row within_move(const Row& t) { return least(most(t, row_of(0.0)), row_of(1.0)); }
-HWY_INLINE RowMask at_most(const Row& a, const Row& b) {
-    return each<RowMask>([&](size_t k) HWY_ATTR { return hn::Le(a.part[k], b.part[k]); });
-}
-HWY_INLINE RowMask below(const Row& a, const Row& b) {
-    return each<RowMask>([&](size_t k) HWY_ATTR { return hn::Lt(a.part[k], b.part[k]); });
-}
-HWY_INLINE RowMask operator&(const RowMask& a, const RowMask& b) {
-    return each<RowMask>([&](size_t k) HWY_ATTR { return hn::And(a.part[k], b.part[k]); });
-}
-HWY_INLINE RowMask operator|(const RowMask& a, const RowMask& b) {
-    return each<RowMask>([&](size_t k) HWY_ATTR { return hn::Or(a.part[k], b.part[k]); });
-}
-HWY_INLINE RowMask but_not(const RowMask& a, const RowMask& b) {
-    return each<RowMask>([&](size_t k) HWY_ATTR { return hn::AndNot(b.part[k], a.part[k]); });
-}
-HWY_INLINE Row choose(const RowMask& mask, const Row& yes, const Row& no) {
-    return each<Row>(
-        [&](size_t k) HWY_ATTR { return hn::IfThenElse(mask.part[k], yes.part[k], no.part[k]); });
-}
-HWY_INLINE uint32_t bits_of(const RowMask& mask) {
-    uint32_t all = 0;
-    for (size_t k = 0; k < vectors; ++k) {
-        uint8_t byte = 0; // eight lanes at most
-        hn::StoreMaskBits(Tag(), mask.part[k], &byte);
-        all |= (byte & ((1U << lanes) - 1U)) << (k * lanes);
-    }
-    return all;
-}
-HWY_INLINE bool any(const RowMask& mask) {
-    Mask found = mask.part[0];
-    for (size_t k = 1; k < vectors; ++k) found = hn::Or(found, mask.part[k]);
-    return !hn::AllFalse(Tag(), found);
-}
-HWY_INLINE RowMask mask_of(uint32_t bits) {
-    return each<RowMask>([&](size_t k) HWY_ATTR {
-        const uint8_t bytes[8] = {
-            static_cast<uint8_t>((bits >> (k * lanes)) & ((1U << lanes) - 1U))};
-        return hn::LoadMaskBits(Tag(), bytes);
-    });
-}
-
-struct Stretch {
-    Row lower, upper;
-};
-
-HWY_INLINE Stretch no_stretch() { return {row_of(infinity), row_of(-infinity)}; }
-
-HWY_INLINE void unite(Stretch& all, const RowMask& valid, const Row& lower, const Row& upper) {
-    all.lower = least(all.lower, choose(valid, lower, row_of(infinity)));
-    all.upper = most(all.upper, choose(valid, upper, row_of(-infinity)));
-}
-
-/// Where lines lie, seen along them, from the path of a capsule.
-struct Beside {
-    Row g, beyond; // along the path; w^2
-    RowMask met;
-};
-
-HWY_INLINE Beside beside(const CapsuleLanes& c, const Row& u, double v) {
-    const Row ou = u - c.from_u;
-    const double ov = v - c.from_v;
-    const Row g = ou * c.cos_u + ov * c.cos_v;
-    const Row e = ou * c.cos_v - ov * c.cos_u;
-    const Row beyond = (row_of(c.radius) - e) * (e + c.radius);
-    const Row past = g - within_move(g * c.per_length) * c.length;
-    return {g, beyond, at_most(past * past, beyond)};
-}
-
-HWY_INLINE Row moment(const CapsuleLanes& c, const Beside& at, const Row& half, double by_half,
-                      double offset) {
-    return within_move(at.g * c.per_length + half * by_half + offset);
-}
-
-HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Stretch& all) {
-    const Beside at = beside(c, u, v);
-    const auto deep = [&](const Row& t) HWY_ATTR {
-        const Row past = at.g - t * c.length;
-        return root(at.beyond - past * past);
-    };
-    // Where the surface is lowest or highest, a little off in time is nothing in height.
-    const Row half = rough_root(at.beyond);
-    const Row t = moment(c, at, half, c.low_by_half, c.low_at);
-    const Row low = t * c.by_a + c.from_a - deep(t);
-    if (c.opens_up) {
-        unite(all, at.met, low, row_of(c.high_end));
-        return;
-    }
-    const Row last = moment(c, at, half, c.high_by_half, c.high_at);
-    unite(all, at.met, low, last * c.by_a + c.from_a + deep(last));
-}
-
-HWY_INLINE void add_upright(const CapsuleLanes& c, const Row& u, double v, Stretch& all) {
-    const Beside at = beside(c, u, v);
-    const Row half = root(at.beyond);
-    const Row low = moment(c, at, half, c.low_by_half, c.low_at) * c.by_a + (c.from_a + c.low_end);
-    if (c.opens_up) {
-        unite(all, at.met, low, row_of(c.high_end));
-        return;
-    }
-    const Row last = moment(c, at, half, c.high_by_half, c.high_at);
-    unite(all, at.met, low, last * c.by_a + (c.from_a + c.high_end));
-}
-
-/// Moments of a move, first .. last for each line, while `met`.
-struct Moments {
-    Row first, last;
-    RowMask met;
-};
-
-/// Narrows the moments to those at which a point that moves evenly, and stands at `offset` from it,
-/// lies within low .. high; `per` is 1 / its way.
-HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, double per,
-                       Moments& at) {
-    const Row one = (offset - low) * per, other = (offset - high) * per;
-    at.first = most(at.first, least(one, other));
-    at.last = least(at.last, most(one, other));
-}
-
-/// Circles of these radii, a line at `s` beside each, during these moments.
-HWY_INLINE void add_circles(const AcrossLanes& c, const Row& s, const Row& radius, Moments at,
-                            Stretch& all) {
-    const Row other_side = row_of(0.0) - radius;
-    if (c.per_side == 0.0)
-        at.met = at.met & at_most(other_side, s) & at_most(s, radius);
-    else
-        narrow(s, other_side, radius, c.per_side, at);
-    const RowMask met = at.met & at_most(at.first, at.last);
-    if (!any(met)) return;
-    const auto half = [&](const Row& t) HWY_ATTR {
-        const Row aside = s - t * c.by_side;
-        return root((radius - aside) * (aside + radius));
-    };
-    const Row touching = s * c.per_side, shift = radius * c.by_radius;
-    const Row low = least(most(touching + c.low_at - shift, at.first), at.last);
-    const Row high = least(most(touching + c.high_at + shift, at.first), at.last);
-    unite(all, met, low * c.by_a + c.from_a - half(low), high * c.by_a + c.from_a + half(high));
-}
-
-HWY_INLINE void add_across(const AcrossLanes& c, const Row& u, double v, Stretch& all) {
-    const Row s = (c.side_is_u ? u : row_of(v)) - c.from_side;
-    const Row z = (c.side_is_u ? row_of(v) : u) - c.from_z;
-    Moments at{row_of(0.0), row_of(1.0), {}};
-    if (c.per_z == 0.0) {
-        at.met = at_most(row_of(c.z0 + std::min(0.0, c.by_z)), z)
-                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z)));
-    } else {
-        at.met = at_most(at.first, at.last);
-        narrow(z, row_of(c.z0), row_of(c.z1), c.per_z, at);
-    }
-    add_circles(c, s, row_of(c.radius), at, all);
-}
-
-HWY_INLINE void add_level_across(const LevelLanes& level, const Row& u, double v, Stretch& all) {
-    const AcrossLanes& c = level.across;
-    const ProfileElement& e = level.element;
-    const Row s = (c.side_is_u ? u : row_of(v)) - c.from_side;
-    const Row z = (c.side_is_u ? row_of(v) : u) - c.from_z;
-    Moments at{row_of(0.0), row_of(1.0), {}};
-    if (e.margin > 0.0) {
-        const Row rise = z - e.z0, under = (row_of(e.margin) - rise) * (rise + e.margin);
-        at.met = at_most(row_of(0.0), under);
-        if (any(at.met)) add_circles(c, s, root(under) + std::max(e.r0, e.r1), at, all);
-        return;
-    }
-    const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
-    at.met = at_most(row_of(e.z0), z) & at_most(z, row_of(e.z1));
-    if (any(at.met)) add_circles(c, s, (z - e.z0) * slope + e.r0, at, all);
-}
-
-HWY_INLINE void add_level_along(const LevelLanes& level, const Row& u, double v, Stretch& all) {
-    const CapsuleLanes& c = level.path;
-    const ProfileElement& e = level.element;
-    const Row ou = u - c.from_u;
-    const double ov = v - c.from_v;
-    const Row g = ou * c.cos_u + row_of(ov * c.cos_v);
-    const Row aside = ou * c.cos_v - row_of(ov * c.cos_u);
-    const Row past = g - within_move(g * c.per_length) * c.length;
-    const Row away = root(aside * aside + past * past);
-    const RowMask met = at_most(away, row_of(c.radius));
-    if (e.margin > 0.0) {
-        const Row beyond = most(away - std::max(e.r0, e.r1), row_of(0.0));
-        const Row half = root((row_of(e.margin) - beyond) * (beyond + e.margin));
-        unite(all, met, row_of(c.from_a + e.z0) - half, half + (c.from_a + e.z0));
-        return;
-    }
-    const Row slant = (away - e.r0) * ((e.z1 - e.z0) / (e.r1 - e.r0)) + e.z0;
-    const Row end = least(most(slant, row_of(e.z0)), row_of(e.z1)) + c.from_a;
-    if (e.r1 > e.r0)
-        unite(all, met, end, row_of(c.from_a + e.z1));
-    else
-        unite(all, met, row_of(c.from_a + e.z0), end);
-}
-
-HWY_INLINE void add_level(const LanePlan& plan, const LevelLanes& level, const Row& u, double v,
-                          Stretch& all) {
-    if (plan.axis == 2)
-        add_level_along(level, u, v, all);
-    else
-        add_level_across(level, u, v, all);
-}
-
-/// Line by line, for shapes and moves that have no lanes of their own.
-Stretch stretches_one_by_one(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
-    RowStretches out;
-    for (size_t i = 0; i < side; ++i) {
-        const bool asked = (wanted >> i) & 1U;
-        const auto found =
-            asked ? line_interval(*plan.piece, *plan.sweep, plan.axis, u[i], v) : std::nullopt;
-        out.lower[i] = found ? found->lower : infinity;
-        out.upper[i] = found ? found->upper : -infinity;
-    }
-    return {load(out.lower.data()), load(out.upper.data())};
-}
-
-/// Ends are put on a lattice of 2.3e-10 mm: two moves that leave the same surface then leave the
-/// same bits, and neither cuts a rounding error from the other's.
-HWY_INLINE Row on_lattice(const Row& x) {
-    constexpr double per_mm = 4294967296.0; // 2^32
-    const Row scaled = x * per_mm;
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Round(scaled.part[k]); }) * (1.0 / per_mm);
-}
-
-/// What the plan sweeps on a row of lines; those that are not wanted may come out empty.
-HWY_INLINE Stretch stretches_of(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
-    Stretch all = plan.by_lanes ? no_stretch() : stretches_one_by_one(plan, u, v, wanted);
-    const Row at_u = load(u);
-    for (size_t i = 0; i < plan.balls; ++i) {
-        const CapsuleLanes& c = plan.ball[i];
-        if (u[0] <= c.u_most && v <= c.v_most) add_ball(c, at_u, v, all);
-    }
-    for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
-    for (size_t i = 0; i < plan.across; ++i) add_across(plan.beside[i], at_u, v, all);
-    for (size_t i = 0; i < plan.levels; ++i) add_level(plan, plan.level[i], at_u, v, all);
-    return {on_lattice(all.lower), on_lattice(all.upper)};
-}
-
 HWY_ATTR void stretches(const LanePlan& plan, const double* u, double v, uint32_t wanted,
                         RowStretches& out) {
-    const Stretch found = stretches_of(plan, u, v, wanted);
+    const Stretch found = swept_of(plan, u, v, wanted).ends;
     store(found.lower, out.lower.data());
     store(found.upper, out.upper.data());
 }
-
 HWY_ATTR void shared(const RowStretches& front, const RowStretches& back, const Interval& front_end,
                      const Interval& back_end, double less, RowStretches& out) {
     // One corner farther on, with the end of the row in the last place.
@@ -379,20 +75,48 @@ HWY_INLINE uint32_t lines_overlapping(const ScanTile& tile, size_t place, const 
     return found;
 }
 
-/// How many of the grid's coordinates along Z lie below x, or up to x.
-HWY_INLINE Row points_below(const ScanGrid& grid, const Row& x, bool itself) {
-    const double half = grid.half_count[2];
+/// An end of matter as volume counts it: how many of the grid's coordinates lie below, and how far
+/// it is above the border half way to the next one.
+struct Counted {
+    Row points, beyond;
+};
+
+/// Of coordinates that lie on an end, an upper one leaves them out and a lower one, too.
+HWY_INLINE Counted counted(const TileTask& task, const Row& x, const RowMask& is_upper) {
+    const ScanGrid& grid = *task.grid;
+    const double half = grid.half_count[static_cast<size_t>(task.axis)];
+    const double centre = grid.centre[task.axis];
     // Half way between two points either of them serves.
-    const Row near = (x - grid.centre.z) * (1.0 / grid.spacing) + (half - 0.5);
+    const Row near = (x - centre) * (1.0 / grid.spacing) + (half - 0.5);
     const Row index = each<Row>([&](size_t k) HWY_ATTR { return hn::Round(near.part[k]); });
-    const Row there = row_of(grid.centre.z) + (index - half + 0.5) * grid.spacing;
-    const RowMask counts = itself ? at_most(there, x) : below(there, x);
-    return index + choose(counts, row_of(1.0), row_of(0.0));
+    const Row there = row_of(centre) + (index - half + 0.5) * grid.spacing;
+    const RowMask counts = below(there, x) | but_not(at_most(there, x), is_upper);
+    const Row points = index + choose(counts, row_of(1.0), row_of(0.0));
+    return {points, x - (row_of(centre) + (points - half) * grid.spacing)};
 }
 
-HWY_INLINE Row points_between(const ScanGrid& grid, const Stretch& s) {
-    return most(points_below(grid, s.upper, false) - points_below(grid, s.lower, true),
-                row_of(0.0));
+/// What an end weighs, from how it is kept and back.
+HWY_INLINE Row facing_of(const uint8_t* tilts) {
+    const Row tilt = each<Row>([&](size_t k) HWY_ATTR {
+        const hn::Rebind<uint8_t, Tag> bytes;
+        const hn::Rebind<int32_t, Tag> words;
+        return hn::PromoteTo(Tag(), hn::PromoteTo(words, hn::LoadU(bytes, tilts + k * lanes)));
+    });
+    return row_of(1.0) - tilt * (1.0 / ScanTile::steepest);
+}
+HWY_INLINE Row tilt_of(const Row& facing) {
+    const Row tilt = (row_of(1.0) - facing) * static_cast<double>(ScanTile::steepest);
+    return each<Row>([&](size_t k) HWY_ATTR { return hn::Round(tilt.part[k]); });
+}
+HWY_INLINE void keep_tilts(uint8_t* tilts, const RowMask& which, const Row& tilt) {
+    for (size_t k = 0; k < vectors; ++k) {
+        const hn::Rebind<uint8_t, Tag> bytes;
+        const hn::Rebind<int32_t, Tag> words;
+        const Vec old =
+            hn::PromoteTo(Tag(), hn::PromoteTo(words, hn::LoadU(bytes, tilts + k * lanes)));
+        const Vec now = hn::IfThenElse(which.part[k], tilt.part[k], old);
+        hn::StoreU(hn::DemoteTo(bytes, hn::DemoteTo(words, now)), bytes, tilts + k * lanes);
+    }
 }
 
 HWY_INLINE void add_to(std::array<double, side>& sums, const RowMask& where, const Row& what) {
@@ -409,25 +133,44 @@ HWY_INLINE void set_marks(uint32_t* marks, uint32_t which, uint32_t mark) {
     }
 }
 
+/// Counts what goes when the intervals of a layer are shortened.
+HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t place,
+                      const Stretch& old, const Swept& gone, const RowMask& wanted,
+                      const RowMask& from_below, const RowMask& from_above, TileCut& done) {
+    const Row low = row_of(1.0) - tilt_of(gone.low_facing) * (1.0 / ScanTile::steepest);
+    const Row high = row_of(1.0) - tilt_of(gone.high_facing) * (1.0 / ScanTile::steepest);
+    // What goes ends above at an old upper end or where a new lower one is made, below likewise.
+    const Counted upper = counted(task, choose(from_above, old.upper, gone.ends.upper), from_above);
+    const Counted lower =
+        counted(task, choose(from_below, old.lower, gone.ends.lower), but_not(wanted, from_below));
+    const Row upper_facing = choose(from_above, facing_of(&marks.upper_tilt[place]), high);
+    const Row lower_facing = choose(from_below, facing_of(&marks.lower_tilt[place]), low);
+    add_to(done.beyond, wanted, upper.beyond * upper_facing - lower.beyond * lower_facing);
+    if (task.axis == 2) add_to(done.points, wanted, upper.points - lower.points);
+}
+
 /// Shortens the intervals of a layer; those in `wanted` keep one end, or go.
 HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t place,
-                     const Stretch& gone, const RowMask& wanted, TileCut& done) {
+                     const Swept& gone, const RowMask& wanted, TileCut& done) {
     const Stretch old = matter_of(tile, k, place);
-    const RowMask from_below = wanted & at_most(gone.lower, old.lower);
-    const RowMask from_above = wanted & at_most(old.upper, gone.upper);
+    const RowMask from_below = wanted & at_most(gone.ends.lower, old.lower);
+    const RowMask from_above = wanted & at_most(old.upper, gone.ends.upper);
     const RowMask whole = from_below & from_above;
-    const Stretch now{choose(whole, row_of(infinity), choose(from_below, gone.upper, old.lower)),
-                      choose(whole, row_of(-infinity), choose(from_above, gone.lower, old.upper))};
-    store(now.lower, &tile.layers[k].lower[place]);
-    store(now.upper, &tile.layers[k].upper[place]);
-    add_to(done.length, wanted, least(old.upper, gone.upper) - most(old.lower, gone.lower));
-    if (task.count_points != nullptr) {
-        const Row left = choose(whole, row_of(0.0), points_between(*task.count_points, now));
-        add_to(done.points, wanted, points_between(*task.count_points, old) - left);
-    }
+    store(choose(whole, row_of(infinity), choose(from_below, gone.ends.upper, old.lower)),
+          &tile.layers[k].lower[place]);
+    store(choose(whole, row_of(-infinity), choose(from_above, gone.ends.lower, old.upper)),
+          &tile.layers[k].upper[place]);
     if (tile.marks.empty()) return;
-    if (any(from_below)) set_marks(&tile.marks[k].lower[place], bits_of(from_below), task.mark);
-    if (any(from_above)) set_marks(&tile.marks[k].upper[place], bits_of(from_above), task.mark);
+    ScanTile::Marks& marks = tile.marks[k];
+    count(task, marks, place, old, gone, wanted, from_below, from_above, done);
+    if (any(from_below)) {
+        set_marks(&marks.lower[place], bits_of(from_below), task.mark);
+        keep_tilts(&marks.lower_tilt[place], from_below, tilt_of(gone.high_facing));
+    }
+    if (any(from_above)) {
+        set_marks(&marks.upper[place], bits_of(from_above), task.mark);
+        keep_tilts(&marks.upper_tilt[place], from_above, tilt_of(gone.low_facing));
+    }
 }
 
 void note_blocks(TileCut& done, size_t place, uint32_t changed) {
@@ -436,35 +179,39 @@ void note_blocks(TileCut& done, size_t place, uint32_t changed) {
         if ((changed & 15U) != 0) done.blocks |= 1U << (row / 4 * 4 + group);
 }
 
-void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Stretch& gone) {
-    RowStretches out;
-    store(gone.lower, out.lower.data());
-    store(gone.upper, out.upper.data());
+void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone) {
+    RowStretches out, tilts;
+    store(gone.ends.lower, out.lower.data());
+    store(gone.ends.upper, out.upper.data());
+    store(tilt_of(gone.low_facing), tilts.lower.data());
+    store(tilt_of(gone.high_facing), tilts.upper.data());
     for (; hard != 0; hard &= hard - 1) {
         const auto i = static_cast<size_t>(std::countr_zero(hard));
-        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i), out.lower[i],
-                                              out.upper[i]};
+        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i),
+                                              {out.lower[i], out.upper[i]},
+                                              static_cast<uint8_t>(tilts.lower[i]),
+                                              static_cast<uint8_t>(tilts.upper[i])};
     }
 }
 
 /// Takes stretches out of a row of lines, where the layers hold matter.
 HWY_INLINE void take_row(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
-                         const Stretch& gone, TileCut& done) {
+                         const Swept& gone, TileCut& done) {
     RowMask hard = below(row_of(1.0), row_of(0.0));
     RowMask met = hard;
     const bool many = tile.layers.size() > 1;
     for_layers(tile, layers, [&](size_t k) HWY_ATTR {
         const Stretch old = matter_of(tile, k, place);
-        const RowMask over = overlap(old, gone);
-        const RowMask from_below = at_most(gone.lower, old.lower);
-        const RowMask from_above = at_most(old.upper, gone.upper);
+        const RowMask over = overlap(old, gone.ends);
+        const RowMask from_below = at_most(gone.ends.lower, old.lower);
+        const RowMask from_above = at_most(old.upper, gone.ends.upper);
         met = met | over;
         hard = hard | but_not(over, from_below | from_above);
         if (many) hard = hard | (over & from_below & from_above);
     });
     if (!any(met)) return;
     for_layers(tile, layers, [&](size_t k) HWY_ATTR {
-        const RowMask wanted = but_not(overlap(matter_of(tile, k, place), gone), hard);
+        const RowMask wanted = but_not(overlap(matter_of(tile, k, place), gone.ends), hard);
         if (any(wanted)) trim(task, tile, k, place, gone, wanted, done);
     });
     if (any(hard)) note_by_hand(done, place, bits_of(hard), gone);
@@ -488,7 +235,7 @@ HWY_ATTR bool changes(const LanePlan& plan, const TileTask& task, const ScanTile
     for_rows_with_matter(task, tile, [&](int row, size_t place, uint32_t) HWY_ATTR {
         if (found) return;
         const double v = task.v[static_cast<size_t>(row)];
-        found = lines_overlapping(tile, place, stretches_of(plan, task.u, v, task.lanes)) != 0;
+        found = lines_overlapping(tile, place, swept_of(plan, task.u, v, task.lanes).ends) != 0;
     });
     return found;
 }
@@ -496,7 +243,7 @@ HWY_ATTR bool changes(const LanePlan& plan, const TileTask& task, const ScanTile
 HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done) {
     for_rows_with_matter(task, tile, [&](int row, size_t place, uint32_t layers) HWY_ATTR {
         const double v = task.v[static_cast<size_t>(row)];
-        take_row(task, tile, place, layers, stretches_of(plan, task.u, v, task.lanes), done);
+        take_row(task, tile, place, layers, swept_of(plan, task.u, v, task.lanes), done);
     });
 }
 
@@ -514,7 +261,7 @@ HWY_ATTR void take(const TileTask& task, int row, const RowStretches& gone, Scan
     const size_t place = static_cast<size_t>(row) * side;
     const Stretch here{load(gone.lower.data()), load(gone.upper.data())};
     const uint32_t layers = layers_with_matter(tile, place, here, mask_of(0xffff));
-    if (layers != 0) take_row(task, tile, place, layers, here, done);
+    if (layers != 0) take_row(task, tile, place, layers, {here, row_of(1.0), row_of(1.0)}, done);
 }
 
 const LaneCut* loops() {

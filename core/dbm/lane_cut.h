@@ -10,24 +10,26 @@ namespace core {
 struct TileTask {
     const double* u = nullptr; // places of the lines in a row, also of those beyond the last one
     const double* v = nullptr; // places of the rows
-    int row_first = 0, row_last = 0;        // rows of the tile, first .. last - 1
-    uint32_t lanes = 0;                     // bit i: line i of a row may be met
-    double low = 0.0, high = 0.0;           // what is cut lies between these heights
-    uint32_t mark = 0;                      // for the ends that the cut makes
-    const ScanGrid* count_points = nullptr; // for lines along Z: count grid points that go, too
+    int row_first = 0, row_last = 0; // rows of the tile, first .. last - 1
+    uint32_t lanes = 0;              // bit i: line i of a row may be met
+    double low = 0.0, high = 0.0;    // what is cut lies between these heights
+    uint32_t mark = 0;               // for the ends that the cut makes
+    const ScanGrid* grid = nullptr;  // by which volume is counted; none for columns
+    int axis = 0;                    // of the lines
 };
 
 /// A stretch that must be taken out of a line by hand: it divides an interval or removes one.
 struct HandCut {
     uint32_t place;
-    double lower, upper;
+    Interval gone;
+    uint8_t low_tilt, high_tilt; // of the ends of `gone`, see ScanTile::Marks
 };
 
 /// What a cut did to a tile.
 struct TileCut {
-    alignas(64) std::array<double, ScanTile::side> length{}; // removed, by lane
-    alignas(64) std::array<double, ScanTile::side> points{}; // grid points removed, by lane
-    uint32_t blocks = 0;                                     // bit i: 4 x 4 block i has changed
+    alignas(64) std::array<double, ScanTile::side> beyond{}; // removed, by lane: see LineSums
+    alignas(64) std::array<double, ScanTile::side> points{};
+    uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
     size_t by_hand_count = 0;
     std::array<HandCut, ScanTile::lines> by_hand; // not done yet
 };

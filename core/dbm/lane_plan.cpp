@@ -127,6 +127,8 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
     const auto& all = convex.elements;
     const double lowest = std::min(sweep.from.z, sweep.to.z);
     const double highest = std::max(sweep.from.z, sweep.to.z);
+    const bool level = sweep.from.z == sweep.to.z;
+    const bool upright = sweep.from.x == sweep.to.x && sweep.from.y == sweep.to.y;
     for (size_t i = 0; i < all.size(); ++i) {
         const ProfileElement& e = all[i];
         if (is_ball(e) && plan.balls < LanePlan::most) {
@@ -143,7 +145,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.beside[plan.across++] = across_lanes(sweep, axis, e);
-        } else if (sweep.from.z == sweep.to.z && plan.levels < LanePlan::most
+        } else if ((level || upright) && plan.levels < LanePlan::most
                    && (e.margin > 0.0 || (e.z0 < e.z1 && e.r0 != e.r1))) {
             plan.level[plan.levels++] = level_lanes(sweep, axis, e);
         } else {

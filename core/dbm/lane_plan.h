@@ -35,8 +35,9 @@ struct AcrossLanes {
     double by_radius;       // ... less radius * by_radius for the low one, more for the high one
 };
 
-/// A cone or a rounded corner on a level move: what it is at a height, or at a distance from the
-/// path, it is at every moment.
+/// A cone or a rounded corner on a level move, or straight up or down: what it is at a distance
+/// from the path it is at every moment, and at a height it is a circle that only moves or only
+/// grows.
 struct LevelLanes {
     ProfileElement element;
     CapsuleLanes path;  // for lines along Z

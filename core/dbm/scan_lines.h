@@ -28,7 +28,7 @@ public:
         Edit& operator=(const LineView& matter);
         /// As IntervalList has them; new ends count as raw.
         void add(const Interval& interval);
-        double subtract(const Interval& cut) { return core::subtract(tile_, place_, cut, 0); }
+        double subtract(const Interval& cut) { return core::subtract(tile_, place_, cut, {}); }
 
     private:
         ScanTile& tile_;

@@ -23,6 +23,8 @@ void put(ScanTile& tile, size_t place, size_t k, const Marked& what) {
     if (tile.marks.empty()) return;
     tile.marks[k].lower[place] = what.marks.lower;
     tile.marks[k].upper[place] = what.marks.upper;
+    tile.marks[k].lower_tilt[place] = what.marks.lower_tilt;
+    tile.marks[k].upper_tilt[place] = what.marks.upper_tilt;
 }
 
 constexpr Marked nothing{{infinity, -infinity}, {}};
@@ -40,7 +42,7 @@ void set_line(ScanTile& tile, size_t place, const LineView& matter) {
     for (size_t k = matter.size(); k < before; ++k) put(tile, place, k, nothing);
 }
 
-double subtract(ScanTile& tile, size_t place, const Interval& cut, uint32_t mark) {
+double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made) {
     const size_t size = tile.line(place).size();
     double removed = 0.0;
     std::vector<Marked> kept;
@@ -52,8 +54,12 @@ double subtract(ScanTile& tile, size_t place, const Interval& cut, uint32_t mark
             continue;
         }
         removed += std::min(upper, cut.upper) - std::max(lower, cut.lower);
-        if (lower < cut.lower) kept.push_back({{lower, cut.lower}, {old.marks.lower, mark}});
-        if (upper > cut.upper) kept.push_back({{cut.upper, upper}, {mark, old.marks.upper}});
+        if (lower < cut.lower)
+            kept.push_back({{lower, cut.lower},
+                            {old.marks.lower, made.upper, old.marks.lower_tilt, made.upper_tilt}});
+        if (upper > cut.upper)
+            kept.push_back({{cut.upper, upper},
+                            {made.lower, old.marks.upper, made.lower_tilt, old.marks.upper_tilt}});
     }
     if (removed == 0.0) return 0.0;
     for (size_t k = 0; k < kept.size(); ++k) put(tile, place, k, kept[k]);

@@ -12,6 +12,7 @@ namespace core {
 /// What made the ends of an interval: 0 for the raw body, else the number of a cut.
 struct EndMarks {
     uint32_t lower = 0, upper = 0;
+    uint8_t lower_tilt = 0, upper_tilt = 0; // see ScanTile::Marks
 
     bool operator==(const EndMarks&) const = default;
 };
@@ -29,9 +30,13 @@ struct ScanTile {
         std::array<double, lines> lower, upper;
         Layer();
     };
+    /// The tilt of an end is 0 where the surface faces along the line or nobody knows, `steepest`
+    /// where the line runs along it: steepest * (1 - n^2), n the normal's component on the line.
     struct alignas(64) Marks {
         std::array<uint32_t, lines> lower{}, upper{};
+        std::array<uint8_t, lines> lower_tilt{}, upper_tilt{};
     };
+    static constexpr int steepest = 255;
     std::vector<Layer> layers = std::vector<Layer>(1);
     std::vector<Marks> marks; // as many as layers, or none as long as all are 0
 
@@ -44,7 +49,8 @@ struct ScanTile {
     }
     EndMarks marks_of(size_t place, size_t interval) const {
         if (marks.empty()) return {};
-        return {marks[interval].lower[place], marks[interval].upper[place]};
+        const Marks& m = marks[interval];
+        return {m.lower[place], m.upper[place], m.lower_tilt[place], m.upper_tilt[place]};
     }
     /// Makes room for marks, from now on kept for every end.
     void keep_marks() { marks.resize(layers.size()); }
@@ -53,8 +59,8 @@ struct ScanTile {
 /// Puts `matter` on a line in place of what it held; all its ends count as raw.
 void set_line(ScanTile& tile, size_t place, const LineView& matter);
 
-/// Takes `cut` out of a line; ends that it makes get `mark`, if the tile keeps marks. Returns the
-/// length that was really removed.
-double subtract(ScanTile& tile, size_t place, const Interval& cut, uint32_t mark);
+/// Takes `cut` out of a line; the ends that it makes, matter's lower one at the upper end of `cut`,
+/// get these marks, if the tile keeps marks. Returns the length that was really removed.
+double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made);
 
 } // namespace core

@@ -21,18 +21,32 @@ uint32_t lanes_of(int first, int range_first, int range_last) {
     return ((1U << to) - 1U) & ~((1U << from) - 1U);
 }
 
-/// How many of the grid's points along Z lie within, ends not included.
-double points_in(const ScanGrid& grid, const LineView& matter) {
-    const auto below = [&](double x, bool itself) {
-        const double index =
-            std::nearbyint((x - grid.centre.z) / grid.spacing + (grid.half_count[2] - 0.5));
-        const double there = grid.centre.z + (index - grid.half_count[2] + 0.5) * grid.spacing;
-        return index + (there < x || (itself && there == x) ? 1.0 : 0.0);
+/// How many of the grid's coordinates lie below x, and those on it if so wanted.
+double points_below(const ScanGrid& grid, int axis, double x, bool itself) {
+    const double half = grid.half_count[static_cast<size_t>(axis)];
+    const double index = std::nearbyint((x - grid.centre[axis]) / grid.spacing + (half - 0.5));
+    const double there = grid.centre[axis] + (index - half + 0.5) * grid.spacing;
+    return index + (there < x || (itself && there == x) ? 1.0 : 0.0);
+}
+
+/// What a line's matter counts for.
+LineSums counted(const TileTask& task, const ScanTile& tile, size_t place) {
+    const double half = task.grid->half_count[static_cast<size_t>(task.axis)];
+    const auto end = [&](double x, bool is_upper, uint8_t tilt) {
+        const double points = points_below(*task.grid, task.axis, x, !is_upper);
+        const double border = task.grid->centre[task.axis] + (points - half) * task.grid->spacing;
+        return LineSums{(x - border) * (1.0 - tilt * (1.0 / ScanTile::steepest)), points};
     };
-    double points = 0.0;
-    for (const Interval& i : matter)
-        points += std::max(0.0, below(i.upper, false) - below(i.lower, true));
-    return points;
+    LineSums sums;
+    const LineView matter = tile.line(place);
+    for (size_t k = 0; k < matter.size(); ++k) {
+        const EndMarks marks = tile.marks_of(place, k);
+        const LineSums upper = end(matter[k].upper, true, marks.upper_tilt);
+        const LineSums lower = end(matter[k].lower, false, marks.lower_tilt);
+        sums.beyond += upper.beyond - lower.beyond;
+        sums.points += upper.points - lower.points;
+    }
+    return sums;
 }
 
 double sum_of(const std::array<double, ScanTile::side>& lanes) {
@@ -45,15 +59,15 @@ double sum_of(const std::array<double, ScanTile::side>& lanes) {
 
 /// Does what the lanes have left, and sums up.
 LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
-    LineSums sums{sum_of(done.length), task.count_points ? sum_of(done.points) : 0.0};
+    LineSums sums{sum_of(done.beyond), sum_of(done.points)};
     for (size_t i = 0; i < done.by_hand_count; ++i) {
-        const auto& [place, lower, upper] = done.by_hand[i];
-        const auto points = [&] {
-            return task.count_points ? points_in(*task.count_points, tile.line(place)) : 0.0;
-        };
-        const double before = points();
-        sums.length += subtract(tile, place, {lower, upper}, task.mark);
-        sums.points += before - points();
+        const HandCut& hand = done.by_hand[i];
+        const LineSums before = task.grid ? counted(task, tile, hand.place) : LineSums{};
+        subtract(tile, hand.place, hand.gone,
+                 {task.mark, task.mark, hand.high_tilt, hand.low_tilt});
+        const LineSums after = task.grid ? counted(task, tile, hand.place) : LineSums{};
+        sums.beyond += before.beyond - after.beyond;
+        if (task.axis == 2) sums.points += before.points - after.points;
     }
     return sums;
 }
@@ -157,7 +171,8 @@ TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, cons
         .low = ready.front.min[axis],
         .high = ready.front.max[axis],
         .mark = ready.mark,
-        .count_points = axis == 2 ? &model.lines.grid : nullptr};
+        .grid = &model.lines.grid,
+        .axis = axis};
     const LaneCut& loops = lane_cut();
     if (family.is_shared(tile) && !loops.changes(plan, task, *family.tile(tile))) return {};
     ScanTile& own = family.edit_tile(tile);

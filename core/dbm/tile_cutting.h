@@ -5,10 +5,11 @@
 
 namespace core {
 
-/// What was removed from lines, before it is made a volume.
+/// What was removed from lines, before it is made a volume: grid points, a cell each, and how far
+/// the ends of what went lie beyond the borders of these cells.
 struct LineSums {
-    double length = 0.0; // mm of lines
-    double points = 0.0; // grid points, counted by the lines along Z
+    double beyond = 0.0; // mm, each end weighed by the square of its normal along the line
+    double points = 0.0; // counted by the lines along Z
 };
 
 /// What a sweep did to a tile.

@@ -125,19 +125,39 @@ Range through_face(const LineAndMotion& line, double z, double radius) {
     return {std::min(one, other), std::max(one, other)};
 }
 
-/// The moments at which the line touches the flank that the motion envelops: where s is least and
-/// greatest on it, were the flank and the motion endless.
-Range touches(const LineAndMotion& line, const Cone& cone) {
+/// Whether the point at (s, t) lies in the cone, or outside it by no more than may count as in.
+bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
+    constexpr double most = 5e-10;
+    const Vec3 q = line.at(t) + s * line.d;
+    if (!(q.z >= cone.z0 - most && q.z <= cone.z1 + most)) return false;
+    return std::hypot(q.x, q.y) - cone.place(q).z <= most * std::hypot(1.0, cone.slope);
+}
+
+/// Offers where the line touches the flank that the motion envelops: where s is least and greatest
+/// on it, were the flank and the motion endless.
+///
+/// Source: with D, M and P for line, motion and start, (x, y, r) each, the plane of (s, t) has the
+///         unit normal N along D x M and stands off the cone's apex by h = N P. The planes through
+///         the motion that touch the cone have normals n = N y + (N x M) with F(n, n) = 0, of which
+///         the discriminant is F(M, M). Everything scales with h, so that nothing cancels however
+///         near the line comes to the apex.
+void offer_touches(const LineAndMotion& line, const Cone& cone, Extent& extent) {
     const Vec3 p = cone.place(line.p), d = cone.direction(line.d), m = cone.direction(line.m);
     const double c = form(m, m);
-    if (!(c > 0.0)) return nowhere; // along the motion the cone has no silhouette
-    const double d_along = form(d, m) / c, p_along = form(p, m) / c;
-    const Vec3 d_across = d - d_along * m, p_across = p - p_along * m;
-    const Quadratic silhouette{form(d_across, d_across), form(d_across, p_across),
-                               form(p_across, p_across)};
-    const double bend = std::max(0.0, silhouette.b * silhouette.b - silhouette.a * silhouette.c);
-    const Range s = zeros(silhouette, bend);
-    return {p_along + s.first * d_along, p_along + s.last * d_along};
+    const Vec3 w = glm::cross(d, m);
+    const double across = glm::length(w);
+    if (!(c > 0.0) || across == 0.0) return; // along the motion the cone has no silhouette
+    const Vec3 n = w / across, k = glm::cross(n, m);
+    const double h = glm::dot(n, p);
+    const double s_foot = -glm::dot(glm::cross(p, m), n) / across;
+    const double t_foot = glm::dot(glm::cross(d, p), n) / across;
+    const Range normals = zeros({form(n, n), form(n, k), form(k, k)}, c);
+    for (const double y : {normals.first, normals.last}) {
+        const double s = y * h / across;
+        const double t = (h * form(n, m) + s * form(d, m)) / c + t_foot;
+        if (!std::isfinite(s) || !(t > -slack && t < line.length + slack)) continue;
+        if (holds(line, cone, s + s_foot, t)) extent.add(s + s_foot, s + s_foot);
+    }
 }
 
 /// The set of (s, t) is convex: a quadric's section, cut off at the end faces and at the ends of
@@ -154,9 +174,7 @@ std::optional<Interval> tilted_cone(const LineAndMotion& line, const ProfileElem
     offer(chord_at(line, cone, line.length));
     offer(through_face(line, e.z0, e.r0));
     offer(through_face(line, e.z1, e.r1));
-    const Range turns = touches(line, cone);
-    for (const double t : {turns.first, turns.last})
-        if (t > 0.0 && t < line.length) offer(chord_at(line, cone, t));
+    offer_touches(line, cone, extent);
     return extent.interval();
 }
 

@@ -1,11 +1,13 @@
 #include "core/sim/simulator.h"
 
+#include <numbers>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "core/sim/finding_text.h"
 #include "core/sim/leg_check.h"
+#include "core/sim/pair_entry.h"
 
 namespace core {
 namespace {
@@ -23,7 +25,8 @@ struct BlockRun {
     SimulatorState& state;
     BlockResult result = {};
     std::vector<TimedLeg> legs = {};
-    bool turns = false; // rotary axes move
+    bool turns = false;         // rotary axes move
+    bool pushes_centre = false; // down into the stock, where the tool does not cut
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -66,6 +69,8 @@ struct BlockRun {
     void carry_out(const FixtureChange& change);
 
     void move_without_tool(const Motion& motion);
+    void watch_centre(const Motion& motion, const Leg& leg);
+    Finding finding_about(const PairClearance& pair) const;
     void check_tool_change();
     void forget_bounds();
     void check_limits(const Motion& motion);
@@ -139,11 +144,47 @@ void BlockRun::carry_out(const Motion& motion) {
     } else {
         LegCheck check = leg_check(use(motion));
         for (const Leg& leg : path.legs) {
+            watch_centre(motion, leg);
             result.removed += check.run(leg, result.duration, state.stock, result.pairs);
             legs.push_back({leg, result.duration});
         }
     }
     result.duration += path.duration;
+}
+
+void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
+    if (!tool() || tool()->description.cuts_at_centre) return;
+    if (use(motion) != FluteUse::cutting || !leg.straight) {
+        state.centre = {};
+        return;
+    }
+    const Mount tip{setup.machine.spindle, translation({0.0, 0.0, -tool()->length})};
+    const RelativeLeg way = relative_leg(setup.machine, setup.stock_mount, {.mount = tip}, leg);
+    const auto contact = follow(state.centre, tool()->description, way, state.stock);
+    if (!contact) return;
+    PairClearance& flutes = entry(result.pairs, {PartKind::flutes}, setup);
+    if (flutes.verdict == Verdict::collision) return;
+    pushes_centre = true;
+    flutes.lower = flutes.upper = 0.0;
+    flutes.verdict = Verdict::collision;
+    flutes.on_tool = flutes.on_body = contact->place;
+    flutes.time = result.duration + leg.begin + contact->share * (leg.end - leg.begin);
+}
+
+Finding BlockRun::finding_about(const PairClearance& pair) const {
+    Finding finding = finding_of(setup, pair, {result.motion, turns, result.duration}, state);
+    if (!pushes_centre || pair.pair != Pair{PartKind::flutes}) return finding;
+    const ToolDescription& described = tool()->description;
+    finding.message = fmt::format(
+        "Tool {} does not cut within {:g} mm of its axis, and its centre is pushed into the stock.",
+        value_of(described.number), described.centre_radius);
+    finding.cure = fmt::format(
+        "Ramp or wind in by at most {:.1f} degrees, in circles of more than {:g} mm radius; drill "
+        "first; or use a tool that cuts at its centre.",
+        std::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
+            / std::numbers::pi,
+        described.centre_radius);
+    return finding;
 }
 
 void BlockRun::forget_bounds() {
@@ -249,8 +290,7 @@ void BlockRun::conclude() {
         }
     }
     for (const PairClearance& pair : result.pairs)
-        if (pair.verdict != Verdict::clear)
-            add(finding_of(setup, pair, {result.motion, turns, result.duration}, state));
+        if (pair.verdict != Verdict::clear) add(finding_about(pair));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/dbm/cut_model.h"
+#include "core/sim/centre_watch.h"
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
 #include "core/sim/leg_check.h"
@@ -22,8 +23,9 @@ struct SimulatorState {
     std::vector<bool> fixtures_there; // of the set-up's fixtures
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    PieceWatch pieces; // of the stock
-    double time = 0.0; // seconds since the program's start, everything at full speed
+    PieceWatch pieces;  // of the stock
+    CentreWatch centre; // of a tool that does not cut there
+    double time = 0.0;  // seconds since the program's start, everything at full speed
     Statistics statistics;
     CheckMemory memory;
     std::set<std::string> assumptions; // what had to be taken for granted on the way

@@ -49,8 +49,7 @@ TEST(Assets, EveryJobHasItsVerdict) {
             double removed = 0.0;
             for (const BlockLine& block : checked.blocks)
                 if (block.tool == static_cast<int>(i) + 1) removed += block.removed;
-            // Small round holes are known to some 3 % at a mesh size of 0.5.
-            EXPECT_NEAR(removed, job.removed[i], 0.03 * job.removed[i]) << "tool " << i + 1;
+            EXPECT_NEAR(removed, job.removed[i], 0.01 * job.removed[i]) << "tool " << i + 1;
         }
     }
 }
