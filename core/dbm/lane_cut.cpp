@@ -7,45 +7,25 @@
 #include <hwy/foreach_target.h> // includes this file once for each instruction set
 #include <hwy/highway.h>
 
-#include "core/dbm/lane_stretch.h"
+#include "core/dbm/lane_reach.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace core {
 namespace HWY_NAMESPACE {
 namespace {
 HWY_ATTR void stretches(const LanePlan& plan, const double* u, double v, uint32_t wanted,
-                        RowStretches& out) {
-    const Stretch found = swept_of(plan, u, v, wanted).ends;
-    store(found.lower, out.lower.data());
-    store(found.upper, out.upper.data());
-}
-HWY_ATTR void shared(const RowStretches& front, const RowStretches& back, const Interval& front_end,
-                     const Interval& back_end, double less, RowStretches& out) {
-    // One corner farther on, with the end of the row in the last place.
-    const auto next = [](const std::array<double, side>& row, double end) HWY_ATTR {
-        std::array<double, side> moved;
-        std::copy(row.begin() + 1, row.end(), moved.begin());
-        moved.back() = end;
-        return load(moved.data());
-    };
-    const Row lower = most(most(load(front.lower.data()), next(front.lower, front_end.lower)),
-                           most(load(back.lower.data()), next(back.lower, back_end.lower)))
-                      + less;
-    const Row upper = least(least(load(front.upper.data()), next(front.upper, front_end.upper)),
-                            least(load(back.upper.data()), next(back.upper, back_end.upper)))
-                      - less;
-    const RowMask some = below(lower, upper);
-    store(choose(some, lower, row_of(infinity)), out.lower.data());
-    store(choose(some, upper, row_of(-infinity)), out.upper.data());
+                        CornerStretches& out) {
+    for (size_t first = 0; first < CornerStretches::size; first += chunk, wanted >>= chunk) {
+        if ((wanted & 0xffU) == 0) continue;
+        const Stretch found = swept_of(plan, u + first, v, wanted).ends;
+        store(found.lower, &out.lower[first]);
+        store(found.upper, &out.upper[first]);
+    }
 }
 
 /// Layer k of a row.
 HWY_INLINE Stretch matter_of(const ScanTile& tile, size_t k, size_t place) {
     return {load(&tile.layers[k].lower[place]), load(&tile.layers[k].upper[place])};
-}
-
-HWY_INLINE RowMask overlap(const Stretch& a, const Stretch& b) {
-    return below(a.lower, b.upper) & below(b.lower, a.upper);
 }
 
 /// The layers, by bit, that hold matter on any of the lines within a stretch; all beyond the 32nd
@@ -68,10 +48,13 @@ HWY_INLINE void for_layers(const ScanTile& tile, uint32_t layers, const Act& act
         for (size_t k = 31; k < tile.layers.size(); ++k) act(k);
 }
 
-HWY_INLINE uint32_t lines_overlapping(const ScanTile& tile, size_t place, const Stretch& where) {
+/// The lines of a chunk on which the plan may sweep matter of these layers.
+HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t place,
+                                   uint32_t layers, const double* u, double v) {
     uint32_t found = 0;
-    for (size_t k = 0; k < tile.layers.size(); ++k)
-        found |= bits_of(overlap(matter_of(tile, k, place), where));
+    for_layers(tile, layers, [&](size_t k) HWY_ATTR {
+        found |= bits_of(in_reach(plan, u, v, matter_of(tile, k, place)));
+    });
     return found;
 }
 
@@ -119,13 +102,13 @@ HWY_INLINE void keep_tilts(uint8_t* tilts, const RowMask& which, const Row& tilt
     }
 }
 
-HWY_INLINE void add_to(std::array<double, side>& sums, const RowMask& where, const Row& what) {
-    store(load(sums.data()) + choose(where, what, row_of(0.0)), sums.data());
+HWY_INLINE void add_to(double* sums, const RowMask& where, const Row& what) {
+    store(load(sums) + choose(where, what, row_of(0.0)), sums);
 }
 
 HWY_INLINE void set_marks(uint32_t* marks, uint32_t which, uint32_t mark) {
-    const hn::CappedTag<uint32_t, side> d;
-    for (size_t i = 0; i < side; i += hn::Lanes(d)) {
+    const hn::CappedTag<uint32_t, chunk> d;
+    for (size_t i = 0; i < chunk; i += hn::Lanes(d)) {
         const uint32_t here = which >> i;
         const uint8_t bytes[8] = {static_cast<uint8_t>(here), static_cast<uint8_t>(here >> 8U)};
         const auto chosen = hn::LoadMaskBits(d, bytes);
@@ -145,8 +128,9 @@ HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t
         counted(task, choose(from_below, old.lower, gone.ends.lower), but_not(wanted, from_below));
     const Row upper_facing = choose(from_above, facing_of(&marks.upper_tilt[place]), high);
     const Row lower_facing = choose(from_below, facing_of(&marks.lower_tilt[place]), low);
-    add_to(done.beyond, wanted, upper.beyond * upper_facing - lower.beyond * lower_facing);
-    if (task.axis == 2) add_to(done.points, wanted, upper.points - lower.points);
+    const size_t lane = place % ScanTile::side;
+    add_to(&done.beyond[lane], wanted, upper.beyond * upper_facing - lower.beyond * lower_facing);
+    if (task.axis == 2) add_to(&done.points[lane], wanted, upper.points - lower.points);
 }
 
 /// Shortens the intervals of a layer; those in `wanted` keep one end, or go.
@@ -174,29 +158,29 @@ HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t plac
 }
 
 void note_blocks(TileCut& done, size_t place, uint32_t changed) {
-    const size_t row = place / side;
-    for (uint32_t group = 0; changed != 0; changed >>= 4U, ++group)
+    const size_t row = place / ScanTile::side, first = place % ScanTile::side / 4;
+    for (size_t group = first; changed != 0; changed >>= 4U, ++group)
         if ((changed & 15U) != 0) done.blocks |= 1U << (row / 4 * 4 + group);
 }
 
 void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone) {
-    RowStretches out, tilts;
-    store(gone.ends.lower, out.lower.data());
-    store(gone.ends.upper, out.upper.data());
-    store(tilt_of(gone.low_facing), tilts.lower.data());
-    store(tilt_of(gone.high_facing), tilts.upper.data());
+    std::array<double, chunk> lower, upper, low_tilts, high_tilts;
+    store(gone.ends.lower, lower.data());
+    store(gone.ends.upper, upper.data());
+    store(tilt_of(gone.low_facing), low_tilts.data());
+    store(tilt_of(gone.high_facing), high_tilts.data());
     for (; hard != 0; hard &= hard - 1) {
         const auto i = static_cast<size_t>(std::countr_zero(hard));
         done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i),
-                                              {out.lower[i], out.upper[i]},
-                                              static_cast<uint8_t>(tilts.lower[i]),
-                                              static_cast<uint8_t>(tilts.upper[i])};
+                                              {lower[i], upper[i]},
+                                              static_cast<uint8_t>(low_tilts[i]),
+                                              static_cast<uint8_t>(high_tilts[i])};
     }
 }
 
-/// Takes stretches out of a row of lines, where the layers hold matter.
-HWY_INLINE void take_row(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
-                         const Swept& gone, TileCut& done) {
+/// Takes stretches out of a chunk of lines, where the layers hold matter.
+HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
+                           const Swept& gone, TileCut& done) {
     RowMask hard = below(row_of(1.0), row_of(0.0));
     RowMask met = hard;
     const bool many = tile.layers.size() > 1;
@@ -218,55 +202,102 @@ HWY_INLINE void take_row(const TileTask& task, ScanTile& tile, size_t place, uin
     note_blocks(done, place, bits_of(met));
 }
 
-/// Runs `act` over the rows that hold matter where the task looks for it.
+/// Runs `act(row, first lane, place, layers, lines)` over the chunks of which the plan may sweep
+/// something: which lines, in which layers.
 template <typename Act>
-HWY_INLINE void for_rows_with_matter(const TileTask& task, const ScanTile& tile, const Act& act) {
+HWY_INLINE void for_chunks_in_reach(const LanePlan& plan, const TileTask& task,
+                                    const ScanTile& tile, int row, const Act& act) {
     const Stretch looked_at{row_of(task.low), row_of(task.high)};
-    const RowMask wanted = mask_of(task.lanes);
-    for (int row = task.row_first; row < task.row_last; ++row) {
-        const size_t place = static_cast<size_t>(row) * side;
-        const uint32_t layers = layers_with_matter(tile, place, looked_at, wanted);
-        if (layers != 0) act(row, place, layers);
+    const double v = task.v[static_cast<size_t>(row)];
+    for (size_t first = 0; first < ScanTile::side; first += chunk) {
+        const uint32_t asked = (task.lanes >> first) & 0xffU;
+        if (asked == 0) continue;
+        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
+        const uint32_t layers = layers_with_matter(tile, place, looked_at, mask_of(asked));
+        if (layers == 0) continue;
+        const uint32_t lines = lines_in_reach(plan, tile, place, layers, task.u + first, v);
+        if (lines != 0) act(first, place, layers, lines);
     }
 }
 
 HWY_ATTR bool changes(const LanePlan& plan, const TileTask& task, const ScanTile& tile) {
     bool found = false;
-    for_rows_with_matter(task, tile, [&](int row, size_t place, uint32_t) HWY_ATTR {
-        if (found) return;
-        const double v = task.v[static_cast<size_t>(row)];
-        found = lines_overlapping(tile, place, swept_of(plan, task.u, v, task.lanes).ends) != 0;
-    });
+    for (int row = task.row_first; row < task.row_last && !found; ++row)
+        for_chunks_in_reach(
+            plan, task, tile, row,
+            [&](size_t first, size_t place, uint32_t, uint32_t lines) HWY_ATTR {
+                const Stretch gone =
+                    swept_of(plan, task.u + first, task.v[static_cast<size_t>(row)], lines).ends;
+                for (size_t k = 0; k < tile.layers.size(); ++k)
+                    found = found || any(overlap(matter_of(tile, k, place), gone));
+            });
     return found;
 }
 
 HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done) {
-    for_rows_with_matter(task, tile, [&](int row, size_t place, uint32_t layers) HWY_ATTR {
-        const double v = task.v[static_cast<size_t>(row)];
-        take_row(task, tile, place, layers, swept_of(plan, task.u, v, task.lanes), done);
-    });
+    for (int row = task.row_first; row < task.row_last; ++row)
+        for_chunks_in_reach(plan, task, tile, row,
+                            [&](size_t first, size_t place, uint32_t layers, uint32_t lines)
+                                HWY_ATTR {
+                                    const double v = task.v[static_cast<size_t>(row)];
+                                    take_chunk(task, tile, place, layers,
+                                               swept_of(plan, task.u + first, v, lines), done);
+                                });
 }
 
-HWY_ATTR uint32_t lines_with_matter(const ScanTile& tile, int row, double low, double high) {
-    return lines_overlapping(tile, static_cast<size_t>(row) * side, {row_of(low), row_of(high)});
+HWY_ATTR uint32_t in_reach_of_row(const LanePlan& plan, const TileTask& task, const ScanTile& tile,
+                                  int row) {
+    uint32_t found = 0;
+    for_chunks_in_reach(plan, task, tile, row,
+                        [&](size_t first, size_t, uint32_t, uint32_t lines)
+                            HWY_ATTR { found |= lines << first; });
+    return found & task.lanes;
 }
 
-HWY_ATTR uint32_t lines_met(const ScanTile& tile, int row, const RowStretches& gone) {
-    return lines_overlapping(tile, static_cast<size_t>(row) * side,
-                             {load(gone.lower.data()), load(gone.upper.data())});
+/// What the four corners of each cell share, safely.
+HWY_INLINE Stretch shared(const CornerStretches& front, const CornerStretches& back, size_t first) {
+    const auto both = [&](const auto& one, const auto& other, const auto& act) HWY_ATTR {
+        return act(act(load(&one[first]), load(&one[first + 1])),
+                   act(load(&other[first]), load(&other[first + 1])));
+    };
+    const auto higher = [](const Row& a, const Row& b) HWY_ATTR { return most(a, b); };
+    const auto lower = [](const Row& a, const Row& b) HWY_ATTR { return least(a, b); };
+    return {both(front.lower, back.lower, higher) + safely_less,
+            both(front.upper, back.upper, lower) - safely_less};
 }
 
-HWY_ATTR void take(const TileTask& task, int row, const RowStretches& gone, ScanTile& tile,
-                   TileCut& done) {
-    const size_t place = static_cast<size_t>(row) * side;
-    const Stretch here{load(gone.lower.data()), load(gone.upper.data())};
-    const uint32_t layers = layers_with_matter(tile, place, here, mask_of(0xffff));
-    if (layers != 0) take_row(task, tile, place, layers, {here, row_of(1.0), row_of(1.0)}, done);
+HWY_ATTR void take_shared(const TileTask& task, int row, const CornerStretches& front,
+                          const CornerStretches& back, uint32_t cells, ScanTile& tile,
+                          TileCut& done) {
+    for (size_t first = 0; first < ScanTile::side; first += chunk, cells >>= chunk) {
+        if ((cells & 0xffU) == 0) continue;
+        const Stretch gone = shared(front, back, first);
+        const RowMask some = below(gone.lower, gone.upper) & mask_of(cells & 0xffU);
+        if (!any(some)) continue;
+        const Stretch here{choose(some, gone.lower, row_of(infinity)),
+                           choose(some, gone.upper, row_of(-infinity))};
+        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
+        const uint32_t layers = layers_with_matter(tile, place, here, some);
+        if (layers != 0)
+            take_chunk(task, tile, place, layers, {here, row_of(1.0), row_of(1.0)}, done);
+    }
+}
+
+HWY_ATTR bool meets_shared(const ScanTile& tile, int row, const CornerStretches& front,
+                           const CornerStretches& back, uint32_t cells) {
+    for (size_t first = 0; first < ScanTile::side; first += chunk, cells >>= chunk) {
+        if ((cells & 0xffU) == 0) continue;
+        const Stretch gone = shared(front, back, first);
+        const RowMask some = below(gone.lower, gone.upper) & mask_of(cells & 0xffU);
+        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
+        if (layers_with_matter(tile, place, gone, some) != 0) return true;
+    }
+    return false;
 }
 
 const LaneCut* loops() {
-    static constexpr LaneCut table = {stretches,         shared,    changes, cut,
-                                      lines_with_matter, lines_met, take};
+    static constexpr LaneCut table = {stretches,       changes,      cut,
+                                      in_reach_of_row, meets_shared, take_shared};
     return &table;
 }
 

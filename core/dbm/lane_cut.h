@@ -34,25 +34,27 @@ struct TileCut {
     std::array<HandCut, ScanTile::lines> by_hand; // not done yet
 };
 
-/// Stretches of the lines in a row, (+inf, -inf) where there is none.
-struct alignas(64) RowStretches {
-    std::array<double, ScanTile::side> lower, upper;
+/// Stretches on the corners of a row of cells, (+inf, -inf) where there is none or where nobody
+/// has asked: one corner more than cells, filled up to whole chunks of 8.
+struct alignas(64) CornerStretches {
+    static constexpr size_t size = 24;
+    std::array<double, size> lower, upper;
+
+    CornerStretches() {
+        lower.fill(infinity);
+        upper.fill(-infinity);
+    }
 };
 
 /// The inner loops of cutting, for the best instruction set of this processor. Each does the same
 /// operations in the same order in every lane, without fused multiply-add: all of them give the
 /// same bits.
 struct LaneCut {
-    /// The stretches of a row of lines at `u` and `v` in what the plan sweeps; the ends lie in the
-    /// swept volume up to rounding (1e-9 mm within 2 m). Lines that are not `wanted`, bit by bit,
-    /// may come out empty.
+    /// The stretches on corners at `u` and `v` in what the plan sweeps; the ends lie in the swept
+    /// volume up to rounding (1e-9 mm within 2 m). Only chunks with corners that are `wanted`, bit
+    /// by bit, are written; corners that are not may come out empty.
     void (*stretches)(const LanePlan& plan, const double* u, double v, uint32_t wanted,
-                      RowStretches& out);
-
-    /// What the four corners of each cell in a row share, shortened at both ends by `less`: corners
-    /// 0 .. 15 in front and at the back, and the last one of either.
-    void (*shared)(const RowStretches& front, const RowStretches& back, const Interval& front_end,
-                   const Interval& back_end, double less, RowStretches& out);
+                      CornerStretches& out);
 
     /// Whether cutting the tile would change it.
     bool (*changes)(const LanePlan& plan, const TileTask& task, const ScanTile& tile);
@@ -60,15 +62,17 @@ struct LaneCut {
     /// Takes what the plan sweeps out of the tile, but for what is left to be done by hand.
     void (*cut)(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done);
 
-    /// The lines of a row that hold matter between two heights.
-    uint32_t (*lines_with_matter)(const ScanTile& tile, int row, double low, double high);
+    /// The lines of a row, bit by bit, of which the plan may sweep something; it does of no others.
+    uint32_t (*in_reach)(const LanePlan& plan, const TileTask& task, const ScanTile& tile, int row);
 
-    /// The lines of a row out of which these stretches would take something.
-    uint32_t (*lines_met)(const ScanTile& tile, int row, const RowStretches& gone);
+    /// Whether these cells of a row hold matter within what their four corners share: corners
+    /// 0 .. 16 in front and at the back.
+    bool (*meets_shared)(const ScanTile& tile, int row, const CornerStretches& front,
+                         const CornerStretches& back, uint32_t cells);
 
-    /// Takes the stretches out of a row, but for what is left to be done by hand.
-    void (*take)(const TileTask& task, int row, const RowStretches& gone, ScanTile& tile,
-                 TileCut& done);
+    /// Takes that out of them, but for what is left to be done by hand.
+    void (*take_shared)(const TileTask& task, int row, const CornerStretches& front,
+                        const CornerStretches& back, uint32_t cells, ScanTile& tile, TileCut& done);
 };
 
 /// The loops to use now.

@@ -89,13 +89,21 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
     return c;
 }
 
-LevelLanes level_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e) {
-    LevelLanes level{e, {}, {}};
+ElementLanes element_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e,
+                           bool sloped) {
+    ElementLanes lanes{e, {}, {}, sloped};
     if (axis == 2)
-        level.path = capsule(sweep, axis, 0.0, std::max(e.r0, e.r1) + e.margin);
+        lanes.path = capsule(sweep, axis, 0.0, std::max(e.r0, e.r1) + e.margin);
     else
-        level.across = across_lanes(sweep, axis, e);
-    return level;
+        lanes.across = across_lanes(sweep, axis, e);
+    return lanes;
+}
+
+/// Whether a move climbs or sinks on its way by more than rounding.
+bool is_sloped(const CutterSweep& sweep) {
+    constexpr double least_part = 1e-6;
+    const Vec3 by = sweep.to - sweep.from;
+    return std::abs(by.z) > least_part && std::hypot(by.x, by.y) > least_part;
 }
 
 bool is_ball(const ProfileElement& e) { return e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0; }
@@ -129,6 +137,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
     const double highest = std::max(sweep.from.z, sweep.to.z);
     const bool level = sweep.from.z == sweep.to.z;
     const bool upright = sweep.from.x == sweep.to.x && sweep.from.y == sweep.to.y;
+    const bool sloped = is_sloped(sweep);
     for (size_t i = 0; i < all.size(); ++i) {
         const ProfileElement& e = all[i];
         if (is_ball(e) && plan.balls < LanePlan::most) {
@@ -145,11 +154,11 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.beside[plan.across++] = across_lanes(sweep, axis, e);
-        } else if ((level || upright) && plan.levels < LanePlan::most
+        } else if ((level || upright || sloped) && plan.elements < LanePlan::most
                    && (e.margin > 0.0 || (e.z0 < e.z1 && e.r0 != e.r1))) {
-            plan.level[plan.levels++] = level_lanes(sweep, axis, e);
+            plan.element[plan.elements++] = element_lanes(sweep, axis, e, sloped);
         } else {
-            plan.balls = plan.uprights = plan.across = plan.levels = 0;
+            plan.balls = plan.uprights = plan.across = plan.elements = 0;
             return plan;
         }
     }

@@ -35,13 +35,14 @@ struct AcrossLanes {
     double by_radius;       // ... less radius * by_radius for the low one, more for the high one
 };
 
-/// A cone or a rounded corner on a level move, or straight up or down: what it is at a distance
-/// from the path it is at every moment, and at a height it is a circle that only moves or only
-/// grows.
-struct LevelLanes {
+/// A cone or a rounded corner. On a level move, or straight up or down, it is at a distance from
+/// the path what it is at every moment, and at a height a circle that only moves or only grows;
+/// else it is `sloped`.
+struct ElementLanes {
     ProfileElement element;
     CapsuleLanes path;  // for lines along Z
     AcrossLanes across; // for the others; its radius means nothing
+    bool sloped;
 };
 
 /// How one convex piece along one move meets the lines of one family, in numbers made for lanes.
@@ -50,10 +51,10 @@ struct LanePlan {
 
     int axis = 0;
     bool by_lanes = false; // else line by line: with RevolvedProfile and CutterSweep below
-    size_t balls = 0, uprights = 0, across = 0, levels = 0;
+    size_t balls = 0, uprights = 0, across = 0, elements = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
     std::array<AcrossLanes, most> beside;         // cylinders met by lines along X and Y
-    std::array<LevelLanes, most> level;
+    std::array<ElementLanes, most> element;
     const RevolvedProfile* piece = nullptr;
     const CutterSweep* sweep = nullptr;
 };

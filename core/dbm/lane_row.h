@@ -17,17 +17,18 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t side = ScanTile::side;
+/// So many lines are worked on at a time, on every instruction set: half a row of a tile.
+constexpr size_t chunk = 8;
+constexpr size_t chunks = ScanTile::side / chunk;
 
 using Tag = hn::CappedTag<double, 8>;
 using Vec = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
 
 constexpr size_t lanes = hn::MaxLanes(Tag());
-constexpr size_t vectors = side / lanes;
+constexpr size_t vectors = chunk / lanes;
 
-/// A number for each line of a row. Each operation is done for the whole row before the next one,
-/// so that none of them waits for the one before.
+/// A number for each line of a chunk.
 struct Row {
     Vec part[vectors];
 };

@@ -81,44 +81,33 @@ TilePlace place_of(const TileBoxes& boxes, size_t tile) {
             static_cast<int>(tile / static_cast<size_t>(boxes.u_tiles)) * side};
 }
 
-/// The stretches on the corners of a row of cells, worked out only when they are asked for.
+/// The stretches on rows of corners, worked out only where they are asked for.
 class CornerRows {
 public:
-    CornerRows(const LanePlan& plan, const double* u, const double* v, uint32_t lanes)
-        : loops_(lane_cut()), plan_(plan), u_(u), v_(v), lanes_(lanes) {}
+    CornerRows(const LanePlan& plan, const TileTask& task)
+        : loops_(lane_cut()), plan_(plan), task_(task) {}
 
-    void shared(int row, double less, RowStretches& out) {
-        const Corners& front = at(row);
-        const Corners& back = at(row + 1);
-        loops_.shared(front.row, back.row, front.end, back.end, less, out);
+    /// Those on the corners `wanted`, bit by bit.
+    const CornerStretches& at(int row, uint32_t wanted) {
+        Corners& kept = rows_[static_cast<size_t>(row % 2)];
+        if (kept.of != row) kept = {row, 0, {}};
+        const uint32_t missing = wanted & ~kept.known;
+        if (missing == 0) return kept.ends;
+        loops_.stretches(plan_, task_.u, task_.v[row], wanted | kept.known, kept.ends);
+        kept.known |= wanted;
+        return kept.ends;
     }
 
 private:
     struct Corners {
         int of = -1;
-        RowStretches row;
-        Interval end; // of the corner after the last one in the row
+        uint32_t known = 0;
+        CornerStretches ends;
     };
-
-    const Corners& at(int row) {
-        Corners& kept = rows_[static_cast<size_t>(row % 2)];
-        if (kept.of == row) return kept;
-        kept.of = row;
-        loops_.stretches(plan_, u_, v_[row], lanes_ | (lanes_ << 1U), kept.row);
-        kept.end = {infinity, -infinity};
-        if (lanes_ >> (side - 1U)) {
-            RowStretches next;
-            loops_.stretches(plan_, u_ + side, v_[row], 1U, next);
-            kept.end = {next.lower[0], next.upper[0]};
-        }
-        return kept;
-    }
 
     const LaneCut& loops_;
     const LanePlan& plan_;
-    const double* u_;
-    const double* v_;
-    uint32_t lanes_;
+    const TileTask& task_;
     std::array<Corners, 2> rows_;
 };
 
@@ -188,22 +177,28 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
     const TileBoxes& boxes = model.column_boxes;
     if (model.columns.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
     const auto [u, v] = place_of(boxes, tile);
-    const uint32_t lanes = lanes_of(u, range.u_first, range.u_last);
-    CornerRows corners(plan, &model.corners[0][static_cast<size_t>(u)],
-                       &model.corners[1][static_cast<size_t>(v)], lanes);
+    const TileTask task{.u = &model.corners[0][static_cast<size_t>(u)],
+                        .v = &model.corners[1][static_cast<size_t>(v)],
+                        .row_first = std::max(range.v_first - v, 0),
+                        .row_last = std::min(range.v_last - v, side),
+                        .lanes = lanes_of(u, range.u_first, range.u_last),
+                        .low = ready.front.min.z,
+                        .high = ready.front.max.z,
+                        .axis = 2};
+    CornerRows corners(plan, task);
     const LaneCut& loops = lane_cut();
-    const TileTask task;
     TileCut done;
     ScanTile* own = nullptr;
-    RowStretches gone;
-    for (int row = std::max(range.v_first - v, 0); row < std::min(range.v_last - v, side); ++row) {
+    for (int row = task.row_first; row < task.row_last; ++row) {
         const ScanTile& now = *model.columns.tile(tile);
-        if ((loops.lines_with_matter(now, row, ready.front.min.z, ready.front.max.z) & lanes) == 0)
-            continue;
-        corners.shared(row, safely_less, gone);
-        if ((loops.lines_met(now, row, gone) & lanes) == 0) continue;
+        // What all four corners share is no more than what the first of them has.
+        const uint32_t cells = loops.in_reach(plan, task, now, row);
+        if (cells == 0) continue;
+        const CornerStretches& front = corners.at(row, cells | (cells << 1U));
+        const CornerStretches& back = corners.at(row + 1, cells | (cells << 1U));
+        if (own == nullptr && !loops.meets_shared(now, row, front, back, cells)) continue;
         if (own == nullptr) own = &model.columns.edit_tile(tile);
-        loops.take(task, row, gone, *own, done);
+        loops.take_shared(task, row, front, back, cells, *own, done);
     }
     if (own == nullptr) return {};
     finish(task, *own, done);
