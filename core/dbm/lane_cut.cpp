@@ -2,6 +2,10 @@
 
 #include <bit>
 
+// What lies between SSE2, which every x86-64 has, and AVX2 gains these loops nothing.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/dbm/lane_cut.cpp"
 #include <hwy/foreach_target.h> // includes this file once for each instruction set
@@ -51,11 +55,12 @@ HWY_INLINE void for_layers(const ScanTile& tile, uint32_t layers, const Act& act
 /// The lines of a chunk on which the plan may sweep matter of these layers.
 HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t place,
                                    uint32_t layers, const double* u, double v) {
-    uint32_t found = 0;
-    for_layers(tile, layers, [&](size_t k) HWY_ATTR {
-        found |= bits_of(in_reach(plan, u, v, matter_of(tile, k, place)));
-    });
-    return found;
+    return bits_of(in_reach(plan, u, v, [&](const auto& may_hold) HWY_ATTR {
+        RowMask found = below(row_of(1.0), row_of(0.0));
+        for_layers(tile, layers,
+                   [&](size_t k) HWY_ATTR { found = found | may_hold(matter_of(tile, k, place)); });
+        return found;
+    }));
 }
 
 /// An end of matter as volume counts it: how many of the grid's coordinates lie below, and how far
@@ -171,8 +176,7 @@ void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone)
     store(tilt_of(gone.high_facing), high_tilts.data());
     for (; hard != 0; hard &= hard - 1) {
         const auto i = static_cast<size_t>(std::countr_zero(hard));
-        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i),
-                                              {lower[i], upper[i]},
+        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i), lower[i], upper[i],
                                               static_cast<uint8_t>(low_tilts[i]),
                                               static_cast<uint8_t>(high_tilts[i])};
     }
@@ -206,52 +210,52 @@ HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, u
 /// something: which lines, in which layers.
 template <typename Act>
 HWY_INLINE void for_chunks_in_reach(const LanePlan& plan, const TileTask& task,
-                                    const ScanTile& tile, int row, const Act& act) {
+                                    const ScanTile& tile, const Act& act) {
     const Stretch looked_at{row_of(task.low), row_of(task.high)};
-    const double v = task.v[static_cast<size_t>(row)];
-    for (size_t first = 0; first < ScanTile::side; first += chunk) {
-        const uint32_t asked = (task.lanes >> first) & 0xffU;
-        if (asked == 0) continue;
-        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
-        const uint32_t layers = layers_with_matter(tile, place, looked_at, mask_of(asked));
-        if (layers == 0) continue;
-        const uint32_t lines = lines_in_reach(plan, tile, place, layers, task.u + first, v);
-        if (lines != 0) act(first, place, layers, lines);
+    for (int row = task.row_first; row < task.row_last; ++row) {
+        const double v = task.v[static_cast<size_t>(row)];
+        for (size_t first = 0; first < ScanTile::side; first += chunk) {
+            const uint32_t asked = (task.lanes >> first) & 0xffU;
+            if (asked == 0) continue;
+            const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
+            const uint32_t layers = layers_with_matter(tile, place, looked_at, mask_of(asked));
+            if (layers == 0) continue;
+            const uint32_t lines = lines_in_reach(plan, tile, place, layers, task.u + first, v);
+            if (lines != 0) act(row, first, place, layers, lines);
+        }
     }
+}
+
+HWY_ATTR void in_reach_of_tile(const LanePlan& plan, const TileTask& task, const ScanTile& tile,
+                               TileReach& out) {
+    out.fill(0);
+    for_chunks_in_reach(
+        plan, task, tile, [&](int row, size_t first, size_t, uint32_t, uint32_t lines) HWY_ATTR {
+            out[static_cast<size_t>(row)] |= static_cast<uint16_t>((lines << first) & task.lanes);
+        });
 }
 
 HWY_ATTR bool changes(const LanePlan& plan, const TileTask& task, const ScanTile& tile) {
     bool found = false;
-    for (int row = task.row_first; row < task.row_last && !found; ++row)
-        for_chunks_in_reach(
-            plan, task, tile, row,
-            [&](size_t first, size_t place, uint32_t, uint32_t lines) HWY_ATTR {
-                const Stretch gone =
-                    swept_of(plan, task.u + first, task.v[static_cast<size_t>(row)], lines).ends;
-                for (size_t k = 0; k < tile.layers.size(); ++k)
-                    found = found || any(overlap(matter_of(tile, k, place), gone));
-            });
+    for_chunks_in_reach(plan, task, tile,
+                        [&](int row, size_t first, size_t place, uint32_t, uint32_t lines)
+                            HWY_ATTR {
+                                if (found) return;
+                                const double v = task.v[static_cast<size_t>(row)];
+                                const Stretch gone = swept_of(plan, task.u + first, v, lines).ends;
+                                for (size_t k = 0; k < tile.layers.size(); ++k)
+                                    found = found || any(overlap(matter_of(tile, k, place), gone));
+                            });
     return found;
 }
 
 HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done) {
-    for (int row = task.row_first; row < task.row_last; ++row)
-        for_chunks_in_reach(plan, task, tile, row,
-                            [&](size_t first, size_t place, uint32_t layers, uint32_t lines)
-                                HWY_ATTR {
-                                    const double v = task.v[static_cast<size_t>(row)];
-                                    take_chunk(task, tile, place, layers,
-                                               swept_of(plan, task.u + first, v, lines), done);
-                                });
-}
-
-HWY_ATTR uint32_t in_reach_of_row(const LanePlan& plan, const TileTask& task, const ScanTile& tile,
-                                  int row) {
-    uint32_t found = 0;
-    for_chunks_in_reach(plan, task, tile, row,
-                        [&](size_t first, size_t, uint32_t, uint32_t lines)
-                            HWY_ATTR { found |= lines << first; });
-    return found & task.lanes;
+    for_chunks_in_reach(
+        plan, task, tile,
+        [&](int row, size_t first, size_t place, uint32_t layers, uint32_t lines) HWY_ATTR {
+            const double v = task.v[static_cast<size_t>(row)];
+            take_chunk(task, tile, place, layers, swept_of(plan, task.u + first, v, lines), done);
+        });
 }
 
 /// What the four corners of each cell share, safely.
@@ -296,8 +300,8 @@ HWY_ATTR bool meets_shared(const ScanTile& tile, int row, const CornerStretches&
 }
 
 const LaneCut* loops() {
-    static constexpr LaneCut table = {stretches,       changes,      cut,
-                                      in_reach_of_row, meets_shared, take_shared};
+    static constexpr LaneCut table = {stretches,        changes,      cut,
+                                      in_reach_of_tile, meets_shared, take_shared};
     return &table;
 }
 

@@ -21,8 +21,8 @@ struct TileTask {
 /// A stretch that must be taken out of a line by hand: it divides an interval or removes one.
 struct HandCut {
     uint32_t place;
-    Interval gone;
-    uint8_t low_tilt, high_tilt; // of the ends of `gone`, see ScanTile::Marks
+    double lower, upper;
+    uint8_t low_tilt, high_tilt; // of these ends, see ScanTile::Marks
 };
 
 /// What a cut did to a tile.
@@ -31,8 +31,11 @@ struct TileCut {
     alignas(64) std::array<double, ScanTile::side> points{};
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
     size_t by_hand_count = 0;
-    std::array<HandCut, ScanTile::lines> by_hand; // not done yet
+    std::array<HandCut, ScanTile::lines> by_hand; // not done yet; 8 kB, left as they are
 };
+
+/// Lines of a tile, those of a row as bits.
+using TileReach = std::array<uint16_t, ScanTile::side>;
 
 /// Stretches on the corners of a row of cells, (+inf, -inf) where there is none or where nobody
 /// has asked: one corner more than cells, filled up to whole chunks of 8.
@@ -62,8 +65,10 @@ struct LaneCut {
     /// Takes what the plan sweeps out of the tile, but for what is left to be done by hand.
     void (*cut)(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done);
 
-    /// The lines of a row, bit by bit, of which the plan may sweep something; it does of no others.
-    uint32_t (*in_reach)(const LanePlan& plan, const TileTask& task, const ScanTile& tile, int row);
+    /// The lines that the task looks at of which the plan may sweep something, for its rows; it
+    /// does of no others.
+    void (*in_reach)(const LanePlan& plan, const TileTask& task, const ScanTile& tile,
+                     TileReach& out);
 
     /// Whether these cells of a row hold matter within what their four corners share: corners
     /// 0 .. 16 in front and at the back.

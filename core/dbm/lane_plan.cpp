@@ -19,6 +19,8 @@ CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radiu
     c.from_u = from[ua];
     c.from_v = from[va];
     c.by_a = by[axis];
+    c.reach_low = c.from_a + std::min(0.0, c.by_a);
+    c.reach_high = c.from_a + std::max(0.0, c.by_a);
     c.radius = radius;
     c.length = std::sqrt(by[ua] * by[ua] + by[va] * by[va]);
     c.u_most = c.v_most = infinity;
@@ -52,6 +54,8 @@ CapsuleLanes upright_lanes(const CutterSweep& sweep, const ProfileElement& e) {
     CapsuleLanes c = capsule(sweep, 2, 0.0, e.r0);
     c.low_end = e.z0;
     c.high_end = e.z1;
+    c.reach_low += e.z0;
+    c.reach_high += e.z1;
     c.low_by_half = c.by_a < 0.0 ? c.per_length : -c.per_length;
     c.high_by_half = -c.low_by_half;
     if (c.length == 0.0) {
@@ -70,6 +74,8 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
     c.from_side = sweep.from[side];
     c.from_z = sweep.from.z;
     c.by_a = by[axis];
+    c.reach_low = c.from_a + std::min(0.0, c.by_a);
+    c.reach_high = c.from_a + std::max(0.0, c.by_a);
     c.by_side = by[side];
     c.by_z = by.z;
     c.radius = e.r0;
@@ -120,7 +126,7 @@ bool has_shaft(const std::vector<ProfileElement>& all, size_t i) {
 bool open_up(CapsuleLanes& c, double reached, double top) {
     if (reached < top) return false;
     c.opens_up = true;
-    c.high_end = reached;
+    c.high_end = c.reach_high = reached;
     return true;
 }
 

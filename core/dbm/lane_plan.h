@@ -21,7 +21,8 @@ struct CapsuleLanes {
     double low_by_half, low_at, high_by_half, high_at;
     double low_end, high_end; // added to the ends of a cylinder's stretch: its end faces
     bool opens_up;            // there is nothing above: every stretch may end at high_end itself
-    double u_most, v_most;    // beyond this height another element holds all that this one does
+    double reach_low, reach_high; // no ball's centre and no end of a cylinder lies beyond them
+    double u_most, v_most;        // beyond this height another element holds all that this one does
 };
 
 /// An upright cylinder met from the side: (a, s) is the plane of its circle, z the height.
@@ -30,9 +31,10 @@ struct AcrossLanes {
     double from_a, from_side, from_z;
     double by_a, by_side, by_z;
     double radius, z0, z1;
-    double per_side, per_z; // 1 / by_side, 1 / by_z; 0 when there is none to speak of
-    double low_at, high_at; // the moments are side * per_side + these, ...
-    double by_radius;       // ... less radius * by_radius for the low one, more for the high one
+    double reach_low, reach_high; // between them the centre moves
+    double per_side, per_z;       // 1 / by_side, 1 / by_z; 0 when there is none to speak of
+    double low_at, high_at;       // the moments are side * per_side + these, ...
+    double by_radius; // ... less radius * by_radius for the low one, more for the high one
 };
 
 /// A cone or a rounded corner. On a level move, or straight up or down, it is at a distance from

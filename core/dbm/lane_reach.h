@@ -31,46 +31,47 @@ HWY_INLINE RowMask may_hold(const Reach& reach, const Stretch& matter) {
 
 HWY_INLINE Reach reach_of_ball(const CapsuleLanes& c, const Row& u, double v) {
     const Beside at = beside(c, u, v);
-    const double high = c.opens_up ? c.high_end : c.from_a + std::max(0.0, c.by_a);
-    return {at.beyond - at.past * at.past, c.from_a + std::min(0.0, c.by_a), high, at.met};
+    return {at.beyond - at.past * at.past, c.reach_low, c.reach_high, at.met};
 }
 
 HWY_INLINE Reach reach_of_upright(const CapsuleLanes& c, const Row& u, double v) {
-    const double high = c.opens_up ? c.high_end : c.from_a + c.high_end + std::max(0.0, c.by_a);
-    return {row_of(0.0), c.from_a + c.low_end + std::min(0.0, c.by_a), high, beside(c, u, v).met};
+    return {row_of(0.0), c.reach_low, c.reach_high, beside(c, u, v).met};
 }
 
 HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) {
     constexpr double slack = 1e-6;
     const auto [s, z] = aside_and_above(c, u, v);
     const Row aside = s - within_move(s * c.per_side) * c.by_side;
-    return {(row_of(c.radius) - aside) * (aside + c.radius), c.from_a + std::min(0.0, c.by_a),
-            c.from_a + std::max(0.0, c.by_a),
+    return {(row_of(c.radius) - aside) * (aside + c.radius), c.reach_low, c.reach_high,
             at_most(row_of(c.z0 + std::min(0.0, c.by_z) - slack), z)
                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z) + slack))};
 }
 
-/// The lines of a chunk on which the plan may sweep some of this matter.
-HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v,
-                            const Stretch& matter) {
-    if (!plan.by_lanes) return at_most(matter.lower, matter.upper);
+/// The lines of a chunk on which the plan may sweep matter; `holds(test)` runs a test of a stretch
+/// over all matter there is.
+template <typename Holds>
+HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, const Holds& holds) {
+    const RowMask all = at_most(row_of(0.0), row_of(0.0));
+    if (!plan.by_lanes) return all;
     const Row at_u = load(u);
-    RowMask found = below(row_of(1.0), row_of(0.0));
+    RowMask found = but_not(all, all);
+    const auto add = [&](const Reach& reach) HWY_ATTR {
+        found =
+            found | holds([&](const Stretch& matter) HWY_ATTR { return may_hold(reach, matter); });
+    };
     for (size_t i = 0; i < plan.balls; ++i) {
         const CapsuleLanes& c = plan.ball[i];
-        if (u[0] <= c.u_most && v <= c.v_most)
-            found = found | may_hold(reach_of_ball(c, at_u, v), matter);
+        if (u[0] <= c.u_most && v <= c.v_most) add(reach_of_ball(c, at_u, v));
     }
-    for (size_t i = 0; i < plan.uprights; ++i)
-        found = found | may_hold(reach_of_upright(plan.upright[i], at_u, v), matter);
-    for (size_t i = 0; i < plan.across; ++i)
-        found = found | may_hold(reach_of_circles(plan.beside[i], at_u, v), matter);
+    for (size_t i = 0; i < plan.uprights; ++i) add(reach_of_upright(plan.upright[i], at_u, v));
+    for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.beside[i], at_u, v));
     if (plan.elements == 0) return found;
     Swept loose = nothing_swept();
     for (size_t i = 0; i < plan.elements; ++i)
         add_element(plan, plan.element[i], true, at_u, v, loose);
-    const double slack = 1e-6;
-    return found | overlap({loose.ends.lower - slack, loose.ends.upper + slack}, matter);
+    constexpr double slack = 1e-6;
+    const Stretch wider{loose.ends.lower - slack, loose.ends.upper + slack};
+    return found | holds([&](const Stretch& matter) HWY_ATTR { return overlap(wider, matter); });
 }
 
 } // namespace

@@ -60,7 +60,7 @@ struct RoundedCircles {
 /// bracket. Whatever they come to lies in the swept volume.
 HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within, double sign,
                            Swept& all) {
-    constexpr int rounds = 9;
+    constexpr int rounds = 50; // half a dozen will do, but where a line only grazes the body
     const double by = sign * circles.c.by_a;
     Row low = within.first, high = within.last;
     Row t = (low + high) * 0.5;
@@ -73,7 +73,11 @@ HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within,
         high = choose(later, high, t);
         const Row next = t - change / least(here.bend, row_of(-1e-300));
         const RowMask good = here.inside & below(low, next) & below(next, high);
+        const Row before = t;
         t = choose(good, next, (low + high) * 0.5);
+        // Off by this much in time is nothing along the line.
+        const RowMask moved = below(row_of(1e-14), (t - before) * (t - before));
+        if (!any(within.met & moved)) break;
     }
     circles.offer(t, circles.at(t), within.met, all);
 }

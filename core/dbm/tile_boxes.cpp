@@ -12,12 +12,16 @@ Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePlac
     const int axis = lines.axis(), ua = u_axis(axis), va = v_axis(axis);
     const int wide = places.cells ? 1 : 0;
     Aabb box;
+    if (lines.tile(tile) == nullptr) return box;
+    const std::vector<ScanTile::Layer>& layers = lines.tile(tile)->layers;
     for (int v = range.v_first; v < range.v_last; ++v) {
         for (int u = range.u_first; u < range.u_last; ++u) {
-            const LineView line = lines.line(u, v);
-            if (line.empty()) continue;
-            box.min[axis] = std::min(box.min[axis], line.front().lower);
-            box.max[axis] = std::max(box.max[axis], line.back().upper);
+            const auto place =
+                static_cast<size_t>(v % ScanTile::side * ScanTile::side + u % ScanTile::side);
+            if (!(layers[0].lower[place] < layers[0].upper[place])) continue;
+            box.min[axis] = std::min(box.min[axis], layers[0].lower[place]);
+            for (const ScanTile::Layer& layer : layers)
+                box.max[axis] = std::max(box.max[axis], layer.upper[place]);
             box.min[ua] = std::min(box.min[ua], places.u[u]);
             box.max[ua] = std::max(box.max[ua], places.u[u + wide]);
             box.min[va] = std::min(box.min[va], places.v[v]);

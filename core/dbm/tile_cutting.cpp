@@ -63,7 +63,7 @@ LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
     for (size_t i = 0; i < done.by_hand_count; ++i) {
         const HandCut& hand = done.by_hand[i];
         const LineSums before = task.grid ? counted(task, tile, hand.place) : LineSums{};
-        subtract(tile, hand.place, hand.gone,
+        subtract(tile, hand.place, {hand.lower, hand.upper},
                  {task.mark, task.mark, hand.high_tilt, hand.low_tilt});
         const LineSums after = task.grid ? counted(task, tile, hand.place) : LineSums{};
         sums.beyond += before.beyond - after.beyond;
@@ -90,7 +90,7 @@ public:
     /// Those on the corners `wanted`, bit by bit.
     const CornerStretches& at(int row, uint32_t wanted) {
         Corners& kept = rows_[static_cast<size_t>(row % 2)];
-        if (kept.of != row) kept = {row, 0, {}};
+        if (kept.of != row) kept.of = row, kept.known = 0;
         const uint32_t missing = wanted & ~kept.known;
         if (missing == 0) return kept.ends;
         loops_.stretches(plan_, task_.u, task_.v[row], wanted | kept.known, kept.ends);
@@ -189,10 +189,12 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
     const LaneCut& loops = lane_cut();
     TileCut done;
     ScanTile* own = nullptr;
+    TileReach reach;
+    // What all four corners of a cell share is no more than what the first of them has.
+    loops.in_reach(plan, task, *model.columns.tile(tile), reach);
     for (int row = task.row_first; row < task.row_last; ++row) {
         const ScanTile& now = *model.columns.tile(tile);
-        // What all four corners share is no more than what the first of them has.
-        const uint32_t cells = loops.in_reach(plan, task, now, row);
+        const uint32_t cells = reach[static_cast<size_t>(row)];
         if (cells == 0) continue;
         const CornerStretches& front = corners.at(row, cells | (cells << 1U));
         const CornerStretches& back = corners.at(row + 1, cells | (cells << 1U));
