@@ -16,7 +16,7 @@ namespace {
 struct Options {
     std::string program, setup, output, stock, comparison;
     ProgramArguments reading;
-    std::string format = "text";
+    std::string format = "text", start_line;
     std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
@@ -94,6 +94,7 @@ ExitCode check(const Options& options) {
                           .memory_limit = memory_limit,
                           .needs_surface = needs_surface,
                           .before_model = say_memory,
+                          .start_line = options.start_line,
                           .settings = *settings});
     if (!run) {
         print_error(run.error());
@@ -132,6 +133,9 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                     "What the model of the stock may take, MB (8590 unless said)")
         ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
+    command.add_option("--start-line", options->start_line,
+                       "Start at this line, or at block N210, as after switching on, and list what "
+                       "is missing");
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();

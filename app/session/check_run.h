@@ -65,6 +65,7 @@ struct CheckJob {
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     bool needs_surface = false;              // that of the stock is wanted, also without a part
     std::function<void(double)> before_model = {}; // told the bytes that the model will take
+    std::string start_line = {};                   // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;                      // replace what the set-up says under [program]
 };
 
