@@ -6,12 +6,14 @@
 #include <fmt/format.h>
 
 #include "app/session/allowed_rules.h"
+#include "app/session/block_delete.h"
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
 #include "app/session/m_codes.h"
 #include "app/session/offset_watch.h"
 #include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
+#include "app/session/units_watch.h"
 #include "core/sim/block_clock.h"
 #include "core/sim/finding_text.h"
 #include "gcode/error_rules.h"
@@ -142,6 +144,7 @@ struct Runner {
     gcode::Lowering lowering = gcode::initial_lowering(environment);
     core::BlockClock clock = core::start_clock(run.setup.machine);
     OffsetWatch offsets = {};
+    UnitsWatch units = {};
 
     /// Begins in the middle of the program, as a control does that was just switched on.
     core::Result<void> start_at(const std::string& line) {
@@ -234,6 +237,7 @@ struct Runner {
         for (const core::Finding& finding : checked.result.findings)
             run.findings.push_back(finding);
         watch_offsets(offsets, run.setup, place, of_block, state);
+        watch_units(units, of_block);
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
@@ -255,6 +259,9 @@ struct Runner {
             run.findings.push_back(std::move(finding));
         for (core::Finding& finding : implausible_offsets(offsets, run.setup))
             run.findings.push_back(std::move(finding));
+        if (auto jump =
+                units_off_the_stock(units, run.setup, state.stock.outer_box, place.modal.unit_said))
+            run.findings.push_back(*std::move(jump));
         std::vector<core::BlockTime> timed;
         core::stop_clock(clock, timed);
         enter(timed);
@@ -366,6 +373,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     if (!run.stopped && (job.needs_surface || run.setup.part))
         run.surface = core::stock_mesh(*run.stock);
     check_part(run);
+    look_at_both_switch_positions(run, *program, file.environment);
     apply_allowed_rules(run, file.allow_comments);
     return run;
 }

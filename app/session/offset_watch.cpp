@@ -12,8 +12,9 @@ namespace {
 
 constexpr const char* names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                  "G59", "G59.1", "G59.2", "G59.3"};
-constexpr double nearly_all = 0.9; // of the way that is fed
-constexpr double slack = 0.01;     // mm by which a cut along a face may miss it
+constexpr double nearly_all = 0.9;  // of the way that is fed
+constexpr double cut_through = 3.0; // mm below the stock that cutting it off may go
+constexpr double slack = 0.01;      // mm by which a cut along a face may miss it
 
 /// The tip at both ends of a motion, in the frame of the stock.
 struct TipWay {
@@ -21,6 +22,7 @@ struct TipWay {
     bool upright = true;
 
     double low() const { return std::min(from.z, to.z); }
+    double high() const { return std::max(from.z, to.z); }
 };
 
 std::optional<TipWay> tip_way(const core::Setup& setup, const core::Motion& motion, double length) {
@@ -58,8 +60,9 @@ void add_feed(OffsetUse& use, const TipWay& way, const core::Aabb& stock, double
     if (way.low() >= stock.max.z - slack) {
         use.above += length;
         if (!use.above_block) use.above_block = block;
-    } else if (way.low() <= stock.min.z + slack) {
+    } else if (way.high() <= stock.min.z + slack) {
         use.below += length;
+        use.under = std::min(use.under, stock.min.z - way.high());
         if (!use.below_block) use.below_block = block;
     } else {
         return;
@@ -116,7 +119,8 @@ std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const c
     for (const auto& [index, use] : watch) {
         if (!use.is_judged || use.way <= 0.0) continue;
         const bool above = use.above >= nearly_all * use.way;
-        const bool below = use.below >= nearly_all * use.way && use.rapids_through;
+        const bool below =
+            use.below >= nearly_all * use.way && (use.rapids_through || use.under > cut_through);
         if (above || below) findings.push_back(finding_of(setup, index, use, above));
     }
     std::erase_if(findings, [](const core::Finding& finding) {

@@ -62,9 +62,9 @@ TEST(AllowedRules, DoNotCountWhereTheSetUpIsSilent) {
 TEST(AllowedRules, CoverTheirRuleAndTheirLineOnly) {
     EXPECT_EQ(checked_with("(feeler: allow near-miss)", "allow_comments = true\n").errors(),
               "rapid-near-clamp 8");
-    const Checked other =
-        check(past_a_clamp("allow_comments = true\n"),
-              program({"G0 X-20. Y97.8", "Z2.5 (feeler: allow rapid-near-clamp)", "X120.", "Z60."}));
+    const Checked other = check(
+        past_a_clamp("allow_comments = true\n"),
+        program({"G0 X-20. Y97.8", "Z2.5 (feeler: allow rapid-near-clamp)", "X120.", "Z60."}));
     EXPECT_EQ(other.errors(), "rapid-near-clamp 8");
 }
 
