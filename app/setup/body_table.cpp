@@ -11,6 +11,7 @@
 #include "core/dbm/stock_record.h"
 #include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
+#include "core/sim/allowance.h"
 
 namespace app {
 namespace {
@@ -304,9 +305,8 @@ void read_fixture(TableReader& table, BodyContext& context) {
     core::Fixture fixture;
     fixture.name = table.string("name").value_or("");
     if (fixture.name.empty()) return table.need("name");
-    for (const char* reserved :
-         {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
-        if (fixture.name == reserved) table.refuse("name", "is a word with a meaning of its own");
+    if (core::names_a_kind(fixture.name))
+        table.refuse("name", "is a word with a meaning of its own");
     for (const core::Fixture& other : setup.fixtures)
         if (other.name == fixture.name)
             table.refuse("name", fmt::format("\"{}\" is there twice", fixture.name));

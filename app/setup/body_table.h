@@ -32,6 +32,7 @@ void read_stock(TableReader& table, BodyContext& context);
 
 /// Reads `[part]`. The stock must have been read.
 void read_part(TableReader& table, BodyContext& context);
+
 /// A stock that is inferred from the program, in the frame of G54.
 void infer_stock(BodyContext& context);
 

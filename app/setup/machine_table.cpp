@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/allowance.h"
+
 namespace app {
 namespace {
 
@@ -141,8 +143,8 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
     core::MachineBody body;
     body.name = table.string("name").value_or("");
     if (body.name.empty()) return table.need("name");
-    for (const char* reserved : {"flutes", "shank", "holder", "stock", "fixture", "machine"})
-        if (body.name == reserved) table.refuse("name", "is a word with a meaning of its own");
+    if (core::names_a_kind(body.name) && body.name != "nose")
+        table.refuse("name", "is a word with a meaning of its own");
     for (const core::MachineBody& other : machine.bodies)
         if (other.name == body.name)
             table.refuse("name", fmt::format("\"{}\" is there twice", body.name));

@@ -10,6 +10,7 @@
 #include "app/setup/table_reader.h"
 #include "app/setup/tool_table.h"
 #include "app/tools/tool_library.h"
+#include "core/sim/allowance.h"
 
 namespace app {
 namespace {
@@ -110,10 +111,7 @@ void read_allowances(TableReader& root, core::Setup& setup) {
 void check_allowance_names(TableReader& table, const core::Setup& setup) {
     for (const core::AllowanceRule& rule : setup.allowances) {
         for (const std::string& name : rule.between) {
-            bool known = false;
-            for (const char* word :
-                 {"flutes", "shank", "holder", "nose", "stock", "fixture", "machine"})
-                known = known || name == word;
+            bool known = core::names_a_kind(name);
             for (const core::Fixture& fixture : setup.fixtures)
                 known = known || name == fixture.name;
             for (const core::MachineBody& body : setup.machine.bodies)

@@ -1,7 +1,6 @@
 #include "core/dbm/solid.h"
 
-#include <numeric>
-
+#include "core/base/union_find.h"
 #include "core/dbm/mesh_scan.h"
 
 namespace core {
@@ -125,18 +124,13 @@ IntervalList line_of_mesh(const SolidMesh& solid, int axis, double u, double v) 
 
 /// The first vertex of every connected shell.
 std::vector<Vec3> shell_points(const Mesh& mesh) {
-    std::vector<uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root = [&](uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
+    UnionFind shells(mesh.vertices.size());
     for (const Mesh::Corners& t : mesh.triangles) {
-        parent[root(t[1])] = root(t[0]);
-        parent[root(t[2])] = root(t[0]);
+        shells.join(t[1], t[0]);
+        shells.join(t[2], t[0]);
     }
     std::vector<bool> used(mesh.vertices.size(), false);
-    for (const Mesh::Corners& t : mesh.triangles) used[root(t[0])] = true;
+    for (const Mesh::Corners& t : mesh.triangles) used[shells.root(t[0])] = true;
     std::vector<Vec3> points;
     for (size_t i = 0; i < used.size(); ++i)
         if (used[i]) points.push_back(mesh.vertices[i]);

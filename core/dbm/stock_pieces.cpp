@@ -2,33 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "core/base/union_find.h"
 
 namespace core {
 namespace {
 
 constexpr uint32_t no_piece = ~uint32_t{0};
 constexpr int side = ScanLines::tile_side;
-
-/// Forests of numbers that belong together.
-class Groups {
-public:
-    explicit Groups(size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    uint32_t root(uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = root(a);
-        b = root(b);
-        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
 
 /// The first and the last line whose place along `axis` lies within lower .. upper, widened by
 /// `more` lines; first > last if there is none.
@@ -108,7 +89,7 @@ private:
                                    + (v - range.v_first) * (range.u_last - range.u_first));
     }
     std::shared_ptr<Tile> tile_parts(int tu, int tv) const;
-    void number_parts(Tile& tile, const LineRange& range, Groups& groups) const;
+    void number_parts(Tile& tile, const LineRange& range, UnionFind& groups) const;
     void link(int tu, int tv, int towards);
 
     const CutModel& model_;
@@ -127,7 +108,7 @@ std::shared_ptr<PieceMap::Tile> PieceWork::tile_parts(int tu, int tv) const {
             count += z_.line(u, v).size();
         }
     tile->first.push_back(static_cast<uint32_t>(count));
-    Groups groups(count);
+    UnionFind groups(count);
     for (int v = range.v_first; v < range.v_last; ++v)
         for (int u = range.u_first; u < range.u_last; ++u)
             for (int towards = 0; towards < 2; ++towards) {
@@ -146,7 +127,7 @@ std::shared_ptr<PieceMap::Tile> PieceWork::tile_parts(int tu, int tv) const {
     return tile;
 }
 
-void PieceWork::number_parts(Tile& tile, const LineRange& range, Groups& groups) const {
+void PieceWork::number_parts(Tile& tile, const LineRange& range, UnionFind& groups) const {
     std::vector<uint32_t> number(tile.first.back(), 0);
     uint32_t stretch = 0;
     for (int v = range.v_first; v < range.v_last; ++v)
@@ -220,7 +201,7 @@ std::vector<StockPiece> PieceWork::put_together() {
     std::vector<uint32_t> first(1, 0);
     for (const auto& tile : map_.tiles_)
         first.push_back(first.back() + static_cast<uint32_t>(tile->parts.size()));
-    Groups groups(first.back());
+    UnionFind groups(first.back());
     for (int tv = 0; tv < v_tiles_; ++tv)
         for (int tu = 0; tu < u_tiles_; ++tu)
             for (size_t towards = 0; towards < 2; ++towards)

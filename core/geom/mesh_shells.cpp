@@ -3,34 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <tuple>
 
+#include "core/base/union_find.h"
 #include "core/geom/line_crossing.h"
 
 namespace core {
 namespace {
-
-class UnionFind {
-public:
-    explicit UnionFind(size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), uint32_t{0});
-    }
-    uint32_t root(uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b); // the least member stands for its group
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
 
 void turn(Mesh::Corners& triangle) { std::swap(triangle[1], triangle[2]); }
 

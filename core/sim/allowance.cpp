@@ -1,5 +1,8 @@
 #include "core/sim/allowance.h"
 
+#include <algorithm>
+#include <array>
+
 #include "core/sim/clearance.h"
 
 namespace core {
@@ -44,6 +47,12 @@ Allowance allowance_of(const Setup& setup, const Pair& pair) {
     if (pair.fixture) return {setup.allowance.value_or(fixture_distance), 0.0};
     if (pair.part >= PartKind::holder) return {setup.allowance.value_or(stock_distance), 0.0};
     return {0.0, default_contact};
+}
+
+bool names_a_kind(std::string_view name) {
+    constexpr std::array<std::string_view, 7> kinds = {"flutes", "shank",   "holder", "nose",
+                                                       "stock",  "fixture", "machine"};
+    return std::find(kinds.begin(), kinds.end(), name) != kinds.end();
 }
 
 } // namespace core

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "core/sim/setup.h"
 
 namespace core {
@@ -14,5 +16,9 @@ struct Allowance {
 
 /// What a pair must keep, by the set-up's rules or else by default.
 Allowance allowance_of(const Setup& setup, const Pair& pair);
+
+/// Whether a name stands for a kind of bodies in allowances: flutes, shank, holder, nose, stock,
+/// fixture, machine.
+bool names_a_kind(std::string_view name);
 
 } // namespace core

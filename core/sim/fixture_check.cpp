@@ -4,15 +4,6 @@
 namespace core {
 namespace {
 
-/// The place half way, as a leg on which nothing moves.
-Leg still_half_way(const Leg& leg) {
-    const Leg first_half = stretch(leg, 0.0, 0.5);
-    Leg still = first_half;
-    still.places = {first_half.places[1]};
-    still.begin = first_half.end;
-    return still;
-}
-
 /// From the frame of a fixture to that of the stock, at these axis values.
 Transform stock_from_fixture(const Setup& setup, const Fixture& fixture, const AxisValues& values) {
     if (fixture.mount.link == setup.stock_mount.link)
@@ -72,11 +63,7 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     if (!relative.turns) return merge(known, look_at_fixture(leg, start, relative, body, known));
     // A body that turns: half of the way at a time, until it is far or seen sharply enough.
     const double apart = distance(bounds(body, relative), bounds(setup_.fixtures[fixture].body));
-    if (apart >= std::min(known.upper, setup_.search_limit)) {
-        known.lower = std::min(known.lower, setup_.search_limit);
-        known.at_end = apart;
-        return;
-    }
+    if (is_far(known, apart, setup_.search_limit)) return;
     if (!is_too_vague(relative)) {
         PairClearance now = look_at_fixture(leg, start, relative, body, known);
         if (now.lower >= std::min(known.upper, setup_.search_limit)

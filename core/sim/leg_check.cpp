@@ -75,9 +75,7 @@ Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, co
 void LegCheck::look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
                              const CutModel& stock, double nearest) {
     // Where the body really is at one moment is a sure witness.
-    Leg still = stretch(leg, 0.0, 0.5);
-    still.places = {still.places[1]};
-    const Observation here = observe(body, still, stock, nearest);
+    const Observation here = observe(body, still_half_way(leg), stock, nearest);
     seen.shrunk.upper = here.shrunk.upper;
     if (here.plain.upper >= seen.plain.upper) return;
     const double lower = seen.plain.lower;
@@ -224,6 +222,12 @@ double LegCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock
     }
     // After the finding the material is gone, so that one crash is one finding.
     return gouged ? cut_along(leg, stock) : 0.0;
+}
+
+double LegCheck::check_whole(const Leg& leg, double start, CutModel& stock,
+                             std::vector<PairClearance>& pairs) {
+    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
+                                     : check_not_cutting(leg, start, stock, pairs);
 }
 
 std::shared_ptr<const Cutter> LegCheck::cutter_for(const RelativeLeg& leg) {

@@ -128,6 +128,9 @@ private:
                       std::vector<PairClearance>& pairs);
     void check_hull(const Leg& leg, double start, const CutModel& stock,
                     std::vector<PairClearance>& pairs);
+    /// All bodies against the stock, by one look at each if time does not matter; the volume cut.
+    double check_whole(const Leg& leg, double start, CutModel& stock,
+                       std::vector<PairClearance>& pairs);
     double check_cutting(const Leg& leg, double start, CutModel& stock,
                          std::vector<PairClearance>& pairs);
     double check_not_cutting(const Leg& leg, double start, CutModel& stock,

@@ -15,6 +15,13 @@ bool stays_away(PairClearance& known, const Leg& leg, const RelativeLeg& relativ
     return true;
 }
 
+bool is_far(PairClearance& known, double apart, double search_limit) {
+    if (apart < std::min(known.upper, search_limit)) return false;
+    known.lower = std::min(known.lower, search_limit);
+    known.at_end = apart;
+    return true;
+}
+
 Separation widened(Separation found, const RelativeLeg& leg) {
     found.lower = std::max(0.0, found.lower - leg.error);
     if (found.upper > 0.0 || leg.turns) found.upper += leg.error;

@@ -13,6 +13,10 @@ PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair, const 
 /// leg's end up to date if so.
 bool stays_away(PairClearance& known, const Leg& leg, const RelativeLeg& relative);
 
+/// Whether bodies that stay this far apart over a leg cannot say more than is known of the pair, or
+/// than the search limit. Notes the bound if so.
+bool is_far(PairClearance& known, double apart, double search_limit);
+
 /// What a look at a leg says of the real way, given the leg's error. A body that turns has not been
 /// where the look put it, so an overlap is only as sure as the error.
 Separation widened(Separation found, const RelativeLeg& leg);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "core/base/union_find.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/nearest_surface.h"
 #include "core/sim/verdict.h"
@@ -196,12 +196,7 @@ double Comparison::area(size_t sample) const {
 /// Samples that are off by more than the tolerance belong together if their triangles share
 /// corners.
 void Comparison::add_regions(Deviation kind) {
-    std::vector<uint32_t> parent(surface_.mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root = [&](uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
+    UnionFind groups(surface_.mesh.vertices.size());
     const auto is_off = [&](size_t k) {
         return worst(kind)[k].amount > part_.tolerance + resolution;
     };
@@ -210,13 +205,12 @@ void Comparison::add_regions(Deviation kind) {
         largest = std::max(largest, worst(kind)[k].amount);
         if (!is_off(k)) continue;
         for (size_t half = 0; half < 2; ++half)
-            for (const uint32_t corner : triangle(k, half))
-                parent[root(corner)] = root(triangle(k, 0)[0]);
+            for (const uint32_t corner : triangle(k, half)) groups.join(corner, triangle(k, 0)[0]);
     }
     std::map<uint32_t, DeviationRegion> regions;
     for (size_t k = 0; k < surface_.samples.size(); ++k) {
         if (!is_off(k)) continue;
-        DeviationRegion& region = regions[root(triangle(k, 0)[0])];
+        DeviationRegion& region = regions[groups.root(triangle(k, 0)[0])];
         region.kind = kind;
         region.area += area(k);
         if (worst(kind)[k].amount <= region.amount) continue;
@@ -229,7 +223,7 @@ void Comparison::add_regions(Deviation kind) {
     for (size_t k = 0; k < surface_.samples.size(); ++k) {
         const auto& sweep = surface_.samples[k].sweep;
         if (!sweep || !is_off(k)) continue;
-        const uint32_t at = root(triangle(k, 0)[0]);
+        const uint32_t at = groups.root(triangle(k, 0)[0]);
         if (worst(kind)[k].amount < 0.99 * regions[at].amount) continue;
         uint32_t& last = sweeps.try_emplace(at, *sweep).first->second;
         last = std::max(last, *sweep);

@@ -51,15 +51,10 @@ void add_straight(Path& path, const AxisValues& from, const AxisValues& to, doub
     path.duration += duration;
 }
 
-/// The length that a feed is counted along: of the linear axes, or of the rotary ones, in degrees,
-/// where only they move.
 double feed_length(const AxisValues& from, const AxisValues& to) {
-    double linear = 0.0, secondary = 0.0, rotary = 0.0;
-    for (size_t i = 0; i < axis_count; ++i) {
-        double& sum = is_rotary(i) ? rotary : is_secondary(i) ? secondary : linear;
-        sum += (to[i] - from[i]) * (to[i] - from[i]);
-    }
-    return std::sqrt(linear > 0.0 ? linear : secondary > 0.0 ? secondary : rotary);
+    AxisValues by;
+    for (size_t i = 0; i < axis_count; ++i) by[i] = to[i] - from[i];
+    return fed_length(by);
 }
 
 /// Corners of the box of values of X, Y and Z between two places, the others as in the first.
@@ -239,6 +234,14 @@ Leg stretch(const Leg& leg, double first, double last) {
         time(first),
         time(last),
         leg.path_error};
+}
+
+Leg still_half_way(const Leg& leg) {
+    const Leg first_half = stretch(leg, 0.0, 0.5);
+    Leg still = first_half;
+    still.places = {first_half.places[1]};
+    still.begin = first_half.end;
+    return still;
 }
 
 Path path_of(const Motion& motion, const Machine& machine, double max_error) {

@@ -26,6 +26,9 @@ struct Leg {
 /// The part of a straight leg between two shares of it, 0..1.
 Leg stretch(const Leg& leg, double first, double last);
 
+/// The place half way along a straight leg, as a leg on which nothing moves.
+Leg still_half_way(const Leg& leg);
+
 /// A motion as legs, in order. Empty when an axis may stand anywhere.
 struct Path {
     std::vector<Leg> legs;

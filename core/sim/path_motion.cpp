@@ -15,8 +15,8 @@ constexpr double seconds_per_minute = 60.0;
 
 /// How far each axis goes; empty if nobody knows. An axis that nobody knows and nobody tells to
 /// move stays where it is.
-std::optional<AxisNumbers> travels(const Motion& motion) {
-    AxisNumbers by{};
+std::optional<AxisValues> travels(const Motion& motion) {
+    AxisValues by{};
     for (size_t i = 0; i < motion.from.size(); ++i) {
         if (motion.from[i].has_value() != motion.to[i].has_value()) return std::nullopt;
         if (motion.from[i]) by[i] = *motion.to[i] - *motion.from[i];
@@ -24,28 +24,20 @@ std::optional<AxisNumbers> travels(const Motion& motion) {
     return by;
 }
 
-/// The length that a feed counts along.
-double programmed_length(const AxisNumbers& by) {
-    for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
-        const Vec3 part(by[first], by[first + 1], by[first + 2]);
-        if (part != Vec3(0.0)) return glm::length(part);
-    }
-    return 0.0;
-}
-
-/// The same where the control follows the tip: the length of its way, unless it only turns.
-double feed_length(const Motion& motion, const AxisNumbers& by) {
+/// The length that a feed is counted along: where the control follows the tip, that of its way,
+/// unless it only turns.
+double feed_length(const Motion& motion, const AxisValues& by) {
     if (motion.tip && motion.kind != MotionKind::rapid)
         if (const double way = glm::distance(motion.tip->from, motion.tip->to); way > 0.0)
             return way;
-    return programmed_length(by);
+    return fed_length(by);
 }
 
 double axis_speed(const Machine& machine, size_t axis) {
     return machine.axes[axis].rapid.value_or(assumed_rapid) / seconds_per_minute;
 }
 
-PathMotion along_line(const AxisNumbers& by, double length) {
+PathMotion along_line(const AxisValues& by, double length) {
     PathMotion path{.length = length};
     for (size_t i = 0; i < by.size(); ++i) {
         path.start[i] = path.end[i] = by[i] / length;
@@ -62,7 +54,7 @@ double greatest_cosine(double first, double last) {
 }
 
 /// A circle, helix or spiral: s/L of the way along, it has turned by that share of the angle.
-std::optional<PathMotion> along_arc(const Motion& motion, const AxisNumbers& by) {
+std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) {
     const ArcPath& arc = *motion.arc;
     const auto a = static_cast<size_t>((arc.normal + 1) % 3);
     const auto b = static_cast<size_t>((arc.normal + 2) % 3);
@@ -77,7 +69,7 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisNumbers& by)
     if (!(length > 0.0) || !(radius > 0.0)) return std::nullopt;
     PathMotion path = along_line(by, length);
     const double first = angle_of(v, u), second = first + arc.angle;
-    const auto rates = [&](double angle, double reach, AxisNumbers& rate) {
+    const auto rates = [&](double angle, double reach, AxisValues& rate) {
         const SinCos at = sin_cos(angle);
         rate[a] = (drift * at.cos - reach * arc.angle * at.sin) / length;
         rate[b] = (drift * at.sin + reach * arc.angle * at.cos) / length;
@@ -102,7 +94,7 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisNumbers& by)
 /// way v: per share of the motion they go no faster than w r + v, bend no more than 2 w (w r + v),
 /// and that changes by no more than 3 w^2 (w r + v). So what lies between the steps is bounded,
 /// too.
-PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisNumbers& by,
+PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisValues& by,
                      double length) {
     constexpr int steps = 64;
     const TipPath& tip = *motion.tip;

@@ -12,9 +12,6 @@
 
 namespace core {
 
-/// A number for each of the axes X, Y, Z, A, B, C, U, V, W.
-using AxisNumbers = AxisValues;
-
 /// How fast an axis may go and how soon it may get there; without a limit unless said. mm/s and
 /// mm/s2, or degrees.
 struct AxisLimits {
@@ -38,9 +35,9 @@ constexpr size_t look_ahead = 512;
 struct PathMotion {
     double length = 0.0; // above 0, in the unit the speed is programmed in
     double speed = 0.0; // wanted along the path, per second; infinity if axes with a speed limit it
-    AxisNumbers start{}, end{}; // rates where it begins and ends
-    AxisNumbers fastest{};      // the greatest rate of each axis on the way, not negative
-    AxisNumbers bend{};         // the greatest change of its rate per unit of length, not negative
+    AxisValues start{}, end{}; // rates where it begins and ends
+    AxisValues fastest{};      // the greatest rate of each axis on the way, not negative
+    AxisValues bend{};         // the greatest change of its rate per unit of length, not negative
 };
 
 /// When a motion takes place and how its speed changes: up, on, and down, at one acceleration.

@@ -73,11 +73,7 @@ void LegCheck::check_turning_body(const MovingBody& body, const Leg& leg, double
     const RelativeLeg relative = against_stock(body, leg);
     if (stays_away(known, leg, relative)) return;
     const double apart = distance(bounds(body, relative), stock.outer_box);
-    if (apart >= std::min(known.upper, setup_.search_limit)) {
-        known.lower = std::min(known.lower, setup_.search_limit);
-        known.at_end = apart;
-        return;
-    }
+    if (is_far(known, apart, setup_.search_limit)) return;
     if (!is_too_vague(relative)) {
         // Mostly the raw stock's box tells enough of a body that is large and far.
         const double from_box = distance_to_box(body, relative, stock.outer_box);
@@ -88,10 +84,10 @@ void LegCheck::check_turning_body(const MovingBody& body, const Leg& leg, double
         }
         const Observation seen = observe(body, leg, stock, known.upper);
         const PairClearance now = clearance(body, leg, start, seen, seen);
-        const bool is_far = now.lower >= std::min(known.upper, setup_.search_limit);
+        const bool far = now.lower >= std::min(known.upper, setup_.search_limit);
         const bool is_sharp =
             relative.error <= std::max(finest_error(body), sharp_share * now.lower);
-        if (!relative.turns || is_far || is_sharp || now.verdict == Verdict::collision)
+        if (!relative.turns || far || is_sharp || now.verdict == Verdict::collision)
             return merge(known, now);
     }
     check_turning_body(body, stretch(leg, 0.0, 0.5), start, stock, pairs);
@@ -110,9 +106,7 @@ double LegCheck::check_turning(const Leg& leg, double start, CutModel& stock,
         }
         return 0.0;
     }
-    if (!turns_too_far(leg))
-        return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
-                                         : check_not_cutting(leg, start, stock, pairs);
+    if (!turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
     if (is_seen_from_afar(leg, start, stock, pairs)) return 0.0;
     return check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs)
            + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
@@ -131,8 +125,7 @@ double LegCheck::check_stock(const Leg& leg, double start, CutModel& stock,
         only_tool_ = false;
         return removed;
     }
-    return use_ == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
-                                     : check_not_cutting(leg, start, stock, pairs);
+    return check_whole(leg, start, stock, pairs);
 }
 
 } // namespace core

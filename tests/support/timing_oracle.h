@@ -42,19 +42,19 @@ inline std::vector<double> fastest_times(const std::vector<SpeedPiece>& pieces, 
 /// What a machine would see of a rounded corner that takes `lasts` seconds: the rates change evenly
 /// from those before to those after, at this speed along both.
 struct CornerRun {
-    core::AxisNumbers acceleration{}; // the greatest of each axis
-    double missed = infinity;         // least distance from the corner along X, Y, Z
-    double length = 0.0;              // of either motion that is used up
+    core::AxisValues acceleration{}; // the greatest of each axis
+    double missed = infinity;        // least distance from the corner along X, Y, Z
+    double length = 0.0;             // of either motion that is used up
 
     static constexpr double infinity = core::infinity;
 };
 
-inline CornerRun run_corner(const core::AxisNumbers& before, const core::AxisNumbers& after,
+inline CornerRun run_corner(const core::AxisValues& before, const core::AxisValues& after,
                             double speed, double lasts) {
     CornerRun run;
     run.length = 0.5 * speed * lasts;
     constexpr int steps = 2000;
-    core::AxisNumbers place{}, rate{};
+    core::AxisValues place{}, rate{};
     for (size_t i = 0; i < place.size(); ++i) place[i] = -run.length * before[i];
     const double tick = lasts / steps;
     for (int k = 0; k <= steps; ++k) {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace core {
+
+/// Numbers 0 .. count - 1 in groups that can be joined. The least member stands for its group.
+class UnionFind {
+public:
+    explicit UnionFind(size_t count) : parent_(count) {
+        std::iota(parent_.begin(), parent_.end(), uint32_t{0});
+    }
+    uint32_t root(uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(uint32_t a, uint32_t b) {
+        a = root(a);
+        b = root(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+} // namespace core
