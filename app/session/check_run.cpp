@@ -137,6 +137,7 @@ struct Runner {
     const gcode::Environment& environment;
     CheckRun& run;
     bool speed_by_hand = false;
+    bool stock_is_stated = true; // false: it was made from the program's own cuts
     gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
                                   environment.search_path};
     gcode::Interpreter interpreter{library, environment};
@@ -253,15 +254,20 @@ struct Runner {
             core::settle_time(run.blocks[core::value_of(time.block)].result, time);
     }
 
-    void to_the_end(core::SimulatorState& state) {
-        run_blocks(state);
-        for (core::Finding& finding : core::end_of_run(run.setup, state))
-            run.findings.push_back(std::move(finding));
+    /// What the program as a whole does, against the size and the place of the stock.
+    void hold_against_stock(const core::SimulatorState& state) {
         for (core::Finding& finding : implausible_offsets(offsets, run.setup))
             run.findings.push_back(std::move(finding));
         if (auto jump =
                 units_off_the_stock(units, run.setup, state.stock.outer_box, place.modal.unit_said))
             run.findings.push_back(*std::move(jump));
+    }
+
+    void to_the_end(core::SimulatorState& state) {
+        run_blocks(state);
+        for (core::Finding& finding : core::end_of_run(run.setup, state))
+            run.findings.push_back(std::move(finding));
+        if (stock_is_stated) hold_against_stock(state);
         std::vector<core::BlockTime> timed;
         core::stop_clock(clock, timed);
         enter(timed);
@@ -339,6 +345,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
+    const bool stock_is_stated = !file.needs_stock && !file.is_inferred;
     if (const auto whole = complete_setup(file, *program); !whole)
         return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
@@ -362,7 +369,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
-    Runner runner{*program, file.environment, run, file.speed_by_hand};
+    Runner runner{*program, file.environment, run, file.speed_by_hand, stock_is_stated};
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));

@@ -14,6 +14,7 @@ constexpr const char* names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                  "G59", "G59.1", "G59.2", "G59.3"};
 constexpr double nearly_all = 0.9;  // of the way that is fed
 constexpr double cut_through = 3.0; // mm below the stock that cutting it off may go
+constexpr double in_the_air = 0.5;  // mm above the stock; what just touches it may be meant to
 constexpr double slack = 0.01;      // mm by which a cut along a face may miss it
 
 /// The tip at both ends of a motion, in the frame of the stock.
@@ -118,7 +119,8 @@ std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const c
     std::vector<core::Finding> findings;
     for (const auto& [index, use] : watch) {
         if (!use.is_judged || use.way <= 0.0) continue;
-        const bool above = use.above >= nearly_all * use.way;
+        const bool above =
+            use.above >= nearly_all * use.way && use.highest > use.stock_top + in_the_air;
         const bool below =
             use.below >= nearly_all * use.way && (use.rapids_through || use.under > cut_through);
         if (above || below) findings.push_back(finding_of(setup, index, use, above));

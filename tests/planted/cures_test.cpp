@@ -87,15 +87,14 @@ TEST(Cure, OfALowRetractClearsWhatStandsBetween) {
     EXPECT_NE(two_pockets(4.0 + higher - 0.2).errors(), "");
 }
 
-TEST(LowRetract, PassesOverABossByLessThanHalfAMillimetre) {
-    // The pockets are milled first, 3 below the face: what is left between them is a boss.
-    const auto over_the_boss = [](const std::string& z) {
-        return check(SetupWriter().stock("box = [[0, 40, -30], [100, 60, 0]]"),
-                     program({"G0 X-20. Y50.", "Z-3.", "G1 X10. F800.", "G0 Z" + z, "X110.", "Z-3.",
-                              "G1 X90. F800.", "G0 Z60."}));
+TEST(LowRetract, IsOneThatPassesOverTheStockByLessThanHalfAMillimetre) {
+    const auto across_the_face = [](const std::string& z) {
+        return check(SetupWriter(), program({"G0 X-20. Y50.", "Z-3.", "G1 X10. F800.", "X-20.",
+                                             "G0 Z" + z, "X120.", "Z60."}));
     };
-    EXPECT_EQ(over_the_boss("0.3").errors(), "");
-    EXPECT_EQ(over_the_boss("0.6").of_severity("warning"), "");
+    EXPECT_EQ(across_the_face("0.3").of_severity("warning"), "low-retract 11");
+    EXPECT_EQ(across_the_face("0.3").errors(), "");
+    EXPECT_EQ(across_the_face("0.6").of_severity("warning"), "");
 }
 
 /// What the air-cut notes of a program are about.
