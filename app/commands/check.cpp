@@ -20,6 +20,7 @@ struct Options {
     std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
+    bool verdict_only = false;
 };
 
 std::string report(const Options& options, const CheckRun& run) {
@@ -73,6 +74,11 @@ void say_memory(double bytes) {
             stderr);
 }
 
+core::Detail detail_of(const Options& options) {
+    if (options.pairs) return core::Detail::every_pair;
+    return options.verdict_only ? core::Detail::verdict : core::Detail::deciding_pair;
+}
+
 ExitCode check(const Options& options) {
     const auto safe = check_files(options);
     if (!safe) {
@@ -92,6 +98,7 @@ ExitCode check(const Options& options) {
                           .allowance = options.allowance,
                           .mesh_size = options.mesh_size,
                           .memory_limit = memory_limit,
+                          .detail = detail_of(options),
                           .needs_surface = needs_surface,
                           .before_model = say_memory,
                           .start_line = options.start_line,
@@ -146,7 +153,12 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--save-comparison", options->comparison,
                        "Write what is left, coloured by its deviation from the part (.ply)");
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");
-    command.add_flag("--pairs", options->pairs, "JSON: add every pair of bodies to every block");
+    CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
+                                          "JSON: add every pair of bodies to every block");
+    command
+        .add_flag("--verdict-only", options->verdict_only,
+                  "Faster: no clearance of blocks that a bound already clears")
+        ->excludes(pairs);
     command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 

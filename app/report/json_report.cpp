@@ -33,9 +33,12 @@ void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, 
         found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
 }
 
-/// A motion of which no pair came within the limit, or of which nothing can be said.
-void add_no_pair(Json& json, const CheckRun& run, bool checked) {
-    json["clearance"] = {{"lower", checked ? run.setup.search_limit : 0.0}, {"upper", nullptr}};
+/// A motion of which no pair came within the limit or had to be measured, or of which nothing can
+/// be said.
+void add_no_pair(Json& json, const CheckRun& run, const core::BlockResult& result) {
+    double lower = result.checked ? run.setup.search_limit : 0.0;
+    for (const core::PairClearance& pair : result.pairs) lower = std::min(lower, pair.lower);
+    json["clearance"] = {{"lower", lower}, {"upper", nullptr}};
     for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
 }
 
@@ -45,8 +48,7 @@ Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
     json["block"] = core::value_of(block.block);
     if (!block.file.empty()) json["file"] = block.file;
     json["line"] = block.line;
-    if (!block.calls.empty()) json["calls"] = block.calls;
-    json["calls"] = Json::array();
+    json["calls"] = block.calls;
     json["text"] = block.text;
     json["motion"] = core::name_of(result.motion);
     json["tool"] = result.tool ? Json(core::value_of(*result.tool)) : Json(nullptr);
@@ -57,7 +59,7 @@ Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
         if (result.deciding)
             add_pair(json, run, result.pairs[*result.deciding], result.duration);
         else
-            add_no_pair(json, run, result.checked);
+            add_no_pair(json, run, result);
     }
     json["verdict"] = core::name_of(result.verdict);
     if (!pairs) return json;

@@ -352,6 +352,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
                            file.assumptions.end());
     run.setup = std::move(file.setup);
     if (job.allowance) run.setup.allowance = job.allowance;
+    run.setup.detail = job.detail;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     look_beyond_allowances(run.setup);

@@ -63,6 +63,7 @@ struct CheckJob {
     std::optional<double> allowance; // replaces the set-up's
     std::optional<double> mesh_size;
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
+    core::Detail detail = core::Detail::deciding_pair;
     bool needs_surface = false;              // that of the stock is wanted, also without a part
     std::function<void(double)> before_model = {}; // told the bytes that the model will take
     std::string start_line = {};                   // "120" or "N210"; empty: from the beginning

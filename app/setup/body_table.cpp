@@ -146,7 +146,8 @@ std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& 
     const auto shape = only_shape(table);
     if (!shape) return std::nullopt;
     if (*shape == "cylinder") return core::posed(standing(read_cylinder(table)), target_from_body);
-    return core::solid_mesh(read_polyhedron(table, source, *shape, target_from_body));
+    if (*shape == "box") return core::posed(core::convex(read_box(table)), target_from_body);
+    return core::solid_mesh(moved(read_mesh_key(table, source), target_from_body));
 }
 
 bool has_no_shape(const TableReader& table) {

@@ -1,5 +1,8 @@
 #include "core/dbm/tile_boxes.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace core {
 namespace {
 
@@ -24,7 +27,53 @@ Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePlac
     return box;
 }
 
+constexpr int level_side = 4;
+
+/// How many boxes a level has, counted from the tiles, which are level 0.
+std::pair<int, int> level_size(const TileBoxes& tiles, size_t level) {
+    if (level == 0) return {tiles.u_tiles, tiles.v_tiles};
+    return {tiles.above[level - 1].u_count, tiles.above[level - 1].v_count};
+}
+
+void add_levels(TileBoxes& tiles) {
+    while (true) {
+        const auto [u, v] = level_size(tiles, tiles.above.size());
+        if (u <= 1 && v <= 1 && !tiles.above.empty()) return;
+        TileLevel level{(u + level_side - 1) / level_side, (v + level_side - 1) / level_side, {}};
+        level.boxes.resize(static_cast<size_t>(level.u_count) * static_cast<size_t>(level.v_count));
+        tiles.above.push_back(std::move(level));
+    }
+}
+
+/// Fits the boxes over those of the level below with these numbers; afterwards `fitted` are theirs.
+void fit_level(TileBoxes& tiles, size_t level, std::vector<uint32_t>& fitted) {
+    TileLevel& mine = tiles.above[level];
+    const auto below_across = static_cast<uint32_t>(level_size(tiles, level).first);
+    for (uint32_t& i : fitted)
+        i = i / below_across / level_side * static_cast<uint32_t>(mine.u_count)
+            + i % below_across / level_side;
+    std::sort(fitted.begin(), fitted.end());
+    fitted.erase(std::unique(fitted.begin(), fitted.end()), fitted.end());
+    const std::vector<Aabb>& parts = level == 0 ? tiles.boxes : tiles.above[level - 1].boxes;
+    for (const uint32_t i : fitted) {
+        Aabb whole;
+        const LineRange range = below(tiles, level, i);
+        for (int v = range.v_first; v < range.v_last; ++v)
+            for (int u = range.u_first; u < range.u_last; ++u)
+                whole.extend(parts[static_cast<size_t>(v) * below_across + static_cast<size_t>(u)]);
+        mine.boxes[i] = whole;
+    }
+}
+
 } // namespace
+
+LineRange below(const TileBoxes& tiles, size_t level, size_t index) {
+    const auto across = static_cast<size_t>(tiles.above[level].u_count);
+    const auto [u_count, v_count] = level_size(tiles, level);
+    const int u = static_cast<int>(index % across) * level_side;
+    const int v = static_cast<int>(index / across) * level_side;
+    return {u, std::min(u + level_side, u_count), v, std::min(v + level_side, v_count)};
+}
 
 LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t tile) {
     constexpr int side = ScanLines::tile_side;
@@ -52,6 +101,7 @@ TileBoxes unfitted_boxes(const ScanLines& lines) {
     tiles.stale.resize(tiles.boxes.size());
     for (size_t tile = 0; tile < tiles.boxes.size(); ++tile)
         if (lines.tile(tile) != nullptr) tiles.note(tile, 0xffff);
+    if (!tiles.boxes.empty()) add_levels(tiles);
     return tiles;
 }
 
@@ -67,7 +117,8 @@ void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places) {
         tiles.boxes[tile] = whole;
         tiles.stale[tile] = 0;
     }
-    tiles.stale_tiles.clear();
+    std::vector<uint32_t> fitted = std::exchange(tiles.stale_tiles, {});
+    for (size_t level = 0; level < tiles.above.size(); ++level) fit_level(tiles, level, fitted);
 }
 
 } // namespace core

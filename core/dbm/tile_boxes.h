@@ -7,6 +7,12 @@
 
 namespace core {
 
+/// Boxes round 4 x 4 of the boxes of the level below; empty where there is no matter.
+struct TileLevel {
+    int u_count = 0, v_count = 0;
+    std::vector<Aabb> boxes; // u fastest
+};
+
 /// A box round the matter in each tile of a family of lines or columns, and in each 4 x 4 block of
 /// a tile; empty where there is none. Boxes of blocks that have been cut lately may still be those
 /// of before: too large, never too small.
@@ -19,6 +25,7 @@ struct TileBoxes {
     int u_tiles = 0;
     int v_tiles = 0;
     std::vector<Aabb> boxes;           // u fastest
+    std::vector<TileLevel> above;      // over the tiles; the last level is one box
     std::vector<Aabb> blocks;          // of 4 x 4 lines, the 16 of a tile in a row, u fastest
     std::vector<uint16_t> stale;       // per tile: bit i, block i has been cut since it was fitted
     std::vector<uint32_t> stale_tiles; // those with any
@@ -55,6 +62,9 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
 
 /// The lines of one of its 4 x 4 blocks.
 LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
+
+/// The tiles, or boxes of a level, under one of the level above: all of its 4 x 4 that are there.
+LineRange below(const TileBoxes& tiles, size_t level, size_t index);
 
 /// Boxes for these lines, all empty and none of them fitted.
 TileBoxes unfitted_boxes(const ScanLines& lines);

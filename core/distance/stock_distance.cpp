@@ -1,6 +1,7 @@
 #include "core/distance/stock_distance.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/distance/shape_outline.h"
 
@@ -11,9 +12,10 @@ namespace {
 /// so far is passed over, and its bound remembered.
 constexpr double same = 1e-7;
 
-struct NearTile {
+/// A box of some level over the tiles, and how near it may be.
+struct NearBox {
     double bound;
-    size_t tile;
+    size_t index;
 };
 
 /// One search: several shapes against one stock.
@@ -21,14 +23,21 @@ class StockSearch {
 public:
     StockSearch(std::span<const ConvexShape> shapes, const CutModel& stock, const StockGoal& goal)
         : shapes_(shapes), stock_(stock), goal_(goal) {
-        for (const ConvexShape& shape : shapes) outlines_.push_back(outline(shape));
+        for (const ConvexShape& shape : shapes) {
+            outlines_.push_back(outline(shape));
+            whole_.extend(outlines_.back().box);
+        }
     }
 
     StockSeparation run() {
         if (goal_.first_line) search_line(*goal_.first_line);
-        for (int axis = 0; axis < 3; ++axis) search_lines(axis);
-        search_columns();
-        if (lower_ < goal_.threshold && upper_.upper >= goal_.threshold) refine_columns();
+        if (goal_.bound != StockBound::lower)
+            for (int axis = 0; axis < 3; ++axis) search_lines(axis);
+        lower_ = 0.0;
+        if (goal_.bound != StockBound::upper) search_columns();
+        if (goal_.bound != StockBound::upper && lower_ < goal_.threshold
+            && upper_.upper >= goal_.threshold)
+            refine_columns();
         result_.separation = upper_.upper < goal_.limit ? upper_ : Separation{};
         result_.separation.lower = std::max(0.0, std::min({lower_, upper_.upper, goal_.limit}));
         return result_;
@@ -36,8 +45,10 @@ public:
 
 private:
     double box_bound(const Aabb& box, double limit) {
-        double bound = infinity;
         ++result_.box_tests;
+        double bound = distance(whole_, box);
+        if (bound >= limit) return bound;
+        bound = infinity;
         for (const ShapeOutline& mine : outlines_)
             bound = std::min(bound, distance_bound(mine, box, limit));
         return bound;
@@ -62,18 +73,40 @@ private:
         return best;
     }
 
-    /// The tiles with matter nearer than `limit`, nearest first.
-    std::vector<NearTile> near_tiles(const TileBoxes& tiles, double limit) {
-        std::vector<NearTile> near;
-        for (size_t tile = 0; tile < tiles.boxes.size(); ++tile) {
-            if (tiles.boxes[tile].empty()) continue;
-            const double bound = box_bound(tiles.boxes[tile], limit);
-            if (bound < limit) near.push_back({bound, tile});
+    /// Runs `act` over the tiles with matter that may be nearer than `limit` says, about nearest
+    /// first.
+    template <typename Limit, typename Act>
+    void for_near_tiles(const TileBoxes& tiles, const Limit& limit, const Act& act) {
+        if (!tiles.above.empty()) for_tiles_below(tiles, tiles.above.size() - 1, 0, limit, act);
+    }
+
+    /// The same for the tiles under one box of a level.
+    template <typename Limit, typename Act>
+    void for_tiles_below(const TileBoxes& tiles, size_t level, size_t index, const Limit& limit,
+                         const Act& act) {
+        const std::vector<Aabb>& boxes = level == 0 ? tiles.boxes : tiles.above[level - 1].boxes;
+        const int across = level == 0 ? tiles.u_tiles : tiles.above[level - 1].u_count;
+        std::array<NearBox, 16> near;
+        size_t count = 0;
+        const LineRange range = below(tiles, level, index);
+        for (int v = range.v_first; v < range.v_last; ++v) {
+            for (int u = range.u_first; u < range.u_last; ++u) {
+                const size_t part =
+                    static_cast<size_t>(v) * static_cast<size_t>(across) + static_cast<size_t>(u);
+                if (boxes[part].empty()) continue;
+                const double bound = box_bound(boxes[part], limit());
+                if (bound < limit()) near[count++] = {bound, part};
+            }
         }
-        std::sort(near.begin(), near.end(), [](const NearTile& a, const NearTile& b) {
-            return a.bound != b.bound ? a.bound < b.bound : a.tile < b.tile;
-        });
-        return near;
+        std::sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](const NearBox& a, const NearBox& b) {
+                      return a.bound != b.bound ? a.bound < b.bound : a.index < b.index;
+                  });
+        for (size_t i = 0; i < count && near[i].bound < limit(); ++i)
+            if (level == 0)
+                act(near[i].index);
+            else
+                for_tiles_below(tiles, level - 1, near[i].index, limit, act);
     }
 
     double line_limit() const { return std::min(goal_.limit, upper_.upper) - same; }
@@ -94,13 +127,12 @@ private:
         const ScanLines& lines = stock_.lines.families[family];
         const TileBoxes& tiles = stock_.line_boxes[family];
         const auto limit = [&] { return line_limit(); };
-        for (const NearTile& near : near_tiles(tiles, line_limit())) {
-            if (near.bound >= line_limit()) break;
-            for_blocks(lines, tiles, near.tile, limit, [&](const LineRange& range) {
+        for_near_tiles(tiles, limit, [&](size_t tile) {
+            for_blocks(lines, tiles, tile, limit, [&](const LineRange& range) {
                 for (int v = range.v_first; v < range.v_last; ++v)
                     for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
             });
-        }
+        });
     }
 
     void search_line(const LineId& id) {
@@ -125,12 +157,11 @@ private:
         // Ties are passed over, and the bound lowered by what they may be nearer; none at the
         // limit.
         const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
-        for (const NearTile& near : near_tiles(stock_.column_boxes, lower_)) {
-            if (near.bound >= limit()) break;
-            for_columns(near.tile, limit, [&](int i, int j, const Square& square) {
+        for_near_tiles(stock_.column_boxes, limit, [&](size_t tile) {
+            for_columns(tile, limit, [&](int i, int j, const Square& square) {
                 lower_ = std::min(lower_, bound_of(square, stock_.columns.line(i, j), limit()));
             });
-        }
+        });
         lower_ = std::max(0.0, limit());
     }
 
@@ -163,11 +194,11 @@ private:
         // Every column that is not looked at here, or not to its end, is at least this far away.
         refined_lower_ = goal_.threshold + same;
         const auto near_enough = [&] { return goal_.threshold + same; };
-        for (const NearTile& near : near_tiles(stock_.column_boxes, goal_.threshold + same)) {
-            for_columns(near.tile, near_enough, [&](int i, int j, const Square& square) {
+        for_near_tiles(stock_.column_boxes, near_enough, [&](size_t tile) {
+            for_columns(tile, near_enough, [&](int i, int j, const Square& square) {
                 refine(i, j, square, stock_.columns.line(i, j));
             });
-        }
+        });
         lower_ = std::max(lower_, std::min(refined_lower_ - same, goal_.limit));
     }
 
@@ -199,6 +230,7 @@ private:
     const CutModel& stock_;
     StockGoal goal_;
     std::vector<ShapeOutline> outlines_;
+    Aabb whole_; // round all of them
     Separation upper_;
     double lower_ = infinity;
     double refined_lower_ = infinity;

@@ -13,9 +13,14 @@ struct LineId {
     int axis = 0, u = 0, v = 0;
 };
 
+/// Which bounds of the distance are asked for. Of one that is not, a search tells what it happens
+/// to know.
+enum class StockBound : uint8_t { both, lower, upper };
+
 /// What a search against a stock should decide, and what it may spend.
 struct StockGoal {
-    double limit = 50.0;         // mm: beyond it nobody asks
+    double limit = 50.0; // mm: beyond it nobody asks
+    StockBound bound = StockBound::both;
     double threshold = 0.0;      // mm: the interval is narrowed until it lies on one side of this
     double finest = 0.03;        // mm: squares are not divided below this side
     size_t work_limit = 100'000; // squares that may be worked out afresh

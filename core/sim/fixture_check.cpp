@@ -56,7 +56,8 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
 void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                              std::vector<PairClearance>& pairs) {
     const Pair pair = pair_of(body, fixture);
-    PairClearance& known = entry(pairs, pair, setup_);
+    PairClearance& known = known_pair(pairs, pair);
+    if (says_nothing(known, pairs)) return;
     const RelativeLeg relative =
         relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, leg);
     if (stays_away(known, leg, relative)) return;
@@ -81,16 +82,23 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     check_fixture(stretch(leg, 0.5, 1.0), start, fixture, body, pairs);
 }
 
+bool LegCheck::may_meet(const MovingBody& body, size_t fixture,
+                        std::vector<PairClearance>& pairs) const {
+    if (!fixtures_there_[fixture] || is_exempt(setup_.machine, body, setup_.fixtures[fixture]))
+        return false;
+    const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
+    if (!chips || !setup_.fixtures[fixture].expendable) return true;
+    let_pass(pair_of(body, fixture), pairs);
+    return false;
+}
+
 void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs) {
-    for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture) {
-        if (!fixtures_there_[fixture]) continue;
-        for (const MovingBody& body : bodies_) {
-            const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
-            if (chips && setup_.fixtures[fixture].expendable) continue;
-            if (is_exempt(setup_.machine, body, setup_.fixtures[fixture])) continue;
-            check_fixture(leg, start, fixture, body, pairs);
-        }
-    }
+    const std::optional<Pair> first = memory_.deciding;
+    for (const bool likely : {true, false})
+        for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture)
+            for (const MovingBody& body : bodies_)
+                if ((first == pair_of(body, fixture)) == likely && may_meet(body, fixture, pairs))
+                    check_fixture(leg, start, fixture, body, pairs);
 }
 
 } // namespace core

@@ -54,7 +54,7 @@ double LegCheck::finest_error(const MovingBody& body) const {
 }
 
 Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                              double threshold, double limit, double shrink) {
+                              double threshold, double limit, double shrink, StockBound bound) {
     // Most bodies of a machine are far away, and made of many triangles.
     if (body.body && distance(bounds(body, leg), stock.outer_box) >= limit) return {.lower = limit};
     const std::vector<ConvexShape> shapes =
@@ -62,9 +62,11 @@ Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, co
         : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
                        : shapes_of(*body.profile, leg);
     std::optional<LineId>& hint = memory_.hints[static_cast<size_t>(body.kind)];
-    const StockSeparation found =
-        separation(shapes, stock,
-                   {.limit = limit, .threshold = std::min(threshold, limit), .first_line = hint});
+    const StockSeparation found = separation(shapes, stock,
+                                             {.limit = limit,
+                                              .bound = bound,
+                                              .threshold = std::min(threshold, limit),
+                                              .first_line = hint});
     if (found.line) hint = found.line;
     statistics_.box_tests += found.box_tests;
     statistics_.shape_tests += found.shape_tests;
@@ -110,6 +112,21 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     return seen;
 }
 
+LegCheck::Observation LegCheck::observe_lower(const MovingBody& body, const Leg& leg,
+                                              const CutModel& stock, double nearest) {
+    const RelativeLeg relative = against_stock(body, leg);
+    if (relative.turns) return observe(body, leg, stock, nearest);
+    const Allowance allowance = allowance_of(setup_, pair_of(body));
+    const double limit = std::min(setup_.search_limit, nearest);
+    const double threshold = deciding_distance(allowance);
+    Observation seen{.travel = relative.travel, .whole = false};
+    seen.plain = widened(to_stock(body, relative, stock, threshold, limit, 0.0, StockBound::lower),
+                         relative);
+    if (seen.plain.lower <= allowance.distance + resolution)
+        return observe(body, leg, stock, nearest);
+    return seen;
+}
+
 bool LegCheck::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                         const Allowance& allowance) const {
     if (tool_.parts.empty() || !body.profile || body.kind == PartKind::holder) return false;
@@ -145,31 +162,62 @@ PairClearance LegCheck::clearance(const MovingBody& body, const Leg& leg, double
 
 double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
                                std::vector<PairClearance>& pairs) {
+    let_pass({PartKind::flutes}, pairs);
     std::vector<BodyCheck> checks;
+    std::vector<const MovingBody*> later;
     bool settled = true;
-    for (const MovingBody& body : bodies_) {
-        if (body.kind == PartKind::flutes || (only_tool_ && body.body)) continue;
-        PairClearance& known = entry(pairs, pair_of(body), setup_);
-        if (stays_away(known, leg, against_stock(body, leg))) continue;
-        const Observation before = observe(body, leg, stock, known.upper);
-        const bool clear = clearance(body, leg, start, before, before).verdict == Verdict::clear;
+    for (const MovingBody* body : likely_first({})) {
+        if (body->kind == PartKind::flutes || (only_tool_ && body->body)) continue;
+        PairClearance& known = known_pair(pairs, pair_of(*body));
+        if (says_nothing(known, pairs)) continue;
+        if (says_likely_nothing(known)) {
+            later.push_back(body);
+            continue;
+        }
+        if (stays_away(known, leg, against_stock(*body, leg))) continue;
+        const Observation before = observe_lower(*body, leg, stock, known.upper);
+        const bool clear = clearance(*body, leg, start, before, before).verdict == Verdict::clear;
         settled = settled && clear;
-        checks.push_back({body, before, clear});
+        checks.push_back({*body, before, clear, known.upper});
     }
-    if (!settled && length(leg) > setup_.mesh_size && depends_on_time(checks, leg, stock))
-        return check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
-               + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
-
+    if (!settled && length(leg) > setup_.mesh_size && depends_on_time(checks, leg, stock)) {
+        travel_ *= 0.5;
+        const double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
+                               + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
+        travel_ *= 2.0;
+        return removed;
+    }
     const double removed = cut_along(leg, stock);
-    for (const BodyCheck& check : checks) {
-        const Observation after = removed > 0.0 ? look_again(check, leg, stock) : check.before;
-        PairClearance now = clearance(check.body, leg, start, check.before, after);
-        if (now.verdict == Verdict::collision)
-            now.time =
-                start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
-        merge(entry(pairs, now.pair, setup_), now);
-    }
+    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, removed > 0.0, pairs);
+    for (const MovingBody* body : later) look_late(*body, leg, start, stock, pairs);
     return removed;
+}
+
+void LegCheck::conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
+                        bool cut, std::vector<PairClearance>& pairs) {
+    PairClearance& known = known_pair(pairs, pair_of(check.body));
+    if (check.clear && !check.before.whole
+        && is_beside_the_point(known.allowance, check.before.plain.lower, pairs)) {
+        merge(known, clearance(check.body, leg, start, check.before, {}));
+        return;
+    }
+    const bool is_told = check.before.whole && !cut;
+    const Observation after = is_told ? check.before : look_again(check, leg, stock);
+    PairClearance now = clearance(check.body, leg, start, check.before, after);
+    if (now.verdict == Verdict::collision)
+        now.time = start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
+    merge(known, now);
+}
+
+void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
+                         const CutModel& stock, std::vector<PairClearance>& pairs) {
+    PairClearance& known = known_pair(pairs, pair_of(body));
+    if (says_nothing(known, pairs)) return;
+    // The stock of before is gone; the bound that let this wait holds for it.
+    Observation before;
+    before.plain.lower = known.at_end - travel_;
+    const Observation after = look_again({body, before, true, known.upper}, leg, stock);
+    merge(known, clearance(body, leg, start, before, after));
 }
 
 bool LegCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
@@ -187,26 +235,29 @@ bool LegCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& 
 
 LegCheck::Observation LegCheck::look_again(const BodyCheck& check, const Leg& leg,
                                            const CutModel& stock) {
-    if (!check.before.plain.found()) return check.before;
     if (!check.clear) return observe(check.body, leg, stock, setup_.search_limit);
     // Clear by its lower bound: what is left of the stock only gives the upper one.
     Observation after = check.before;
+    const double limit = std::min(setup_.search_limit, check.nearest);
+    after.plain = Separation{.lower = after.plain.lower};
+    if (after.plain.lower >= limit) return after;
     const RelativeLeg relative = against_stock(check.body, leg);
-    after.plain =
-        widened(to_stock(check.body, relative, stock, 0.0, setup_.search_limit), relative);
+    after.plain = widened(to_stock(check.body, relative, stock, 0.0, limit, 0.0, StockBound::upper),
+                          relative);
     return after;
 }
 
 bool LegCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
                             std::vector<PairClearance>& pairs) {
     bool gouged = false;
-    for (const MovingBody& body : bodies_) {
-        if (only_tool_ && body.body) continue;
-        PairClearance& known = entry(pairs, pair_of(body), setup_);
-        if (stays_away(known, leg, against_stock(body, leg))) continue;
-        const Observation seen = observe(body, leg, stock, known.upper);
-        const PairClearance now = clearance(body, leg, start, seen, seen);
-        gouged = gouged || (body.kind == PartKind::flutes && now.verdict == Verdict::collision);
+    for (const MovingBody* body : likely_first({})) {
+        if (only_tool_ && body->body) continue;
+        PairClearance& known = known_pair(pairs, pair_of(*body));
+        if (says_nothing(known, pairs)) continue;
+        if (stays_away(known, leg, against_stock(*body, leg))) continue;
+        const Observation seen = observe(*body, leg, stock, known.upper);
+        const PairClearance now = clearance(*body, leg, start, seen, seen);
+        gouged = gouged || (body->kind == PartKind::flutes && now.verdict == Verdict::collision);
         merge(known, now);
     }
     return gouged;
@@ -252,12 +303,19 @@ double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
 
 double LegCheck::run(const Leg& leg, double start, CutModel& stock,
                      std::vector<PairClearance>& pairs) {
+    travel_ = greatest_travel(setup_.machine, leg);
+    double removed = 0.0;
     if (!leg.straight) {
         check_hull(leg, start, stock, pairs);
-        return 0.0;
+    } else if (memory_.deciding && !memory_.deciding->fixture) {
+        removed = check_stock(leg, start, stock, pairs);
+        check_fixtures(leg, start, pairs);
+    } else {
+        check_fixtures(leg, start, pairs);
+        removed = check_stock(leg, start, stock, pairs);
     }
-    check_fixtures(leg, start, pairs);
-    return check_stock(leg, start, stock, pairs);
+    for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
+    return removed;
 }
 
 void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
@@ -285,20 +343,21 @@ double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double li
     if (tool_.parts.empty() || !leg.straight) return 0.0;
     const RelativeLeg way = against_stock(bodies_[0], leg);
     if (way.error >= limit) return 0.0;
-    return std::max(0.0,
-                    to_stock(bodies_[0], way, stock, limit + way.error, limit + way.error).lower
-                        - way.error);
+    const double far = limit + way.error;
+    return std::max(0.0, to_stock(bodies_[0], way, stock, far, far, 0.0, StockBound::lower).lower
+                             - way.error);
 }
 
 void LegCheck::rest(const AxisValues& place, const CutModel& stock,
                     std::vector<PairClearance>& pairs) {
     const Leg leg{.places = {place}};
+    for (PairClearance& pair : pairs) pair.at_end = -infinity; // nobody says how it came here
     check_fixtures(leg, 0.0, pairs);
     check_bodies(leg, 0.0, stock, pairs);
 }
 
-double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
-                          const CutModel& stock) {
+double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
+                          std::optional<double> seen) {
     if (!leg.straight || leg.places.size() < 2) return 0.0;
     const MovingBody& body = body_of(pair);
     const Mount& target = pair.fixture ? setup_.fixtures[*pair.fixture].mount : setup_.stock_mount;
@@ -309,12 +368,15 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance,
         const double limit = distance + moved.error + resolution;
         const Separation found =
             pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
-                                         limit + 1.0, statistics_.shape_tests)
-                         : to_stock(body, moved, stock, 0.0, limit + 1.0);
+                                         limit + resolution, statistics_.shape_tests)
+                         : to_stock(body, moved, stock, 0.0, limit + resolution);
         return found.upper <= limit;
     };
-    if (reached(0.0)) return 0.0;
+    // Mostly it is where it was seen, and not before.
+    constexpr double step = 1e-4;
     double before = 0.0, after = 1.0;
+    if (seen && (*seen <= step || !reached(*seen - step))) return *seen;
+    if (reached(0.0)) return 0.0;
     for (int i = 0; i < 24; ++i) {
         const double middle = 0.5 * (before + after);
         (reached(middle) ? after : before) = middle;

@@ -11,13 +11,29 @@
 
 namespace core {
 
-/// What a check keeps from leg to leg to be faster; no answer depends on it.
+/// What a pair keeps apart at least, where the machine stands now.
+struct PairBound {
+    Pair pair;
+    double apart = 0.0;
+};
+
+/// What a check keeps from leg to leg to be faster; no verdict depends on it.
 struct CheckMemory {
+    /// Cutting takes nothing nearer, and a motion no more than it is long: so bounds hold from
+    /// block to block, until a tool or a fixture is changed.
+    std::vector<PairBound> bounds;
+    std::optional<Pair> deciding; // the pair that decided the last block: likely the next one, too
+    double margin = 0.0;          // of that pair
+
     /// Where each kind of body last met the stock most nearly: a good place to look first.
     std::array<std::optional<LineId>, 5> hints;
     /// Cutters made ready, by the tool's number and the path error they allow for.
     std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
 };
+
+/// No point of any body goes farther over a leg, as any other body sees it, mm; infinite where
+/// rotary axes move or the way is not known.
+double greatest_travel(const Machine& machine, const Leg& leg);
 
 /// Whether what the flutes meet becomes chips or is a crash.
 enum class FluteUse : uint8_t { cutting, not_cutting };
@@ -57,7 +73,9 @@ public:
     void rest(const AxisValues& place, const CutModel& stock, std::vector<PairClearance>& pairs);
 
     /// The least share of the leg after which the pair is as near as `distance` for the first time.
-    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock);
+    /// `seen` is a share at which it was, if one is known.
+    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
+                    std::optional<double> seen = {});
 
 private:
     /// What one state of the stock says of a body: as it is, and shrunk by the contact depth.
@@ -65,10 +83,26 @@ private:
         Separation plain;
         Separation shrunk;
         double travel = 0.0; // how far the body goes at most
+        bool whole = true;   // false: nothing was done for an upper bound
     };
 
     /// A body that turns is seen sharply enough when the error is this share of its clearance.
     static constexpr double sharp_share = 0.02;
+
+    /// The pair in the block's list; begun from the bound of the block before if it is not there.
+    PairClearance& known_pair(std::vector<PairClearance>& pairs, const Pair& pair) const;
+    /// Whether a bound shows that a pair stays clear over the leg, and farther from its allowance
+    /// than another of the block. Keeps the bound up to date if so.
+    bool says_nothing(PairClearance& known, const std::vector<PairClearance>& pairs) const;
+    /// Whether a lower bound shows that.
+    bool is_beside_the_point(const Allowance& allowance, double lower,
+                             const std::vector<PairClearance>& pairs) const;
+    /// Whether a pair will say nothing if the block decides about as the last one did.
+    bool says_likely_nothing(const PairClearance& known) const;
+    /// The bodies, that of the pair with the stock or a fixture which decided the last block first.
+    std::vector<const MovingBody*> likely_first(std::optional<size_t> fixture) const;
+    /// A pair that may touch over this leg: only its bound is kept.
+    void let_pass(const Pair& pair, std::vector<PairClearance>& pairs) const;
 
     static Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});
     const MovingBody& body_of(const Pair& pair) const;
@@ -76,6 +110,8 @@ private:
     double finest_error(const MovingBody& body) const;
 
     void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
+    /// Whether a body and a fixture are a pair that must keep apart over this leg.
+    bool may_meet(const MovingBody& body, size_t fixture, std::vector<PairClearance>& pairs) const;
     void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
     /// What is known of a body and a fixture over a leg, from one look at the whole of it.
@@ -83,13 +119,19 @@ private:
                                   const MovingBody& body, const PairClearance& known);
 
     Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                        double threshold, double limit, double shrink = 0.0);
+                        double threshold, double limit, double shrink = 0.0,
+                        StockBound bound = StockBound::both);
+
+    /// The same as `observe`, without an upper bound if the lower one tells enough.
+    Observation observe_lower(const MovingBody& body, const Leg& leg, const CutModel& stock,
+                              double nearest);
 
     /// A body of a cutting tool before the stock is cut, and whether it is clear of it already.
     struct BodyCheck {
         const MovingBody& body;
         Observation before;
         bool clear;
+        double nearest; // that the pair has been in this block
     };
 
     double check_stock(const Leg& leg, double start, CutModel& stock,
@@ -120,6 +162,12 @@ private:
     /// Whether a body that is too near the stock before the cut is clear of what is left after it.
     bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
                          const CutModel& stock);
+    /// Adds what is known of a body after the cut.
+    void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
+                  bool cut, std::vector<PairClearance>& pairs);
+    /// Looks at a body that was not looked at before the cut, if it matters after all.
+    void look_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
+                   std::vector<PairClearance>& pairs);
     Observation look_again(const BodyCheck& check, const Leg& leg, const CutModel& stock);
     PairClearance clearance(const MovingBody& body, const Leg& leg, double start,
                             const Observation& before, const Observation& after) const;
@@ -146,7 +194,8 @@ private:
     CheckMemory& memory_;
     Statistics& statistics_;
     std::vector<MovingBody> bodies_;
-    bool only_tool_ = false; // bodies of the machine have been held against the stock already
+    double travel_ = infinity; // no point goes farther over the leg that is being checked, mm
+    bool only_tool_ = false;   // bodies of the machine have been held against the stock already
 };
 
 } // namespace core

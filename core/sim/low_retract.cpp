@@ -70,6 +70,17 @@ const PairClearance* in_the_way(const LinkRapid& link, const std::vector<PairCle
     return nullptr;
 }
 
+/// Whether anything on the way is too near, or the flutes pass the stock with little room.
+bool is_doubtful(const LinkRapid& link, const std::vector<PairClearance>& known) {
+    if (!are_clear(known)) return true;
+    CheckMemory memory;
+    Statistics statistics;
+    return LegCheck(link.setup, link.tool, FluteUse::not_cutting, link.block, link.fixtures_there,
+                    memory, statistics)
+               .room_of_flutes(link.leg, link.stock, room)
+           < room;
+}
+
 /// How much higher, to within `step`, the leg would pass everything; empty if it never does.
 std::optional<double> lift(Look& look) {
     const auto passes = [&](double higher) {
@@ -99,10 +110,12 @@ bool goes_across(const Leg& leg) {
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& pairs) {
+std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& known) {
+    if (!is_doubtful(link, known)) return std::nullopt;
+    Look look{link};
+    const std::vector<PairClearance> pairs = look.along(0.0);
     const PairClearance* near = in_the_way(link, pairs);
     if (!near) return std::nullopt;
-    Look look{link};
     for (const AxisValues& place : {link.leg.places.front(), link.leg.places.back()}) {
         const auto there = look.at(place);
         if (!are_clear(there)) return std::nullopt;

@@ -24,6 +24,6 @@ bool goes_across(const Leg& leg);
 /// found on the leg. Its severity is left open.
 ///
 /// Cost: nothing where the rapid passes well clear; else some twenty checks of the leg.
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& pairs);
+std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& known);
 
 } // namespace core

@@ -1,5 +1,7 @@
 #include "core/sim/moving_body.h"
 
+#include "core/distance/shape_outline.h"
+
 namespace core {
 namespace {
 
@@ -32,9 +34,15 @@ Separation between(const std::vector<ConvexShape>& shapes, const ExactBody& fixt
                    size_t& shape_tests) {
     Separation best;
     double lower = infinity;
+    const Aabb box = bounds(fixture);
     for (const ConvexShape& shape : shapes) {
+        const double nearest = std::min(limit, best.upper);
+        if (const double apart = distance_bound(outline(shape), box, nearest); apart >= nearest) {
+            lower = std::min(lower, apart);
+            continue;
+        }
         ++shape_tests;
-        const Separation found = separation(shape, fixture, {.limit = std::min(limit, best.upper)});
+        const Separation found = separation(shape, fixture, {.limit = nearest});
         lower = std::min(lower, found.lower);
         if (found.upper < best.upper) best = found;
     }

@@ -39,6 +39,10 @@ struct FixtureMove {
     std::optional<size_t> to; // the one that takes its place; empty: it is taken away
 };
 
+/// How much a check tells of each block: of every pair of bodies; of the one that decides; or,
+/// where a bound already clears the block, of none.
+enum class Detail : uint8_t { every_pair, deciding_pair, verdict };
+
 /// Everything that does not change while a program runs. mm.
 struct Setup {
     double mesh_size = 0.5;
@@ -55,6 +59,7 @@ struct Setup {
     std::optional<ToolNumber> tool_at_start;
     SpindleDirection spindle_at_start = SpindleDirection::stopped;
     RuleSeverities rules;
+    Detail detail = Detail::every_pair;
     double search_limit = 50.0;                 // nobody asks beyond it
     double memory_limit = default_memory_limit; // bytes that the stock's model may take
 };

@@ -7,7 +7,6 @@
 #include "core/sim/finding_text.h"
 #include "core/sim/leg_check.h"
 #include "core/sim/low_retract.h"
-#include "core/sim/pair_entry.h"
 #include "core/sim/singular.h"
 
 namespace core {
@@ -56,12 +55,13 @@ struct BlockRun {
     }
 
     /// What checks the legs of a motion, with whatever is in the spindle.
-    LegCheck leg_check(FluteUse use) {
+    LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
         return {setup,           tool() ? *tool() : nothing, use,
-                block.block,     state.fixtures_there,       state.memory,
+                block.block,     state.fixtures_there,       memory,
                 state.statistics};
     }
+    LegCheck leg_check(FluteUse use) { return leg_check(use, state.memory); }
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
@@ -78,11 +78,11 @@ struct BlockRun {
     void carry_out(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
-    void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before,
-                       const std::vector<PairClearance>& pairs);
+    void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
     void look_at_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
     void check_tool_change();
+    void forget_bounds();
     void check_limits(const Motion& motion);
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
@@ -144,6 +144,7 @@ void BlockRun::carry_out(const Motion& motion) {
                                  "speed is not stated");
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
+    if (motion.from != state.position) forget_bounds();
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
@@ -162,37 +163,36 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
     const bool links = rapid && tool() && state.watch.has_fed && goes_across(path.legs[0]);
     std::optional<CutModel> before;
     if (dog_leg || links) before = state.stock;
-    std::vector<PairClearance> pairs;
     LegCheck check = leg_check(use(motion));
     double removed = 0.0;
     for (const Leg& leg : path.legs) {
-        removed += check.run(leg, result.duration, state.stock, pairs);
+        removed += check.run(leg, result.duration, state.stock, result.pairs);
         legs.push_back({leg, result.duration});
         if (use(motion) == FluteUse::cutting)
             note_reach(state.watch.reaches,
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
-                       pairs);
+                       result.pairs);
     }
     result.removed += removed;
-    for (const PairClearance& pair : pairs) merge(entry(result.pairs, pair.pair, setup), pair);
-    if (before) look_at_rapid(motion, path, *before, pairs);
+    if (before) look_at_rapid(motion, path, *before);
     if (!rapid) look_at_feed(motion, path, removed);
 }
 
-void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before,
-                             const std::vector<PairClearance>& pairs) {
+void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {
     const bool straight = path.legs.size() == 1 && path.legs[0].straight;
     if (straight && tool())
-        return tell(low_retract(
-            {setup, *tool(), block.block, path.legs[0], state.fixtures_there, before}, pairs));
-    const PairClearance* worst = deciding_pair(pairs);
+        return tell(
+            low_retract({setup, *tool(), block.block, path.legs[0], state.fixtures_there, before},
+                        result.pairs));
+    const PairClearance* worst = deciding_pair(result.pairs);
     if (!worst || worst->verdict == Verdict::clear) return;
     Machine machine = setup.machine;
     machine.rapid = RapidStyle::straight;
     CutModel stock = before;
+    CheckMemory memory; // bounds of the run hold along its own path only
     std::vector<PairClearance> along_the_line;
     for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
-        leg_check(FluteUse::not_cutting).run(leg, 0.0, stock, along_the_line);
+        leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
     worst = deciding_pair(along_the_line);
     only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;
 }
@@ -213,6 +213,11 @@ void BlockRun::look_at_feed(const Motion& motion, const Path& path, double remov
     const bool swings = found && !motion.tip && removed <= 0.0;
     if (!found || swings || std::exchange(state.watch.told_swing, true)) return;
     tell(std::move(found));
+}
+
+void BlockRun::forget_bounds() {
+    state.memory.bounds.clear();
+    for (PairClearance& pair : result.pairs) pair.at_end = -infinity;
 }
 
 void BlockRun::move_without_tool(const Motion& motion) {
@@ -239,6 +244,7 @@ void BlockRun::carry_out(const ToolChange& change) {
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
     state.watch.has_fed = state.watch.told_swing = false;
+    forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
     state.told_unchecked_tool = false;
@@ -252,6 +258,7 @@ void BlockRun::carry_out(const ToolChange& change) {
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
+    forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
@@ -283,7 +290,9 @@ void settle_time(BlockRun& run, PairClearance& pair) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time < begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
-        const double share = check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock);
+        const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
+        const double share =
+            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
     }
@@ -299,6 +308,17 @@ void BlockRun::conclude() {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
         settle_time(*this, result.pairs[*result.deciding]);
         result.verdict = worst->verdict;
+    }
+    if (result.motion != BlockMotion::none) {
+        CheckMemory& memory = state.memory;
+        memory.bounds.clear();
+        for (const PairClearance& pair : result.pairs)
+            memory.bounds.push_back({pair.pair, pair.at_end});
+        memory.deciding.reset();
+        if (result.deciding) {
+            memory.deciding = result.pairs[*result.deciding].pair;
+            memory.margin = result.pairs[*result.deciding].margin();
+        }
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear)

@@ -101,7 +101,7 @@ double LegCheck::check_turning(const Leg& leg, double start, CutModel& stock,
         for (const MovingBody& body : bodies_) {
             if (body.body) continue;
             PairClearance& known = entry(pairs, pair_of(body), setup_);
-            known.lower = 0.0;
+            known.lower = known.at_end = 0.0;
             known.verdict = std::max(known.verdict, Verdict::undecided);
         }
         return 0.0;

@@ -1,0 +1,69 @@
+#include "core/sim/leg_check.h"
+#include "core/sim/pair_entry.h"
+
+namespace core {
+
+double greatest_travel(const Machine& machine, const Leg& leg) {
+    if (!leg.straight) return infinity;
+    Vec3 by(0.0);
+    for (size_t i = 0; i < axis_count; ++i) {
+        const double travel = std::abs(leg.places.back()[i] - leg.places.front()[i]);
+        if (travel == 0.0) continue;
+        if (is_rotary(i)) return infinity;
+        by += travel * glm::abs(machine.axes[i].direction);
+    }
+    return glm::length(by);
+}
+
+PairClearance& LegCheck::known_pair(std::vector<PairClearance>& pairs, const Pair& pair) const {
+    for (PairClearance& known : pairs)
+        if (known.pair == pair) return known;
+    PairClearance& begun = entry(pairs, pair, setup_);
+    for (const PairBound& bound : memory_.bounds)
+        if (bound.pair == pair) begun.at_end = bound.apart;
+    return begun;
+}
+
+bool LegCheck::says_nothing(PairClearance& known, const std::vector<PairClearance>& pairs) const {
+    const double apart = known.at_end - travel_;
+    if (!is_beside_the_point(known.allowance, apart, pairs)) return false;
+    known.lower = std::min({known.lower, apart, setup_.search_limit});
+    known.at_end = apart;
+    return true;
+}
+
+bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
+                                   const std::vector<PairClearance>& pairs) const {
+    if (setup_.detail == Detail::every_pair) return false;
+    const double must_keep = allowance.distance + resolution;
+    if (setup_.detail == Detail::verdict) return lower > must_keep;
+    double least = infinity;
+    for (const PairClearance& other : pairs)
+        if (other.found()) least = std::min(least, other.margin());
+    return lower > must_keep && lower >= std::min(least + must_keep, setup_.search_limit);
+}
+
+bool LegCheck::says_likely_nothing(const PairClearance& known) const {
+    const double apart = known.at_end - travel_;
+    const double must_keep = known.allowance.distance + resolution;
+    constexpr double slack = 0.1; // mm: how much more room the next block often has
+    return setup_.detail == Detail::deciding_pair && memory_.deciding
+           && !(known.pair == *memory_.deciding) && apart > must_keep
+           && apart - must_keep > memory_.margin + 2.0 * travel_ + slack;
+}
+
+std::vector<const MovingBody*> LegCheck::likely_first(std::optional<size_t> fixture) const {
+    std::vector<const MovingBody*> order;
+    for (const MovingBody& body : bodies_) order.push_back(&body);
+    std::stable_partition(order.begin(), order.end(), [&](const MovingBody* body) {
+        return memory_.deciding == pair_of(*body, fixture);
+    });
+    return order;
+}
+
+void LegCheck::let_pass(const Pair& pair, std::vector<PairClearance>& pairs) const {
+    for (PairClearance& known : pairs)
+        if (known.pair == pair) known.at_end -= travel_;
+}
+
+} // namespace core
