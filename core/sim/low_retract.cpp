@@ -11,14 +11,21 @@ constexpr double room = 0.5;   // mm that a rapid should pass over the stock by
 constexpr double most = 500.0; // mm that a retract could be higher by
 constexpr double step = 0.01;
 
+Setup with_every_pair(Setup setup) {
+    setup.detail = Detail::every_pair;
+    return setup;
+}
+
+/// Looks at every pair, whatever the report wants.
 struct Look {
     const LinkRapid& link;
+    Setup setup = with_every_pair(link.setup);
     CheckMemory memory = {};
     Statistics statistics = {};
 
     LegCheck check() {
-        return {link.setup, link.tool, FluteUse::not_cutting, link.block, link.fixtures_there,
-                memory,     statistics};
+        return {setup,  link.tool, FluteUse::not_cutting, link.block, link.fixtures_there,
+                memory, statistics};
     }
 
     std::vector<PairClearance> at(const AxisValues& place) {
