@@ -69,7 +69,9 @@ TEST_P(PlantedRow, IsFoundAtItsLineWithItsSeverity) {
                 || (finding.rule == row.rule && finding.line.value_or(0) == row.line
                     && finding.severity == core::name_of(*severity) && !finding.message.empty());
     EXPECT_TRUE(found) << row.program << ":" << row.line << " " << row.rule << text_of(result);
-    if (*severity == core::Severity::error) EXPECT_GE(result.status, 1) << row.program;
+    if (*severity == core::Severity::error) {
+        EXPECT_GE(result.status, 1) << row.program;
+    }
 }
 
 TEST_P(PlantedRow, HasATwinAboutWhichNothingIsSaid) {
