@@ -5,13 +5,20 @@
 
 #include <fmt/format.h>
 
+#include "app/session/allowed_rules.h"
+#include "app/session/block_delete.h"
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
 #include "app/session/m_codes.h"
+#include "app/session/offset_watch.h"
 #include "app/session/part_check.h"
 #include "app/session/timing_notes.h"
+#include "app/session/units_watch.h"
 #include "core/sim/block_clock.h"
+#include "core/sim/finding_text.h"
+#include "gcode/error_rules.h"
 #include "gcode/lowering.h"
+#include "gcode/restart.h"
 
 namespace app {
 namespace {
@@ -131,6 +138,7 @@ struct Runner {
     CheckRun& run;
     const std::function<bool(const CheckProgress&)>& after_block;
     bool speed_by_hand = false;
+    bool stock_is_stated = true; // false: it was made from the program's own cuts
     gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
                                   environment.search_path};
     gcode::Interpreter interpreter{library, environment};
@@ -138,6 +146,59 @@ struct Runner {
     gcode::Lowering lowering = gcode::initial_lowering(environment);
     core::BlockClock clock = core::start_clock(run.setup.machine);
     uint32_t last_line = 0; // of the main program
+    OffsetWatch offsets = {};
+    UnitsWatch units = {};
+
+    /// Begins in the middle of the program, as a control does that was just switched on.
+    core::Result<void> start_at(const std::string& line) {
+        const gcode::Dialect& dialect = gcode::dialect(environment.dialect);
+        FEELER_TRY(const uint32_t number, gcode::line_meant(program, dialect, line));
+        FEELER_TRY(const gcode::Restart restart,
+                   gcode::restart_at(library, environment, number, run.setup.tool_at_start));
+        place = restart.state;
+        lowering = gcode::initial_lowering(place);
+        run.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
+                                              "that was just switched on",
+                                              number));
+        if (restart.missing.empty()) return {};
+        core::Finding finding;
+        finding.rule = "restart-in-the-middle";
+        finding.severity = core::severity_of(run.setup, finding.rule);
+        finding.block = core::BlockIndex{0};
+        finding.message =
+            fmt::format("Started here, the program cuts without what the lines before have said: "
+                        "{}.",
+                        fmt::join(restart.missing, ", "));
+        finding.cure = "Enter that by hand first, or start at the tool change before.";
+        if (finding.severity != core::Severity::off) run.findings.push_back(finding);
+        return {};
+    }
+
+    /// A control stops with an alarm where this error is: a block of its own, and a finding if a
+    /// rule has a name for it.
+    void stop(core::Error error) {
+        run.stopped = named(std::move(error), program.file);
+        const std::string rule(gcode::rule_of(*run.stopped));
+        const core::Severity severity = core::severity_of(run.setup, rule);
+        if (rule.empty() || severity == core::Severity::off) return;
+        const bool in_main = run.stopped->file == program.file;
+        const auto text = program.find_line(run.stopped->where.line);
+        const core::BlockIndex block{static_cast<uint32_t>(run.blocks.size())};
+        run.blocks.push_back({block,
+                              run.stopped->where.line,
+                              in_main && text && *text ? std::string(**text) : std::string(),
+                              in_main ? std::string() : run.stopped->file,
+                              {},
+                              {}});
+        core::Finding finding;
+        finding.rule = rule;
+        finding.severity = severity;
+        finding.block = block;
+        finding.message = run.stopped->message + ". The control stops here with an alarm.";
+        finding.cure = rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
+                                         : "Look at the end, the centre and the plane of this arc.";
+        run.findings.push_back(finding);
+    }
 
     /// The simulator of this version has no axes beyond X, Y and Z.
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
@@ -178,6 +239,8 @@ struct Runner {
         }
         for (const core::Finding& finding : checked.result.findings)
             run.findings.push_back(finding);
+        watch_offsets(offsets, run.setup, place, of_block, state);
+        watch_units(units, of_block);
         run.verdict = std::max(run.verdict, checked.result.verdict);
         run.removed += checked.result.removed;
         run.blocks.push_back(std::move(checked));
@@ -193,8 +256,20 @@ struct Runner {
             core::settle_time(run.blocks[core::value_of(time.block)].result, time);
     }
 
+    /// What the program as a whole does, against the size and the place of the stock.
+    void hold_against_stock(const core::SimulatorState& state) {
+        for (core::Finding& finding : implausible_offsets(offsets, run.setup))
+            run.findings.push_back(std::move(finding));
+        if (auto jump =
+                units_off_the_stock(units, run.setup, state.stock.outer_box, place.modal.unit_said))
+            run.findings.push_back(*std::move(jump));
+    }
+
     void to_the_end(core::SimulatorState& state) {
         run_blocks(state);
+        for (core::Finding& finding : core::end_of_run(run.setup, state))
+            run.findings.push_back(std::move(finding));
+        if (stock_is_stated) hold_against_stock(state);
         std::vector<core::BlockTime> timed;
         core::stop_clock(clock, timed);
         enter(timed);
@@ -211,10 +286,7 @@ struct Runner {
     void run_blocks(core::SimulatorState& state) {
         while (true) {
             const auto next = interpreter.next(place);
-            if (!next) {
-                run.stopped = named(next.error(), program.file);
-                return;
-            }
+            if (!next) return stop(next.error());
             if (!*next) break;
             if (const auto refused = block(**next, state)) {
                 run.stopped = named(*refused, program.file);
@@ -269,12 +341,21 @@ void say_not_judged(CheckRun& run, const std::string& why) {
     run.findings.push_back(finding);
 }
 
+/// Findings in the order of their blocks, those about the program as a whole at the end.
+void put_in_order(std::vector<core::Finding>& findings) {
+    std::stable_sort(findings.begin(), findings.end(), [](const auto& a, const auto& b) {
+        if (!a.block || !b.block) return a.block.has_value() && !b.block;
+        return core::value_of(*a.block) < core::value_of(*b.block);
+    });
+}
+
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
     look_for_judged_motions(run);
+    put_in_order(run.findings);
 }
 
 } // namespace
@@ -303,6 +384,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
+    const bool stock_is_stated = !file.needs_stock && !file.is_inferred;
     if (const auto whole = complete_setup(file, *program); !whole)
         return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
@@ -327,7 +409,12 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
-    Runner{*program, file.environment, run, job.after_block, file.speed_by_hand}.to_the_end(*state);
+    Runner runner{*program,        file.environment,   run,
+                  job.after_block, file.speed_by_hand, stock_is_stated};
+    if (!job.start_line.empty())
+        if (const auto begun = runner.start_at(job.start_line); !begun)
+            return tl::unexpected(named(begun.error(), job.program));
+    runner.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
     say_not_judged(run, file.not_judged);
@@ -335,6 +422,8 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     if (!run.stopped && (job.needs_surface || run.setup.part))
         run.surface = core::stock_mesh(*run.stock);
     check_part(run);
+    look_at_both_switch_positions(run, *program, file.environment);
+    apply_allowed_rules(run, file.allow_comments);
     return run;
 }
 

@@ -344,6 +344,15 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     }
 }
 
+double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
+    if (tool_.parts.empty() || !leg.straight) return 0.0;
+    const RelativeLeg way = against_stock(bodies_[0], leg);
+    if (way.error >= limit) return 0.0;
+    const double far = limit + way.error;
+    return std::max(0.0, to_stock(bodies_[0], way, stock, far, far, 0.0, StockBound::lower).lower
+                             - way.error);
+}
+
 void LegCheck::rest(const AxisValues& place, const CutModel& stock,
                     std::vector<PairClearance>& pairs) {
     const Leg leg{.places = {place}};

@@ -7,7 +7,9 @@
 
 #include "core/sim/finding_text.h"
 #include "core/sim/leg_check.h"
+#include "core/sim/low_retract.h"
 #include "core/sim/pair_entry.h"
+#include "core/sim/singular.h"
 
 namespace core {
 namespace {
@@ -27,6 +29,7 @@ struct BlockRun {
     std::vector<TimedLeg> legs = {};
     bool turns = false;         // rotary axes move
     bool pushes_centre = false; // down into the stock, where the tool does not cut
+    bool only_dog_leg = false;  // straight, a rapid of this block would be free
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -46,13 +49,22 @@ struct BlockRun {
         if (finding.severity != Severity::off) result.findings.push_back(std::move(finding));
     }
 
+    /// Adds a finding of a rule that knows its block, with its severity in this set-up.
+    void tell(std::optional<Finding> finding) {
+        if (!finding) return;
+        settle_severity(setup, *finding);
+        if (!finding->block) finding->block = block.block;
+        if (finding->severity != Severity::off) result.findings.push_back(*std::move(finding));
+    }
+
     /// What checks the legs of a motion, with whatever is in the spindle.
-    LegCheck leg_check(FluteUse use) {
+    LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
         return {setup,           tool() ? *tool() : nothing, use,
-                block.block,     state.fixtures_there,       state.memory,
+                block.block,     state.fixtures_there,       memory,
                 state.statistics};
     }
+    LegCheck leg_check(FluteUse use) { return leg_check(use, state.memory); }
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
@@ -68,6 +80,9 @@ struct BlockRun {
     void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
     void carry_out(const FixtureChange& change);
 
+    void check_path(const Motion& motion, const Path& path);
+    void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
+    void look_at_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
     void watch_centre(const Motion& motion, const Leg& leg);
     Finding finding_about(const PairClearance& pair) const;
@@ -142,12 +157,7 @@ void BlockRun::carry_out(const Motion& motion) {
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else {
-        LegCheck check = leg_check(use(motion));
-        for (const Leg& leg : path.legs) {
-            watch_centre(motion, leg);
-            result.removed += check.run(leg, result.duration, state.stock, result.pairs);
-            legs.push_back({leg, result.duration});
-        }
+        check_path(motion, path);
     }
     result.duration += path.duration;
 }
@@ -172,7 +182,8 @@ void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
 }
 
 Finding BlockRun::finding_about(const PairClearance& pair) const {
-    Finding finding = finding_of(setup, pair, {result.motion, turns, result.duration}, state);
+    Finding finding =
+        finding_of(setup, pair, {result.motion, turns, result.duration, only_dog_leg}, state);
     if (!pushes_centre || pair.pair != Pair{PartKind::flutes}) return finding;
     const ToolDescription& described = tool()->description;
     finding.message = fmt::format(
@@ -185,6 +196,65 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
             / std::numbers::pi,
         described.centre_radius);
     return finding;
+}
+
+void BlockRun::check_path(const Motion& motion, const Path& path) {
+    const bool rapid = motion.kind == MotionKind::rapid;
+    const bool dog_leg = rapid && (path.legs.size() > 1 || !path.legs[0].straight);
+    const bool links = rapid && tool() && state.watch.has_fed && goes_across(path.legs[0]);
+    std::optional<CutModel> before;
+    if (dog_leg || links) before = state.stock;
+    LegCheck check = leg_check(use(motion));
+    double removed = 0.0;
+    for (const Leg& leg : path.legs) {
+        watch_centre(motion, leg);
+        removed += check.run(leg, result.duration, state.stock, result.pairs);
+        legs.push_back({leg, result.duration});
+        if (use(motion) == FluteUse::cutting)
+            note_reach(state.watch.reaches,
+                       {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
+                       result.pairs);
+    }
+    result.removed += removed;
+    if (before) look_at_rapid(motion, path, *before);
+    if (!rapid) look_at_feed(motion, path, removed);
+}
+
+void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {
+    const bool straight = path.legs.size() == 1 && path.legs[0].straight;
+    if (straight && tool())
+        return tell(
+            low_retract({setup, *tool(), block.block, path.legs[0], state.fixtures_there, before},
+                        result.pairs));
+    const PairClearance* worst = deciding_pair(result.pairs);
+    if (!worst || worst->verdict == Verdict::clear) return;
+    Machine machine = setup.machine;
+    machine.rapid = RapidStyle::straight;
+    CutModel stock = before;
+    CheckMemory memory; // bounds of the run hold along its own path only
+    std::vector<PairClearance> along_the_line;
+    for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
+        leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
+    worst = deciding_pair(along_the_line);
+    only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;
+}
+
+void BlockRun::look_at_feed(const Motion& motion, const Path& path, double removed) {
+    state.watch.has_fed = true;
+    if (!tool() || use(motion) != FluteUse::cutting) return;
+    LegCheck check = leg_check(FluteUse::cutting);
+    bool in_air = removed <= 0.0;
+    for (const Leg& leg : path.legs)
+        in_air = in_air && check.room_of_flutes(leg, state.stock, air_gap) >= air_gap;
+    if (in_air)
+        add_air(state.watch.air, block.block, path.duration * motion.feed / 60.0);
+    else
+        tell(end_air(state.watch.air, tool()->description.diameter));
+    if (in_air) return;
+    auto found = singular_orientation(setup.machine, motion, tool()->length);
+    const bool swings = found && !motion.tip && removed <= 0.0;
+    if (!found || swings || std::exchange(state.watch.told_swing, true)) return;
+    tell(std::move(found));
 }
 
 void BlockRun::forget_bounds() {
@@ -213,6 +283,9 @@ void BlockRun::move_without_tool(const Motion& motion) {
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
+    if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
+    state.watch.air = {};
+    state.watch.has_fed = state.watch.told_swing = false;
     forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
@@ -340,6 +413,18 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
     run.conclude();
     state.time += run.result.duration;
     return std::move(run.result);
+}
+
+std::vector<Finding> end_of_run(const Setup& setup, SimulatorState& state) {
+    std::vector<Finding> findings = findings_of(state.watch.reaches, setup);
+    const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
+    if (tool != setup.tools.end())
+        if (auto air = end_air(state.watch.air, tool->second.description.diameter))
+            findings.push_back(*std::move(air));
+    for (Finding& finding : findings) settle_severity(setup, finding);
+    std::erase_if(findings,
+                  [](const Finding& finding) { return finding.severity == Severity::off; });
+    return findings;
 }
 
 } // namespace core
