@@ -19,7 +19,7 @@ constexpr std::string_view text = "O1\n"                        // 1
                                   "G1 Z-5. F200\n"              // 7
                                   "N20 X60.\n"                  // 8
                                   "G2 X70. Y10. I0 J-10.\n"     // 9
-                                  "G0 Z50.\n"                   // 10
+                                  "G0 Z50. M9\n"                // 10
                                   "N30 T4 M6\n"                 // 11
                                   "G54 G0 X0 Y0 S900 M3\n"      // 12
                                   "G43 H4 Z50.\n"               // 13
