@@ -8,7 +8,7 @@ namespace core {
 struct PathQuestion {
     const RevolvedProfile& flutes;         // of the tool that moves
     Vec3 from = Vec3(0.0), to = Vec3(0.0); // places of its tip
-    double sideways = 0.0;                 // how far the tip may be from where it was, mm
+    double sideways = 0.0; // how far the tip may be from where it was, errors of both ways included
     Mat3 orientation = Mat3(1.0); // stock_from_tool; "above" and "up" are along the tool's axis
 };
 

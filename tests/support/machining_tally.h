@@ -135,10 +135,13 @@ private:
         if (!told && known_.setup.detail == core::Detail::every_pair)
             fail("every pair is told of", describe(claim, {}));
         ClearanceSearch search(known_.world, block, pair, crashed, dice_.random);
+        if (claim.found()) {
+            const core::Vec3 p = in_body(claim.on_body, pair);
+            search.offer(pair.fixture ? nearest_of(pair.solid(known_.world), p).nearest : p);
+        }
         if (!pair.fixture)
             for (size_t i = 0; i < cloud_.size(); ++i)
                 search.offer_known(cloud_[i], removals[i]);
-        if (claim.found()) search.offer(in_body(claim.on_body, pair));
         if (pair.fixture) search.offer_foremost();
         const double contact =
             claim.allowance.distance > core::resolution ? 0.0 : core::contact_depth(claim.allowance);
@@ -226,7 +229,7 @@ private:
 
     /// Keeps a point near the wall that a passage has cut, as it may be all that stands of a fin.
     void keep_beside(const TruePassage& by) {
-        const core::RevolvedProfile& flutes = *by.tool->part(core::PartKind::flutes);
+        const core::RevolvedProfile& flutes = by.tool->part(core::PartKind::flutes)->profile;
         const core::Vec3 p = dice_.within(bounds(flutes).grown(1.0));
         const PieceDistance near = nearest_of(flutes, p);
         if (near.distance <= 0.0) return;

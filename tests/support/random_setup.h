@@ -142,11 +142,13 @@ inline void add_tools(Dice& dice, KnownSetup& known) {
     for (int number = 1; number <= 3; ++number) {
         auto made = core::assemble(random_description(dice, core::ToolNumber{number}));
         while (!made) made = core::assemble(random_description(dice, core::ToolNumber{number}));
-        TrueTool tool{made->parts, made->length};
+        TrueTool tool{.length = made->length};
+        for (const core::ToolPart& part : made->parts)
+            tool.parts[size_t(part.kind)].emplace(part.profile);
         if (nose) {
             core::ProfileElement moved = *nose;
             moved.z0 += tool.length, moved.z1 += tool.length;
-            tool.parts.push_back({core::PartKind::nose, {{moved}}});
+            tool.parts[size_t(core::PartKind::nose)].emplace(core::RevolvedProfile{{moved}});
         }
         known.setup.tools.emplace(core::ToolNumber{number}, *made);
         known.tools.emplace(core::ToolNumber{number}, std::move(tool));

@@ -40,9 +40,9 @@ public:
     void offer_foremost() {
         for (const TruePassage& by : block_) {
             if (!pair_.counts_in(world_, by)) continue;
-            const core::Aabb box = bounds(*by.tool->part(pair_.part));
+            const core::ProfileElement& hull = by.tool->part(pair_.part)->hull;
             for (const double share : {0.0, 0.5, 1.0})
-                for (const double z : {box.min.z, 0.5 * (box.min.z + box.max.z), box.max.z})
+                for (const double z : {hull.z0, 0.5 * (hull.z0 + hull.z1), hull.z1})
                     offer_nearest_to({0, 0, z}, by, share);
         }
     }
@@ -56,7 +56,7 @@ public:
             const double before = best_.near.distance;
             const TruePassage& by = block_[best_.near.passage];
             const core::Vec3 seen = world_.seen(by, pair_.mount(world_), best_.p)(best_.near.share);
-            const auto on_part = nearest_of(*by.tool->part(pair_.part), seen).nearest;
+            const auto on_part = nearest_of(by.tool->part(pair_.part)->profile, seen).nearest;
             offer_nearest_to(on_part, by, best_.near.share);
             if (pair_.fixture && best_.near.distance > before - 1e-7) return;
             if (pair_.fixture) continue;

@@ -29,13 +29,12 @@ struct TrueFixture {
 
 /// A tool with what carries it. Frame: its tip is the origin.
 struct TrueTool {
-    std::vector<core::ToolPart> parts;
+    std::array<std::optional<TrueProfile>, 4> parts; // by kind
     double length = 0.0;
 
-    const core::RevolvedProfile* part(core::PartKind kind) const {
-        for (const core::ToolPart& part : parts)
-            if (part.kind == kind) return &part.profile;
-        return nullptr;
+    const TrueProfile* part(core::PartKind kind) const {
+        const auto& found = parts[size_t(kind)];
+        return found ? &*found : nullptr;
     }
 };
 

@@ -31,7 +31,7 @@ std::pair<double, double> least_of(const Function& f, double low, double high, i
 
 /// How near a profile comes to a point that goes by, up to a share of the way, and when: a distance
 /// that is really taken, and so never below the truth. Looks no farther than `limit`.
-inline std::pair<double, double> nearest_passage(const core::RevolvedProfile& profile,
+inline std::pair<double, double> nearest_passage(const TrueProfile& part,
                                                  const SeenPoint& seen, double until,
                                                  double limit) {
     std::pair<double, double> best{core::infinity, 0.0};
@@ -41,9 +41,13 @@ inline std::pair<double, double> nearest_passage(const core::RevolvedProfile& pr
         const double low = until * i / pieces, high = until * (i + 1) / pieces;
         const core::Vec3 a = seen(low), b = seen(high);
         const double way = glm::distance(a, b), off = seen.off(high - low);
-        for (const core::ProfileElement& e : profile.elements) {
-            const double at_a = true_distance(e, a), at_b = true_distance(e, b);
-            if (0.5 * (at_a + at_b - way) - off >= std::min(limit, best.first)) continue;
+        const auto is_far = [&](const core::ProfileElement& e) {
+            return 0.5 * (true_distance(e, a) + true_distance(e, b) - way) - off
+                   >= std::min(limit, best.first);
+        };
+        if (is_far(part.hull)) continue;
+        for (const core::ProfileElement& e : part.profile.elements) {
+            if (is_far(e)) continue;
             const auto found =
                 seen.path.is_straight()
                     ? least_of([&](double t) { return true_distance(e, a + t * (b - a)); }, 0, 1)
@@ -74,31 +78,36 @@ inline std::optional<double> first_straight(const core::ProfileElement& e, const
     return out;
 }
 
-inline std::optional<double> first_bent(const core::RevolvedProfile& profile,
-                                        const SeenPoint& seen, double low, double high,
-                                        double level, Doubt doubt) {
+inline std::optional<double> first_bent(const TrueProfile& part, const SeenPoint& seen, double low,
+                                        double high, double level, Doubt doubt) {
     constexpr double fine = 0.01; // mm
     const core::Vec3 a = seen(low), b = seen(high);
-    const double at_a = true_distance(profile, a), at_b = true_distance(profile, b);
-    if (at_a <= level) return low;
     const double way = glm::distance(a, b), off = seen.off(high - low);
+    if (0.5 * (true_distance(part.hull, a) + true_distance(part.hull, b) - way) - off > level)
+        return std::nullopt;
+    const double at_a = true_distance(part.profile, a), at_b = true_distance(part.profile, b);
+    if (at_a <= level) return low;
     if (0.5 * (at_a + at_b - way) - off > level) return std::nullopt;
     if (way < fine && off < fine)
         return doubt == Doubt::counts || at_b <= level ? std::optional(low) : std::nullopt;
     const double middle = 0.5 * (low + high);
-    if (const auto first = first_bent(profile, seen, low, middle, level, doubt)) return first;
-    return first_bent(profile, seen, middle, high, level, doubt);
+    if (const auto first = first_bent(part, seen, low, middle, level, doubt)) return first;
+    return first_bent(part, seen, middle, high, level, doubt);
 }
 
 /// The first share of the way at which the profile is nearer to the point than `level`.
-inline std::optional<double> first_within(const core::RevolvedProfile& profile,
-                                          const SeenPoint& seen, double level, Doubt doubt) {
-    if (!seen.path.is_straight()) return first_bent(profile, seen, 0.0, 1.0, level, doubt);
+inline std::optional<double> first_within(const TrueProfile& part, const SeenPoint& seen,
+                                          double level, Doubt doubt) {
+    if (!seen.path.is_straight()) return first_bent(part, seen, 0.0, 1.0, level, doubt);
     const core::Vec3 a = seen(0.0), b = seen(1.0);
     const double way = glm::distance(a, b);
+    const auto is_far = [&](const core::ProfileElement& e) {
+        return 0.5 * (true_distance(e, a) + true_distance(e, b) - way) > level;
+    };
     std::optional<double> first;
-    for (const core::ProfileElement& e : profile.elements) {
-        if (0.5 * (true_distance(e, a) + true_distance(e, b) - way) > level) continue;
+    if (is_far(part.hull)) return first;
+    for (const core::ProfileElement& e : part.profile.elements) {
+        if (is_far(e)) continue;
         const auto found = first_straight(e, a, b, level);
         if (found && (!first || *found < *first)) first = found;
     }

@@ -84,4 +84,15 @@ inline PieceDistance nearest_of(const core::RevolvedProfile& profile, const core
     return best;
 }
 
+/// A profile, and the cylinder round it.
+struct TrueProfile {
+    core::RevolvedProfile profile;
+    core::ProfileElement hull;
+
+    explicit TrueProfile(core::RevolvedProfile of) : profile(std::move(of)) {
+        const core::Aabb box = core::bounds(profile);
+        hull = {box.min.z, box.max.x, box.max.z, box.max.x, 0.0};
+    }
+};
+
 } // namespace test_support
