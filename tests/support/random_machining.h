@@ -20,7 +20,7 @@ public:
     RandomMachining(Dice& dice, const KnownSetup& known) : dice_(dice), known_(known) {
         for (const core::Fixture& fixture : known.setup.fixtures)
             there_.push_back(fixture.is_there);
-        tip_ = {0, 0, known.box.max.z + 40.0};
+        tip_ = {0, 0, known.box.max.z + 5.0};
         at_ = values_at(tip_, 0.0, 0.0);
     }
 
@@ -88,7 +88,7 @@ private:
 
     core::Vec3 next_tip() {
         const double d = known_.setup.tools.at(number_).description.diameter;
-        if (dice_.chance(0.12)) return last_[1]; // back to where it was
+        if (dice_.chance(0.2)) return last_[1]; // back to where it was
         if (dice_.chance(0.15)) {
             // Beside the last way, so near that a fin stands.
             const core::Vec3 way = last_[0] - last_[1];
@@ -98,18 +98,18 @@ private:
             return last_[dice_.index(2)]
                    + side * (d + known_.setup.mesh_size * dice_.between(0.0, 0.8));
         }
-        constexpr double steps[] = {0.3, 3.0, 15.0, 60.0};
+        constexpr double steps[] = {0.1, 0.6, 4.0, 20.0};
         const double step = steps[dice_.index(4)];
         core::Vec3 to = tip_;
         for (int axis = 0; axis < 3; ++axis)
             if (dice_.chance(0.6)) to[axis] += step * dice_.between(-1.0, 1.0);
-        const core::Aabb box = known_.box.grown(12.0);
+        const core::Aabb box = known_.box.grown(8.0);
         return glm::clamp(to, core::Vec3(box.min.x, box.min.y, known_.box.min.z - 2.0),
-                          core::Vec3(box.max.x, box.max.y, known_.box.max.z + 15.0));
+                          core::Vec3(box.max.x, box.max.y, known_.box.max.z + 4.0));
     }
 
     void add_motion(KnownBlock& block) {
-        const bool rapid = dice_.chance(0.35);
+        const bool rapid = dice_.chance(0.3);
         if (!rapid && dice_.chance(0.2)) return add_arc(block);
         const core::Vec3 to = next_tip();
         double a = at_[3], c = at_[5];

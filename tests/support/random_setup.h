@@ -185,7 +185,7 @@ inline KnownSetup random_setup(Dice& dice, bool turning) {
                 known.setup.machine.axes[i].rapid = dice.between(5e3, 3e4);
     }
     add_stock(dice, known);
-    const double lean = dice.chance(0.3) ? 60.0 : 0.0;
+    const double lean = dice.chance(0.05) ? 60.0 : 0.0;
     known.world.stock_mount.link_from_body = dice.turned({0, 0, 0}, lean);
     known.world.stock_mount.link_from_body.translation += dice.within({core::Vec3(-20), core::Vec3(20)});
     known.setup.stock_mount = {known.setup.machine.table, known.world.stock_mount.link_from_body};
