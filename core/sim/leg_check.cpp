@@ -186,8 +186,11 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         travel_ *= 2.0;
         return removed;
     }
+    // What is cut between the lines has no volume to them, yet a witness may have stood there.
+    const size_t sweeps = stock.log.size();
     const double removed = cut_along(leg, stock);
-    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, removed > 0.0, pairs);
+    const bool cut = stock.log.size() > sweeps;
+    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, cut, pairs);
     for (const MovingBody* body : later) look_late(*body, leg, start, stock, pairs);
     return removed;
 }

@@ -19,8 +19,8 @@ struct MachiningTally {
     std::vector<std::string> failures;
 
     bool is_representative() const {
-        return near > blocks / 20 && overlaps > blocks / 20 && witnesses > blocks / 10
-               && std::min({verdicts[0], verdicts[2], verdicts[3]}) > blocks / 50;
+        return near > blocks / 20 && overlaps > blocks / 20 && witnesses > blocks / 2
+               && std::min({verdicts[0], 10 * verdicts[2], verdicts[3]}) > blocks / 10;
     }
     std::string report() const {
         size_t narrow = 0;
@@ -106,8 +106,7 @@ private:
         for (const core::Vec3& p : cloud_)
             removals.push_back(known_.world.removal(block, crashed, p));
         core::Verdict worst = core::Verdict::clear;
-        for (const core::PairClearance& pair : result.pairs)
-            worst = std::max(worst, pair.verdict);
+        for (const core::PairClearance& pair : result.pairs) worst = std::max(worst, pair.verdict);
         if (result.checked && worst != result.verdict)
             fail("the block's verdict is its pairs' worst", "");
         for (const core::PartKind part : {core::PartKind::flutes, core::PartKind::shank,
@@ -137,14 +136,14 @@ private:
             search.offer(pair.fixture ? nearest_of(pair.solid(known_.world), p).nearest : p);
         }
         if (!pair.fixture)
-            for (size_t i = 0; i < cloud_.size(); ++i)
-                search.offer_known(cloud_[i], removals[i]);
+            for (size_t i = 0; i < cloud_.size(); ++i) search.offer_known(cloud_[i], removals[i]);
         if (pair.fixture) search.offer_foremost();
-        const double contact =
-            claim.allowance.distance > core::resolution ? 0.0 : core::contact_depth(claim.allowance);
+        const double contact = claim.allowance.distance > core::resolution
+                                   ? 0.0
+                                   : core::contact_depth(claim.allowance);
         search.improve(pair.fixture ? 40 : 14, 1.5,
                        std::min(claim.lower, known_.setup.search_limit) - contact - 1e-5);
-        judge_truth(claim, search.best(), pair);
+        judge_truth(claim, search.best());
         if (claim.found()) judge_witness(block, claim, pair);
         take_widths(claim, pair);
     }
@@ -155,8 +154,7 @@ private:
                * (known_.world.stock_mount.link_from_body * p_stock);
     }
 
-    void judge_truth(const core::PairClearance& claim, const NearPoint& best,
-                     const TruePair& pair) {
+    void judge_truth(const core::PairClearance& claim, const NearPoint& best) {
         const double distance = best.near.distance, allowance = claim.allowance.distance;
         tally_.near += distance > 0.0 && distance < 1.0;
         tally_.overlaps += distance < 0.0;
@@ -169,7 +167,6 @@ private:
         tally_.contacts += distance < 0.0;
         if (distance < -core::contact_depth(claim.allowance) - 1e-6)
             fail("what may touch and is clear does not overlap", describe(claim, best));
-        (void)pair;
     }
 
     void judge_witness(const std::vector<TruePassage>& block, const core::PairClearance& claim,
@@ -213,7 +210,8 @@ private:
         const std::vector<core::Vec3> before = std::move(cloud_);
         cloud_.clear();
         for (const core::Vec3& p : before)
-            if (known_.world.removal(block, crashed, p).passage == block.size()) cloud_.push_back(p);
+            if (known_.world.removal(block, crashed, p).passage == block.size())
+                cloud_.push_back(p);
         for (const TruePassage& by : block) {
             if (!by.chips && !crashed) continue;
             known_.world.history.push_back(by);
@@ -264,5 +262,14 @@ private:
     std::vector<core::Vec3> cloud_; // of the stock, there for certain
     uint32_t block_ = 0;
 };
+
+/// What came of some programs, each of so many blocks and on a set-up of its own.
+inline MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks,
+                                      bool turning) {
+    MachiningTally tally;
+    for (unsigned i = 0; i < programs; ++i)
+        JudgedMachining(first_seed + i, turning, tally).carry_out(blocks);
+    return tally;
+}
 
 } // namespace test_support

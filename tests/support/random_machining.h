@@ -144,7 +144,8 @@ private:
         for (size_t i = 0; i < core::axis_count; ++i) {
             const double speed =
                 known_.setup.machine.axes[i].rapid.value_or(dice_.between(2e3, 3e4));
-            if (there[i] != at_[i]) bends.push_back(arrival[i] = std::abs(there[i] - at_[i]) / speed);
+            if (there[i] != at_[i])
+                bends.push_back(arrival[i] = std::abs(there[i] - at_[i]) / speed);
         }
         std::sort(bends.begin(), bends.end());
         core::AxisValues here = at_;

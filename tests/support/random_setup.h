@@ -19,7 +19,9 @@ struct Dice {
     double share() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); }
     double between(double low, double high) { return low + (high - low) * share(); }
     bool chance(double of) { return share() < of; }
-    size_t index(size_t count) { return std::uniform_int_distribution<size_t>(0, count - 1)(random); }
+    size_t index(size_t count) {
+        return std::uniform_int_distribution<size_t>(0, count - 1)(random);
+    }
     core::Vec3 within(const core::Aabb& box) {
         return box.min + core::Vec3(share(), share(), share()) * box.size();
     }
@@ -115,7 +117,8 @@ inline void add_fixture(Dice& dice, KnownSetup& known) {
     } else if (dice.chance(0.5)) {
         truth.mount.link_from_body = dice.turned(centre, 60.0);
     }
-    truth.mount.link_from_body = known.world.stock_mount.link_from_body * truth.mount.link_from_body;
+    truth.mount.link_from_body =
+        known.world.stock_mount.link_from_body * truth.mount.link_from_body;
     truth.mount.on_table = !known.setup.machine.has_rotary() || dice.chance(0.8);
     truth.expendable = dice.chance(0.15);
     core::Fixture fixture;
@@ -185,9 +188,10 @@ inline KnownSetup random_setup(Dice& dice, bool turning) {
                 known.setup.machine.axes[i].rapid = dice.between(5e3, 3e4);
     }
     add_stock(dice, known);
-    const double lean = dice.chance(0.05) ? 60.0 : 0.0;
+    const double lean = turning ? 20.0 : 0.0;
     known.world.stock_mount.link_from_body = dice.turned({0, 0, 0}, lean);
-    known.world.stock_mount.link_from_body.translation += dice.within({core::Vec3(-20), core::Vec3(20)});
+    known.world.stock_mount.link_from_body.translation +=
+        dice.within({core::Vec3(-20), core::Vec3(20)});
     known.setup.stock_mount = {known.setup.machine.table, known.world.stock_mount.link_from_body};
     const size_t fixtures = dice.index(4);
     for (size_t i = 0; i < fixtures; ++i) add_fixture(dice, known);

@@ -71,8 +71,7 @@ private:
     void offer_nearest_to(const core::Vec3& p, const TruePassage& by, double share) {
         const core::AxisValues at = by.path.at(share);
         const core::Vec3 tip(at[0], at[1], at[2] - by.tool->length);
-        const core::Vec3 here =
-            mounted_place(world_.machine, pair_.mount(world_), at, p + tip);
+        const core::Vec3 here = mounted_place(world_.machine, pair_.mount(world_), at, p + tip);
         offer(nearest_of(pair_.solid(world_), here).nearest);
     }
 

@@ -153,10 +153,9 @@ inline Nearness nearness(const TrueMachining& world, const std::vector<TruePassa
     for (size_t i = 0; i < block.size() && i <= removal.passage; ++i) {
         const double until = i < removal.passage ? 1.0 : removal.share;
         if (!pair.counts_in(world, block[i])) continue;
-        const auto [distance, share] =
-            nearest_passage(*block[i].tool->part(pair.part),
-                            world.seen(block[i], pair.mount(world), p), until,
-                            std::min(limit, best.distance));
+        const auto [distance, share] = nearest_passage(*block[i].tool->part(pair.part),
+                                                       world.seen(block[i], pair.mount(world), p),
+                                                       until, std::min(limit, best.distance));
         if (distance < best.distance) best = {distance, i, share};
     }
     return best.distance < limit ? best : Nearness{};

@@ -31,9 +31,8 @@ std::pair<double, double> least_of(const Function& f, double low, double high, i
 
 /// How near a profile comes to a point that goes by, up to a share of the way, and when: a distance
 /// that is really taken, and so never below the truth. Looks no farther than `limit`.
-inline std::pair<double, double> nearest_passage(const TrueProfile& part,
-                                                 const SeenPoint& seen, double until,
-                                                 double limit) {
+inline std::pair<double, double> nearest_passage(const TrueProfile& part, const SeenPoint& seen,
+                                                 double until, double limit) {
     std::pair<double, double> best{core::infinity, 0.0};
     const int pieces =
         seen.path.is_straight() ? 1 : 2 + static_cast<int>(seen.path.bend() * until / 0.25);
@@ -53,8 +52,7 @@ inline std::pair<double, double> nearest_passage(const TrueProfile& part,
                     ? least_of([&](double t) { return true_distance(e, a + t * (b - a)); }, 0, 1)
                     : least_of([&](double t) { return true_distance(e, seen(t)); }, low, high, 16);
             if (found.first < best.first)
-                best = {found.first,
-                        seen.path.is_straight() ? until * found.second : found.second};
+                best = {found.first, seen.path.is_straight() ? until * found.second : found.second};
         }
     }
     return best;

@@ -103,8 +103,7 @@ struct SeenPoint {
 
     core::Vec3 operator()(double share) const {
         const core::AxisValues at = path.at(share);
-        return machine_place(machine, mount, at, p)
-               - core::Vec3(at[0], at[1], at[2] - tool_length);
+        return machine_place(machine, mount, at, p) - core::Vec3(at[0], at[1], at[2] - tool_length);
     }
     double off(double share) const {
         const double turn = path.bend() * share;

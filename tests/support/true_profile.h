@@ -70,8 +70,8 @@ inline PieceDistance nearest_of(const core::ProfileElement& e, const core::Vec3&
     const double to_r = nearest.r + share * (r - nearest.r);
     const double to_z = nearest.z + share * (p.z - nearest.z);
     const double scale = r > 0.0 ? to_r / r : 0.0;
-    const core::Vec3 on = r > 0.0 ? core::Vec3(p.x * scale, p.y * scale, to_z)
-                                  : core::Vec3(to_r, 0.0, to_z);
+    const core::Vec3 on =
+        r > 0.0 ? core::Vec3(p.x * scale, p.y * scale, to_z) : core::Vec3(to_r, 0.0, to_z);
     return {apart, on};
 }
 
