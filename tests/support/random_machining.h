@@ -110,7 +110,7 @@ private:
 
     void add_motion(KnownBlock& block) {
         const bool rapid = dice_.chance(0.3);
-        if (!rapid && dice_.chance(0.2)) return add_arc(block);
+        if (!rapid && dice_.chance(0.12)) return add_arc(block);
         const core::Vec3 to = next_tip();
         double a = at_[3], c = at_[5];
         if (known_.setup.machine.has_rotary() && dice_.chance(0.3)) {
@@ -161,7 +161,7 @@ private:
 
     void add_arc(KnownBlock& block) {
         core::ArcPath arc{.normal = dice_.chance(0.8) ? 2 : int(dice_.index(3))};
-        const double r = dice_.between(0.5, 15.0), start = dice_.between(0.0, 6.28);
+        const double r = dice_.between(0.5, 6.0), start = dice_.between(0.0, 6.28);
         const int u = (arc.normal + 1) % 3, v = (arc.normal + 2) % 3;
         for (int i = 0; i < 3; ++i) arc.centre[i] = at_[size_t(i)];
         arc.centre[u] += r * std::cos(start), arc.centre[v] += r * std::sin(start);
