@@ -217,12 +217,18 @@ void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
                          const CutModel& stock, std::vector<PairClearance>& pairs) {
     PairClearance& known = known_pair(pairs, pair_of(body));
     if (says_nothing(known, pairs)) return;
-    // The stock of before is gone; the bound that let this wait holds for it.
-    Observation before;
-    before.plain.lower = known.at_end - travel_;
-    const double drift = known.drift + travel_;
-    const Observation after = look_again({body, before, true, known.upper}, leg, stock);
-    merge(known, clearance(body, leg, start, before, after));
+    // The stock of before is gone. It was what is left and what the flutes took on their way.
+    const RelativeLeg relative = against_stock(body, leg);
+    const RelativeLeg flutes = against_stock(bodies_[0], leg);
+    const double limit = std::min(setup_.search_limit, known.upper);
+    Observation seen;
+    seen.plain = widened(to_stock(body, relative, stock, 0.0, limit), relative);
+    const double taken = distance(bounds(body, relative), bounds(bodies_[0], flutes));
+    const double carried = known.at_end - travel_;
+    const double fresh = std::min(seen.plain.lower, taken - resolution);
+    const double drift = fresh >= carried ? travel_ : known.drift + travel_;
+    seen.plain.lower = std::max(carried, fresh);
+    merge(known, clearance(body, leg, start, seen, seen));
     known.drift = drift;
 }
 
@@ -344,6 +350,15 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
         if (!safe) now.verdict = std::max(now.verdict, Verdict::undecided);
         merge(entry(pairs, pair.pair, setup_), now);
     }
+}
+
+double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
+    if (tool_.parts.empty() || !leg.straight) return 0.0;
+    const RelativeLeg way = against_stock(bodies_[0], leg);
+    if (way.error >= limit) return 0.0;
+    const double far = limit + way.error;
+    return std::max(0.0, to_stock(bodies_[0], way, stock, far, far, 0.0, StockBound::lower).lower
+                             - way.error);
 }
 
 void LegCheck::rest(const AxisValues& place, const CutModel& stock,
