@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/arc_geometry.h"
+#include "gcode/error_rules.h"
 #include "gcode/execution.h"
 #include "gcode/frame_codes.h"
 
@@ -111,8 +112,8 @@ core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, doub
     return {};
 }
 
-core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
-                               double* centre) {
+core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
+                                   double* centre) {
     constexpr char offset_letters[] = {'I', 'J', 'K', 0, 0, 0, 'I', 'J', 'K'};
     const Statement& statement = execution.statement;
     const CentreWords words = {statement.word(offset_letters[axes.first]),
@@ -136,6 +137,14 @@ core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const P
                                   offset_letters[axes.first], offset_letters[axes.second],
                                   execution.dialect.radius_word),
                       arc.where);
+}
+
+/// The centre, with the check that the arc ends where it should.
+core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
+                               double* centre) {
+    auto found = centre_of_words(execution, arc, axes, centre);
+    if (!found) found.error().code = wrong_arc;
+    return found;
 }
 
 core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
@@ -193,7 +202,10 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
     const double larger = std::max(std::abs(scale[0]), std::abs(scale[1]));
     const double size = larger * length_of(execution, radius);
     double centre[2];
-    if (auto found = centre_from_radius(arc, radius, size, centre); !found) return found;
+    if (auto found = centre_from_radius(arc, radius, size, centre); !found) {
+        found.error().code = wrong_arc;
+        return found;
+    }
     const double angle = arc_angle(arc.start, arc.end, centre, arc.clockwise ? -1 : 1);
     FEELER_TRY(const double rate, feed_rate(execution, std::abs(size * angle)));
     execution.warn(arc.where, fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}; the "

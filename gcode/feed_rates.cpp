@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "gcode/error_rules.h"
 #include "gcode/execution.h"
 
 namespace gcode {
 
 namespace {
-
-using core::ErrorCode;
 
 /// How fast the spindle turns, rev/min. Under G96 that hangs on the distance from its axis: that of
 /// where the motion begins is taken for the whole of it.
@@ -43,8 +42,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     const ModalState& modal = execution.modal();
     const auto refuse = [&](std::string_view why) {
         const Word& mover = moving_word(execution);
-        return core::fail(ErrorCode::missing_value, fmt::format("{}: {}", written(mover), why),
-                          mover.span);
+        return core::fail(no_feed, fmt::format("{}: {}", written(mover), why), mover.span);
     };
     const bool inverse = modal.feed_mode == FeedMode::inverse_time;
     if (inverse && !execution.statement.word('F'))

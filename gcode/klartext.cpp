@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "gcode/error_rules.h"
+
 namespace gcode {
 namespace {
 
@@ -128,9 +130,11 @@ tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::st
 
 core::Result<double> klartext_feed(const Execution& execution) {
     const std::optional<double> feed = execution.modal().feed;
-    if (!feed) return refuse_statement(execution, "no feed F came before this motion");
-    if (*feed == 0.0) return refuse_statement(execution, "this motion has the feed F0");
-    return *feed;
+    if (feed && *feed > 0.0) return *feed;
+    tl::unexpected<core::Error> error = refuse_statement(
+        execution, feed ? "this motion has the feed F0" : "no feed F came before this motion");
+    error.value().code = no_feed;
+    return error;
 }
 
 double q_number(const Execution& execution, int number) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/arc_geometry.h"
+#include "gcode/error_rules.h"
 #include "gcode/klartext.h"
 
 namespace gcode {
@@ -88,19 +89,26 @@ core::Result<int> turn_of(const Execution& execution) {
     return turn;
 }
 
+/// An arc that is none.
+tl::unexpected<core::Error> refuse_arc(const Execution& execution, std::string_view why) {
+    tl::unexpected<core::Error> error = refuse_statement(execution, why);
+    error.value().code = wrong_arc;
+    return error;
+}
+
 /// The radii to start and end of an arc around the pole may differ by what the control allows.
 core::Result<void> check_radii(Execution& execution, const PlanePoint& start, const PlanePoint& end,
                                const PlanePoint& centre) {
     const double to_start = std::hypot(start[0] - centre[0], start[1] - centre[1]);
     const double to_end = std::hypot(end[0] - centre[0], end[1] - centre[1]);
     if (to_start < shortest)
-        return refuse_statement(execution, "the arc has no radius, its centre is where it starts");
+        return refuse_arc(execution, "the arc has no radius, its centre is where it starts");
     const double difference = std::abs(to_start - to_end);
     const ArcTolerance& allowed = execution.dialect.arc;
     if (difference <= allowed.absolute_mm) return {};
     const std::string message = fmt::format(
         "the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end", to_start, to_end);
-    if (difference > allowed.warned_mm) return refuse_statement(execution, message);
+    if (difference > allowed.warned_mm) return refuse_arc(execution, message);
     execution.warn(execution.block.command.span, message);
     return {};
 }
@@ -144,10 +152,10 @@ core::Result<PathElement> of_radius(Execution& execution) {
         return refuse_statement(execution, "an arc with a radius cannot end where it starts: write "
                                            "a full circle as CC and C");
     if (half - std::abs(radius) > execution.dialect.arc.absolute_mm)
-        return refuse_statement(execution,
-                                fmt::format("the radius {:.4f} mm does not reach the end, half of "
-                                            "the way is {:.4f} mm",
-                                            std::abs(radius), half));
+        return refuse_arc(execution,
+                          fmt::format("the radius {:.4f} mm does not reach the end, half of the "
+                                      "way is {:.4f} mm",
+                                      std::abs(radius), half));
     const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
     const double side = (radius > 0.0 ? contour.turn : -contour.turn) * height / (2.0 * half);
     contour.centre = {0.5 * (start[0] + end[0]) - side * chord[1],

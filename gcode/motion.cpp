@@ -40,10 +40,12 @@ void assume_feed(Execution& execution) {
     const double assumed = execution.dialect.assumed_feed;
     if (modal.feed || assumed == 0.0 || modal.feed_mode != FeedMode::per_minute) return;
     const Word& mover = moving_word(execution);
-    execution.warn(mover.span,
-                   fmt::format("{}: no F word came before this feed: Grbl 1.1 stops here (error "
-                               "22), older ones take {:g} mm/min, which is taken here too",
-                               written(mover), assumed));
+    execution.result.warnings.push_back(
+        {Severity::warning, mover.span,
+         fmt::format("{}: no F word came before this feed: Grbl 1.1 stops here (error 22), older "
+                     "ones take {:g} mm/min, which is taken here too",
+                     written(mover), assumed),
+         "no-feed", "Say F before the first feed."});
     modal.feed = assumed;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/error_rules.h"
 #include "gcode/siemens.h"
 
 namespace gcode {
@@ -42,7 +43,7 @@ struct Hole {
 };
 
 tl::unexpected<core::Error> refuse(const Execution& execution, int number, std::string_view why) {
-    return core::fail(ErrorCode::missing_value, fmt::format("CYCLE{}: {}", number, why),
+    return core::fail(no_feed, fmt::format("CYCLE{}: {}", number, why),
                       {.line = execution.block.line, .column = execution.column, .length = 1});
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/arc_geometry.h"
+#include "gcode/error_rules.h"
 #include "gcode/siemens.h"
 
 namespace gcode {
@@ -51,9 +52,11 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
     const double difference = std::abs(radius - std::hypot(to[0] - centre[0], to[1] - centre[1]));
     const ArcTolerance& allowed = execution.dialect.arc;
     if (radius < 1e-9 || difference > std::max(allowed.absolute_mm, allowed.relative * radius))
-        return refuse(execution, fmt::format("the arc's radius is {:.4f} mm at its start and "
-                                             "{:.4f} mm off that at its end",
-                                             radius, difference));
+        return refuse(execution,
+                      fmt::format("the arc's radius is {:.4f} mm at its start and {:.4f} mm off "
+                                  "that at its end",
+                                  radius, difference),
+                      wrong_arc);
     const double angle = arc_angle(start_point, end_point, centre_point, turns);
     std::optional<double> path;
     const auto &rise_from = modal.position[axes.normal], &rise_to = end[axes.normal];

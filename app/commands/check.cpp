@@ -18,7 +18,7 @@ namespace {
 struct Options {
     std::string program, setup, output, stock, comparison;
     ProgramArguments reading;
-    std::string format = "text";
+    std::string format = "text", start_line;
     std::optional<double> allowance, mesh_size, memory_limit;
     bool blocks = false;
     bool pairs = false;
@@ -112,6 +112,7 @@ ExitCode check(const Options& options) {
                           .needs_surface = needs_surface,
                           .before_model = say_memory,
                           .after_block = show,
+                          .start_line = options.start_line,
                           .settings = *settings});
     line.clear();
     if (!run) {
@@ -151,6 +152,9 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                     "What the model of the stock may take, MB (8590 unless said)")
         ->check(number_range(1.0, 1e9));
     add_program_arguments(command, options->reading);
+    command.add_option("--start-line", options->start_line,
+                       "Start at this line, or at block N210, as after switching on, and list what "
+                       "is missing");
     command
         .add_option("--format", options->format,
                     "text, json, jsonl (an object to a line) or csv (a row to a block)")

@@ -5,13 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "app/session/allowed_rules.h"
+#include "app/session/block_delete.h"
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
-#include "app/session/m_codes.h"
 #include "app/session/part_check.h"
+#include "app/session/program_runner.h"
 #include "app/session/timing_notes.h"
-#include "core/sim/block_clock.h"
-#include "gcode/lowering.h"
 
 namespace app {
 namespace {
@@ -20,11 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-core::Error named(core::Error error, const std::string& file) {
-    if (error.file.empty()) error.file = file;
-    return error;
 }
 
 /// The dialect that was stated, else what the program looks like.
@@ -89,152 +84,6 @@ bool calls_tools(const gcode::Program& program, const gcode::Environment& enviro
     }
 }
 
-core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
-    core::Finding finding;
-    finding.rule = warning.rule;
-    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
-    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
-    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
-        finding.severity = set->second;
-    finding.message = warning.message;
-    finding.cure = warning.cure;
-    return finding;
-}
-
-/// T0 empties the spindle, unless a tool has that number.
-void take_tool_zero(core::Event& event) {
-    auto* change = std::get_if<core::ToolChange>(&event);
-    if (change && !change->tool) change->tool = core::ToolNumber{0};
-}
-
-/// The fixtures that are moved before a block.
-std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
-    std::vector<core::Event> events;
-    for (const core::FixtureMove& move : setup.fixture_moves) {
-        const bool here = move.line && block.file.empty() && block.line == *move.line;
-        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
-        events.emplace_back(core::FixtureChange{move.from, false});
-        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
-    }
-    return events;
-}
-
-void take_any_speed(core::Event& event) {
-    auto* spindle = std::get_if<core::SpindleChange>(&event);
-    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
-}
-
-/// A run while it goes on.
-struct Runner {
-    const gcode::Program& program;
-    const gcode::Environment& environment;
-    CheckRun& run;
-    const std::function<bool(const CheckProgress&)>& after_block;
-    bool speed_by_hand = false;
-    gcode::ProgramLibrary library{program, gcode::dialect(environment.dialect),
-                                  environment.search_path};
-    gcode::Interpreter interpreter{library, environment};
-    gcode::InterpreterState place = gcode::initial_state(environment);
-    gcode::Lowering lowering = gcode::initial_lowering(environment);
-    core::BlockClock clock = core::start_clock(run.setup.machine);
-    uint32_t last_line = 0; // of the main program
-
-    /// The simulator of this version has no axes beyond X, Y and Z.
-    std::optional<core::Error> refusal(const gcode::BlockResult& block) const {
-        if (lowering.moved_tilted)
-            return core::Error{core::ErrorCode::unsupported,
-                               {.line = block.line, .column = 1},
-                               "this block moves in a tilted plane or with a tool that is turned, "
-                               "and the machine of the set-up has no rotary axes that could: add "
-                               "them as [[axis]]",
-                               std::string(block.file)};
-        if (!lowering.other_axis) return std::nullopt;
-        return core::Error{core::ErrorCode::unsupported,
-                           {.line = block.line, .column = 1},
-                           fmt::format("this block moves axis {}, which the machine of the set-up "
-                                       "does not have: add an [[axis]] of that name to its machine",
-                                       gcode::axis_letters[*lowering.other_axis]),
-                           std::string(block.file)};
-    }
-
-    /// Runs a block, or says why it cannot be.
-    std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state) {
-        std::vector<core::Event> events = fixture_events(run.setup, block);
-        for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
-        for (core::Event& event : events) {
-            if (run.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
-            if (speed_by_hand) take_any_speed(event);
-        }
-        if (auto refused = refusal(block)) return refused;
-        CheckedBlock checked{
-            block.block, block.line, std::string(block.text), std::string(block.file),
-            block.calls, {}};
-        const core::BlockEvents of_block{block.block, block.is_cycle, events};
-        checked.result = core::run_block(run.setup, of_block, state);
-        for (const gcode::Warning& warning : block.warnings) {
-            core::Finding finding = remark(run.setup, warning);
-            finding.block = block.block;
-            if (finding.severity != core::Severity::off) run.findings.push_back(finding);
-        }
-        for (const core::Finding& finding : checked.result.findings)
-            run.findings.push_back(finding);
-        run.verdict = std::max(run.verdict, checked.result.verdict);
-        run.removed += checked.result.removed;
-        run.blocks.push_back(std::move(checked));
-        std::vector<core::BlockTime> timed;
-        core::add_block(clock, of_block, timed);
-        enter(timed);
-        return std::nullopt;
-    }
-
-    /// The times of blocks whose place in time has become known.
-    void enter(const std::vector<core::BlockTime>& timed) {
-        for (const core::BlockTime& time : timed)
-            core::settle_time(run.blocks[core::value_of(time.block)].result, time);
-    }
-
-    void to_the_end(core::SimulatorState& state) {
-        run_blocks(state);
-        std::vector<core::BlockTime> timed;
-        core::stop_clock(clock, timed);
-        enter(timed);
-        run.cycle_time = clock.time;
-    }
-
-    CheckProgress progress(const gcode::BlockResult& block) {
-        if (block.file.empty()) last_line = block.line;
-        return {run.blocks.size(),
-                static_cast<double>(last_line) / static_cast<double>(program.line_count()),
-                run.findings.size()};
-    }
-
-    void run_blocks(core::SimulatorState& state) {
-        while (true) {
-            const auto next = interpreter.next(place);
-            if (!next) {
-                run.stopped = named(next.error(), program.file);
-                return;
-            }
-            if (!*next) break;
-            if (const auto refused = block(**next, state)) {
-                run.stopped = named(*refused, program.file);
-                return;
-            }
-            if (after_block && !after_block(progress(**next))) {
-                run.stopped = named({core::ErrorCode::io,
-                                     {.line = (*next)->line, .column = 1},
-                                     "the check was stopped after this block: the rest of the "
-                                     "program is not checked",
-                                     std::string((*next)->file)},
-                                    program.file);
-                return;
-            }
-        }
-        if (const auto warning = gcode::ending_warning(environment, place))
-            run.findings.push_back(remark(run.setup, *warning));
-    }
-};
-
 /// A program of which no motion could be judged has not been checked.
 void look_for_judged_motions(CheckRun& run) {
     const CheckedBlock* first = nullptr;
@@ -269,12 +118,21 @@ void say_not_judged(CheckRun& run, const std::string& why) {
     run.findings.push_back(finding);
 }
 
+/// Findings in the order of their blocks, those about the program as a whole at the end.
+void put_in_order(std::vector<core::Finding>& findings) {
+    std::stable_sort(findings.begin(), findings.end(), [](const auto& a, const auto& b) {
+        if (!a.block || !b.block) return a.block.has_value() && !b.block;
+        return core::value_of(*a.block) < core::value_of(*b.block);
+    });
+}
+
 void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.statistics = state.statistics;
     run.points = core::point_count(state.stock.lines);
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
     look_for_judged_motions(run);
+    put_in_order(run.findings);
 }
 
 } // namespace
@@ -303,6 +161,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
+    const bool stock_is_stated = !file.needs_stock && !file.is_inferred;
     if (const auto whole = complete_setup(file, *program); !whole)
         return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
@@ -327,7 +186,14 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     run.times.model = seconds_since(modelling);
 
     const Clock::time_point checking = Clock::now();
-    Runner{*program, file.environment, run, job.after_block, file.speed_by_hand}.to_the_end(*state);
+    ProgramRunner runner(*program, file.environment, run);
+    runner.after_block = job.after_block;
+    runner.speed_by_hand = file.speed_by_hand;
+    runner.stock_is_stated = stock_is_stated;
+    if (!job.start_line.empty())
+        if (const auto begun = runner.start_at(job.start_line); !begun)
+            return tl::unexpected(named(begun.error(), job.program));
+    runner.to_the_end(*state);
     run.times.check = seconds_since(checking);
     conclude(run, *state);
     say_not_judged(run, file.not_judged);
@@ -335,6 +201,8 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     if (!run.stopped && (job.needs_surface || run.setup.part))
         run.surface = core::stock_mesh(*run.stock);
     check_part(run);
+    look_at_both_switch_positions(run, *program, file.environment);
+    apply_allowed_rules(run, file.allow_comments);
     return run;
 }
 

@@ -77,7 +77,8 @@ struct CheckJob {
     bool needs_surface = false; // that of the stock is wanted, also without a part
     std::function<void(double)> before_model = {}; // told the bytes that the model will take
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
-    ProgramSettings settings; // replace what the set-up says under [program]
+    std::string start_line = {}; // "120" or "N210"; empty: from the beginning
+    ProgramSettings settings;    // replace what the set-up says under [program]
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

@@ -123,8 +123,7 @@ void check_allowance_names(TableReader& table, const core::Setup& setup) {
 }
 
 void read_rules(TableReader& table, SetupFile& file) {
-    if (table.boolean("allow_comments").value_or(false))
-        file.assumptions.push_back("allow_comments: comments that allow a rule do not count yet");
+    file.allow_comments = table.boolean("allow_comments").value_or(false);
     for (const std::string& rule : table.keys()) {
         if (rule == "allow_comments") continue;
         const auto word = table.word(rule.c_str(), {"off", "note", "warning", "error"});

@@ -27,6 +27,7 @@ struct SetupFile {
     bool needs_stock = false;                      // it is to be inferred from the program
     std::optional<double> stock_margin;            // round what is inferred
     bool speed_by_hand = false;                    // M3 turns the spindle without an S
+    bool allow_comments = false;                   // (feeler: allow RULE) in the program counts
     bool is_inferred = false;                      // no file: everything is
     std::string not_judged;               // why the motions of the program are not; empty: they are
     std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired

@@ -27,20 +27,21 @@ bool widens_upwards(const RevolvedProfile& flutes) {
 /// cut is open above.
 struct Move {
     Vec3 from, to;
+    double near = 0.0; // how far the tip may be from it
     bool open = false;
 };
 
 /// Whether the tip at `p` is near enough to a place of the move: all of a tool made smaller by that
 /// much is then within the tool as it stood there.
-bool passes(const Move& move, const Vec3& p, double near) {
+bool passes(const Move& move, const Vec3& p) {
     const Vec3 q = move.from, by = move.to - move.from;
     const double length = glm::dot(by, by);
     const double t = length > 0.0 ? std::clamp(glm::dot(p - q, by) / length, 0.0, 1.0) : 0.0;
-    return glm::distance(p, q + t * by) <= near;
+    return glm::distance(p, q + t * by) <= move.near;
 }
 
 /// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
-bool covers(const Move& move, const Vec3& p, double sideways) {
+bool covers(const Move& move, const Vec3& p) {
     const Vec3 q = move.from, by = move.to - move.from;
     // The places of the move that are not above p: first .. last of 0 .. 1.
     double first = 0.0, last = 1.0;
@@ -51,16 +52,15 @@ bool covers(const Move& move, const Vec3& p, double sideways) {
     const double length = by.x * by.x + by.y * by.y;
     const double along = (p.x - q.x) * by.x + (p.y - q.y) * by.y;
     const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
-    return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= sideways;
+    return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= move.near;
 }
 
 /// A search among the moves that can serve.
 struct Search {
     std::vector<Move> moves;
-    double sideways;
 
     bool over(const Move& move, const Vec3& p) const {
-        return passes(move, p, sideways) || (move.open && covers(move, p, sideways));
+        return passes(move, p) || (move.open && covers(move, p));
     }
 
     /// Both ends over one move: then, both being straight, all between is over it too.
@@ -78,8 +78,8 @@ struct Search {
 
     /// Both in the same of two ways: each of them holds between its ends.
     bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
-        const bool passed = passes(move, a, sideways) && passes(move, b, sideways);
-        return passed || (move.open && covers(move, a, sideways) && covers(move, b, sideways));
+        const bool passed = passes(move, a) && passes(move, b);
+        return passed || (move.open && covers(move, a) && covers(move, b));
     }
 };
 
@@ -114,12 +114,14 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
     // What cut under the path reached up through it, to the stock's top and beyond.
     const double top = top_along(stock.outer_box, up);
     const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
-    Search search{{}, question.sideways};
+    Search search;
     for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
         const CutterSweep& sweep = stock.log[number].sweep;
         if (sweep.orientation[2] != up) continue;
         if (!same_profile(sweep.cutter->flutes, question.flutes)) continue;
-        Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to};
+        Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to,
+                  question.sideways - sweep.cutter->path_error};
+        if (move.near <= 0.0) continue;
         move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
         search.moves.push_back(move);
     }

@@ -62,6 +62,12 @@ ShapeOutline outline(const ConvexShape& shape) {
             core_radius = std::max(core_radius, std::hypot(shape.points[i].x, shape.points[i].y));
     }
     result.radius = core_radius + shape.margin;
+    // A cylinder that goes level sweeps all of its stadium at every height; one that goes straight
+    // up or down sweeps a cylinder.
+    const bool is_cylinder = shape.core == ConvexShape::Core::cone && shape.margin == 0.0
+                             && shape.cone.r0 == shape.cone.r1;
+    const bool level = from.z == to.z, upright = from.x == to.x && from.y == to.y;
+    result.exact = result.straight && is_cylinder && (level || upright);
     return result;
 }
 

@@ -11,6 +11,7 @@ struct ShapeOutline {
     bool straight = false;                         // the rest holds: one or two places
     double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0; // path of the axis seen from above
     double radius = 0.0;
+    bool exact = false; // the sweep is this cylinder's: its bounds are true distances
 };
 
 ShapeOutline outline(const ConvexShape& shape);

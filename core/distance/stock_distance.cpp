@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/distance/shape_outline.h"
 
@@ -12,10 +13,30 @@ namespace {
 /// so far is passed over, and its bound remembered.
 constexpr double same = 1e-7;
 
-/// A box of some level over the tiles, and how near it may be.
-struct NearBox {
-    double bound;
-    size_t index;
+/// Up to sixteen boxes that may be nearer than a limit.
+class NearBoxes {
+public:
+    void add(double bound, size_t index, double limit) {
+        if (bound < limit) near_[count_++] = {bound, index};
+    }
+
+    /// Runs `act` over those that still may be, nearest first.
+    template <typename Limit, typename Act>
+    void in_order(const Limit& limit, const Act& act) {
+        std::sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count_),
+                  [](const Near& a, const Near& b) {
+                      return a.bound != b.bound ? a.bound < b.bound : a.index < b.index;
+                  });
+        for (size_t i = 0; i < count_ && near_[i].bound < limit(); ++i) act(near_[i].index);
+    }
+
+private:
+    struct Near {
+        double bound;
+        size_t index;
+    };
+    std::array<Near, 16> near_;
+    size_t count_ = 0;
 };
 
 /// One search: several shapes against one stock.
@@ -26,6 +47,7 @@ public:
         for (const ConvexShape& shape : shapes) {
             outlines_.push_back(outline(shape));
             whole_.extend(outlines_.back().box);
+            is_exact_ = is_exact_ && outlines_.back().exact;
         }
     }
 
@@ -33,6 +55,7 @@ public:
         if (goal_.first_line) search_line(*goal_.first_line);
         if (goal_.bound != StockBound::lower)
             for (int axis = 0; axis < 3; ++axis) search_lines(axis);
+        keep_promise();
         lower_ = 0.0;
         if (goal_.bound != StockBound::upper) search_columns();
         if (goal_.bound != StockBound::upper && lower_ < goal_.threshold
@@ -86,40 +109,37 @@ private:
                          const Act& act) {
         const std::vector<Aabb>& boxes = level == 0 ? tiles.boxes : tiles.above[level - 1].boxes;
         const int across = level == 0 ? tiles.u_tiles : tiles.above[level - 1].u_count;
-        std::array<NearBox, 16> near;
-        size_t count = 0;
+        NearBoxes near;
         const LineRange range = below(tiles, level, index);
         for (int v = range.v_first; v < range.v_last; ++v) {
             for (int u = range.u_first; u < range.u_last; ++u) {
                 const size_t part =
                     static_cast<size_t>(v) * static_cast<size_t>(across) + static_cast<size_t>(u);
-                if (boxes[part].empty()) continue;
-                const double bound = box_bound(boxes[part], limit());
-                if (bound < limit()) near[count++] = {bound, part};
+                if (!boxes[part].empty()) near.add(box_bound(boxes[part], limit()), part, limit());
             }
         }
-        std::sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](const NearBox& a, const NearBox& b) {
-                      return a.bound != b.bound ? a.bound < b.bound : a.index < b.index;
-                  });
-        for (size_t i = 0; i < count && near[i].bound < limit(); ++i)
+        near.in_order(limit, [&](size_t part) {
             if (level == 0)
-                act(near[i].index);
+                act(part);
             else
-                for_tiles_below(tiles, level - 1, near[i].index, limit, act);
+                for_tiles_below(tiles, level - 1, part, limit, act);
+        });
     }
 
-    double line_limit() const { return std::min(goal_.limit, upper_.upper) - same; }
+    double line_limit() const {
+        return std::min({goal_.limit, upper_.upper, promised_.bound}) - same;
+    }
 
     /// Runs `act` over the ranges of lines in a tile that may come nearer than `limit` says.
     template <typename Limit, typename Act>
     void for_blocks(const ScanLines& lines, const TileBoxes& tiles, size_t tile, const Limit& limit,
                     const Act& act) {
+        NearBoxes near;
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             const Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
-            if (box.empty() || box_bound(box, limit()) >= limit()) continue;
-            act(lines_of_block(lines, tiles, tile, block));
+            if (!box.empty()) near.add(box_bound(box, limit()), block, limit());
         }
+        near.in_order(limit, [&](size_t block) { act(lines_of_block(lines, tiles, tile, block)); });
     }
 
     void search_lines(int axis) {
@@ -136,20 +156,35 @@ private:
     }
 
     void search_line(const LineId& id) {
-        const double before = upper_.upper;
+        const double before = line_limit();
         const auto& [axis, u, v] = id;
         for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
             offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
                          point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
-        if (upper_.upper < before) result_.line = id;
+        if (line_limit() < before) result_.line = id;
     }
 
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
-        if (box_bound({glm::min(a, b), glm::max(a, b)}, line_limit()) >= line_limit()) return;
+        const double bound = box_bound({glm::min(a, b), glm::max(a, b)}, line_limit());
+        if (bound >= line_limit()) return;
+        if (is_exact_)
+            promised_ = {bound, a, b}; // the witness is found once, at the end
+        else
+            measure(a, b, line_limit());
+    }
+
+    void measure(const Vec3& a, const Vec3& b, double limit) {
         const Separation found =
-            nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, line_limit());
+            nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, limit);
         if (found.upper < upper_.upper) upper_ = found;
+    }
+
+    /// Measures the nearest line of which only a bound was taken.
+    void keep_promise() {
+        if (promised_.bound == infinity) return;
+        const Promise line = std::exchange(promised_, {});
+        measure(line.a, line.b, std::min(goal_.limit, upper_.upper));
     }
 
     void search_columns() {
@@ -185,7 +220,8 @@ private:
                 bound = std::min(bound, here);
                 continue;
             }
-            bound = std::min(bound, nearest(convex(box), box, limit).lower);
+            bound =
+                std::min(bound, is_exact_ ? here - same : nearest(convex(box), box, limit).lower);
         }
         return bound;
     }
@@ -216,6 +252,7 @@ private:
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
         for (const Interval& matter : fresh_line(stock_, i, j, x, y))
             offer_matter({x, y, matter.lower}, {x, y, matter.upper});
+        keep_promise();
         const Square parts[] = {{square.x0, x, square.y0, y},
                                 {x, square.x1, square.y0, y},
                                 {square.x0, x, y, square.y1},
@@ -230,8 +267,16 @@ private:
     const CutModel& stock_;
     StockGoal goal_;
     std::vector<ShapeOutline> outlines_;
-    Aabb whole_; // round all of them
+    Aabb whole_;           // round all of them
+    bool is_exact_ = true; // what outlines say is the distance, but for rounding
+    /// Matter on a line that is this far away, as outlines say.
+    struct Promise {
+        double bound = infinity;
+        Vec3 a = Vec3(0.0), b = Vec3(0.0);
+    };
+
     Separation upper_;
+    Promise promised_;
     double lower_ = infinity;
     double refined_lower_ = infinity;
     StockSeparation result_;

@@ -6,6 +6,7 @@ namespace core {
 namespace {
 
 std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spindle_runs) {
+    if (move.only_dog_leg) return "dog-leg-rapid";
     if (pair.verdict == Verdict::undecided) return "undecided";
     const bool rapid = move.motion == BlockMotion::rapid;
     if (rapid && move.turns) return "rotary-with-tool-down";
@@ -38,6 +39,10 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
     if (rule == "spindle-off")
         return "Start the spindle the right way round before the tool feeds into the stock.";
+    if (rule == "dog-leg-rapid")
+        return fmt::format("Straight the way is free: move the axes one after another round {}, or "
+                           "feed fast instead of the rapid.",
+                           body);
     if (rule == "undecided")
         return "A smaller mesh size decides it; if not, give the block more room.";
     const double missing = pair.allowance.distance - pair.upper;
@@ -59,7 +64,9 @@ std::string range(double low, double high) {
 
 std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
-    const char* kind = move.turns                          ? "While rotary axes turn, the"
+    const char* kind = move.only_dog_leg ? "Straight this rapid would be free, but the axes do not "
+                                           "arrive together: the"
+                       : move.turns      ? "While rotary axes turn, the"
                        : move.motion == BlockMotion::rapid ? "On a rapid, the"
                                                            : "The";
     if (rule == "rapid-in-stock")
@@ -93,6 +100,11 @@ Severity severity_of(const Setup& setup, const std::string& rule) {
     const auto set = setup.rules.find(rule);
     return set != setup.rules.end() ? set->second
                                     : default_severity(rule).value_or(Severity::warning);
+}
+
+void settle_severity(const Setup& setup, Finding& finding) {
+    if (finding.severity != Severity::note || setup.rules.count(finding.rule))
+        finding.severity = severity_of(setup, finding.rule);
 }
 
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,

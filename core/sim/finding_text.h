@@ -7,8 +7,9 @@ namespace core {
 /// What a block moves, as far as it names what came of it.
 struct BlockMove {
     BlockMotion motion = BlockMotion::none;
-    bool turns = false;    // rotary axes move
-    double duration = 0.0; // seconds
+    bool turns = false;        // rotary axes move
+    double duration = 0.0;     // seconds
+    bool only_dog_leg = false; // straight, the rapid would keep every allowance
 };
 
 /// The finding for a pair that did not keep its allowance in a block, with its cure.
@@ -17,5 +18,9 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
 
 /// The severity of a rule in this set-up.
 Severity severity_of(const Setup& setup, const std::string& rule);
+
+/// Gives a finding whose rule has left that open its severity in this set-up. A note stays one
+/// unless the set-up names its rule.
+void settle_severity(const Setup& setup, Finding& finding);
 
 } // namespace core

@@ -102,6 +102,8 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
         const double just_apart = resolution + error;
         seen.shrunk = to_stock(body, relative, stock, just_apart, 2.0 * just_apart,
                                contact_shrink(allowance, *body.profile));
+        // What meets a part of the body meets the body, though its own search ended before.
+        if (seen.shrunk.upper == 0.0) seen.plain = seen.shrunk;
     } else if (seen.plain.upper == 0.0) {
         seen.shrunk = seen.plain;
     }
@@ -129,16 +131,13 @@ LegCheck::Observation LegCheck::observe_lower(const MovingBody& body, const Leg&
 
 bool LegCheck::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                         const Allowance& allowance) const {
-    if (tool_.parts.empty() || !body.profile || body.kind == PartKind::holder) return false;
+    // Where a shank has been it need not have been free: it cuts nothing.
+    if (tool_.parts.empty() || body.kind != PartKind::flutes) return false;
     if (leg.turns || leg.places.size() > 2) return false;
-    const RevolvedProfile& flutes = tool_.parts[0].profile;
-    if (bounds(*body.profile).max.x > bounds(flutes).max.x) return false;
-    // Half of the contact depth is for the way, the rest for the errors of both paths.
-    const double path_errors = leg.error + chord_error(setup_.mesh_size);
-    return runs_in_own_cut(stock, {.flutes = flutes,
+    return runs_in_own_cut(stock, {.flutes = tool_.parts[0].profile,
                                    .from = leg.places.front(),
                                    .to = leg.places.back(),
-                                   .sideways = 0.5 * contact_depth(allowance) - path_errors,
+                                   .sideways = 0.5 * contact_depth(allowance) - leg.error,
                                    .orientation = leg.orientation});
 }
 
@@ -187,8 +186,11 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         travel_ *= 2.0;
         return removed;
     }
+    // What is cut between the lines has no volume to them, yet a witness may have stood there.
+    const size_t sweeps = stock.log.size();
     const double removed = cut_along(leg, stock);
-    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, removed > 0.0, pairs);
+    const bool cut = stock.log.size() > sweeps;
+    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, cut, pairs);
     for (const MovingBody* body : later) look_late(*body, leg, start, stock, pairs);
     return removed;
 }
@@ -215,12 +217,18 @@ void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
                          const CutModel& stock, std::vector<PairClearance>& pairs) {
     PairClearance& known = known_pair(pairs, pair_of(body));
     if (says_nothing(known, pairs)) return;
-    // The stock of before is gone; the bound that let this wait holds for it.
-    Observation before;
-    before.plain.lower = known.at_end - travel_;
-    const double drift = known.drift + travel_;
-    const Observation after = look_again({body, before, true, known.upper}, leg, stock);
-    merge(known, clearance(body, leg, start, before, after));
+    // The stock of before is gone. It was what is left and what the flutes took on their way.
+    const RelativeLeg relative = against_stock(body, leg);
+    const RelativeLeg flutes = against_stock(bodies_[0], leg);
+    const double limit = std::min(setup_.search_limit, known.upper);
+    Observation seen;
+    seen.plain = widened(to_stock(body, relative, stock, 0.0, limit), relative);
+    const double taken = distance(bounds(body, relative), bounds(bodies_[0], flutes));
+    const double carried = known.at_end - travel_;
+    const double fresh = std::min(seen.plain.lower, taken - resolution);
+    const double drift = fresh >= carried ? travel_ : known.drift + travel_;
+    seen.plain.lower = std::max(carried, fresh);
+    merge(known, clearance(body, leg, start, seen, seen));
     known.drift = drift;
 }
 
@@ -342,6 +350,15 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
         if (!safe) now.verdict = std::max(now.verdict, Verdict::undecided);
         merge(entry(pairs, pair.pair, setup_), now);
     }
+}
+
+double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
+    if (tool_.parts.empty() || !leg.straight) return 0.0;
+    const RelativeLeg way = against_stock(bodies_[0], leg);
+    if (way.error >= limit) return 0.0;
+    const double far = limit + way.error;
+    return std::max(0.0, to_stock(bodies_[0], way, stock, far, far, 0.0, StockBound::lower).lower
+                             - way.error);
 }
 
 void LegCheck::rest(const AxisValues& place, const CutModel& stock,

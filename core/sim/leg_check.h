@@ -66,6 +66,10 @@ public:
     /// Result: the volume removed, mm3.
     double run(const Leg& leg, double start, CutModel& stock, std::vector<PairClearance>& pairs);
 
+    /// A lower bound of how near the flutes come to the stock over a leg, up to `limit`; 0 where
+    /// the leg turns too far to say.
+    double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
+
     /// Checks everything at rest, without cutting.
     void rest(const AxisValues& place, const CutModel& stock, std::vector<PairClearance>& pairs);
 

@@ -50,9 +50,12 @@ bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
 bool LegCheck::says_likely_nothing(const PairClearance& known) const {
     const double apart = known.at_end - travel_;
     const double must_keep = known.allowance.distance + resolution;
-    constexpr double slack = 0.1;   // mm: how much more room the next block often has
-    constexpr double far_ago = 2.0; // mm: a bound that has lost more would say too little
-    if (known.drift + travel_ > far_ago) return false;
+    constexpr double slack = 0.1; // mm: how much more room the next block often has
+    // A bound that has lost more would say too little, should the pair decide after all; of what
+    // keeps away from the flutes a late look tells more.
+    const double most_drift =
+        known.pair.part < PartKind::holder ? 2.0 : std::max(2.0, 0.25 * apart);
+    if (known.drift + travel_ > most_drift) return false;
     return setup_.detail == Detail::deciding_pair && memory_.deciding
            && !(known.pair == *memory_.deciding) && apart > must_keep
            && apart - must_keep > memory_.margin + 2.0 * travel_ + slack;

@@ -10,6 +10,7 @@
 #include "core/sim/leg_check.h"
 #include "core/sim/loose_pieces.h"
 #include "core/sim/path.h"
+#include "core/sim/run_watch.h"
 #include "core/sim/statistics.h"
 
 namespace core {
@@ -25,7 +26,8 @@ struct SimulatorState {
     LengthOffsetChange length_offset;
     PieceWatch pieces;  // of the stock
     CentreWatch centre; // of a tool that does not cut there
-    double time = 0.0;  // seconds since the program's start, everything at full speed
+    RunWatch watch;
+    double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
     CheckMemory memory;
     std::set<std::string> assumptions; // what had to be taken for granted on the way
@@ -71,5 +73,8 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
 
 /// Carries out one block: moves, cuts, measures. The set-up must outlive the result.
 BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state);
+
+/// What can only be told behind the last block, each finding with the block that it is about.
+std::vector<Finding> end_of_run(const Setup& setup, SimulatorState& state);
 
 } // namespace core

@@ -154,7 +154,7 @@ TEST(HolderOverAWall, IsTooNearBelowOneMillimetre) {
     const Checked checked = deep_slot("24.3");
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "violation");
-    EXPECT_EQ(checked.errors(), "near-miss 12");
+    EXPECT_EQ(checked.errors(), "near-miss 12, stick-out-short 12");
     const PairLine pair = checked.at_line(12).pair("holder stock");
     EXPECT_EQ(pair.allowance, 1.0);
     expect_encloses(pair, 0.7, mesh_size);
@@ -171,7 +171,7 @@ TEST(HolderOverAWall, IsClearFromOneMillimetreOn) {
 TEST(HolderOverAWall, CollidesWhereItReachesTheTop) {
     const Checked checked = deep_slot("26.");
     EXPECT_EQ(checked.status, 1);
-    EXPECT_EQ(checked.errors(), "holder-into-wall 12");
+    EXPECT_EQ(checked.errors(), "holder-into-wall 12, stick-out-short 12");
     EXPECT_EQ(checked.at_line(12).verdict, "collision");
     EXPECT_EQ(checked.at_line(12).deciding.name, "holder stock");
 }
@@ -181,7 +181,8 @@ TEST(ShankInTheStock, CollidesWhereTheFlutesAreShorterThanTheCut) {
     const Checked checked =
         check(SetupWriter(), program({"G0 X-20. Y50.", "Z-25.", "G1 X120. F800.", "G0 Z60."}));
     EXPECT_EQ(checked.status, 1);
-    EXPECT_EQ(checked.errors(), "collision 8");
+    EXPECT_EQ(checked.errors(), "collision 8, stick-out-short 8");
+    EXPECT_EQ(checked.of_severity("warning"), "over-engagement 8");
     EXPECT_EQ(checked.at_line(8).deciding.name, "shank stock");
     EXPECT_NEAR(*checked.at_line(8).deciding.at, 15.0 / 140.0, mesh_size / 140.0);
 }
@@ -196,7 +197,7 @@ TEST(ShankInTheStock, CollidesAboveARoundToolOfShortFlutes) {
             check(SetupWriter().tool("number = 1\n" + std::string(tool)),
                   program({"G0 X-20. Y50.", "Z-8.", "G1 X120. F800.", "G0 Z60."}));
         EXPECT_EQ(checked.verdict, "collision") << tool;
-        EXPECT_EQ(checked.errors(), "collision 8") << tool;
+        EXPECT_EQ(checked.errors(), "collision 8, stick-out-short 8") << tool;
         EXPECT_EQ(checked.at_line(8).deciding.name, "shank stock") << tool;
     }
 }

@@ -43,7 +43,7 @@ TEST(Rapid, IsUndecidedWhereTheSpeedsOfADogLegAreNotKnown) {
     const Checked checked = check(post_beside_the_way().machine("rapid = \"dogleg\"\n"), slanted);
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "undecided");
-    EXPECT_EQ(checked.errors(), "undecided 7, undecided 7");
+    EXPECT_EQ(checked.errors(), "dog-leg-rapid 7, dog-leg-rapid 7");
 }
 
 TEST(OverTravel, IsFoundInsideAnArcWhoseEndsAreWithinTheLimits) {

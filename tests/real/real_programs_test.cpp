@@ -22,8 +22,8 @@ const RealProgram programs[] = {
     {"tests/real/programs/G83.NC", 0, ""},
     {"tests/real/programs/TEST4.NC", 0, ""},
     {"tests/real/programs/PROGRAM2.NC", 1, "spindle-off 110 "},
-    {"tests/real/programs/CONTOUR_ABS.NC", 2, ""},
-    {"tests/real/programs/circle_diamond_square.gcode", 2, ""},
+    {"tests/real/programs/CONTOUR_ABS.NC", 2, "arc-radius 1 "},
+    {"tests/real/programs/circle_diamond_square.gcode", 2, "arc-radius 1 "},
     {"tests/real/programs/CAM_TEST.MPF", 0, ""},
 };
 

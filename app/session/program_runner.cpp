@@ -1,0 +1,210 @@
+#include "app/session/program_runner.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/session/m_codes.h"
+#include "core/sim/finding_text.h"
+#include "gcode/error_rules.h"
+#include "gcode/restart.h"
+
+namespace app {
+namespace {
+
+core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
+    core::Finding finding;
+    finding.rule = warning.rule;
+    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
+    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
+    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
+        finding.severity = set->second;
+    finding.message = warning.message;
+    finding.cure = warning.cure;
+    return finding;
+}
+
+/// T0 empties the spindle, unless a tool has that number.
+void take_tool_zero(core::Event& event) {
+    auto* change = std::get_if<core::ToolChange>(&event);
+    if (change && !change->tool) change->tool = core::ToolNumber{0};
+}
+
+/// The fixtures that are moved before a block.
+std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+    std::vector<core::Event> events;
+    for (const core::FixtureMove& move : setup.fixture_moves) {
+        const bool here = move.line && block.file.empty() && block.line == *move.line;
+        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
+        events.emplace_back(core::FixtureChange{move.from, false});
+        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
+    }
+    return events;
+}
+
+void take_any_speed(core::Event& event) {
+    auto* spindle = std::get_if<core::SpindleChange>(&event);
+    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
+}
+
+} // namespace
+
+core::Error named(core::Error error, const std::string& file) {
+    if (error.file.empty()) error.file = file;
+    return error;
+}
+
+core::Result<void> ProgramRunner::start_at(const std::string& line) {
+    const gcode::Dialect& dialect = gcode::dialect(environment_.dialect);
+    FEELER_TRY(const uint32_t number, gcode::line_meant(program_, dialect, line));
+    FEELER_TRY(const gcode::Restart restart,
+               gcode::restart_at(library_, environment_, number, run_.setup.tool_at_start));
+    place_ = restart.state;
+    lowering_ = gcode::initial_lowering(place_);
+    run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
+                                           "that was just switched on",
+                                           number));
+    if (restart.missing.empty()) return {};
+    core::Finding finding;
+    finding.rule = "restart-in-the-middle";
+    finding.severity = core::severity_of(run_.setup, finding.rule);
+    finding.block = core::BlockIndex{0};
+    finding.message =
+        fmt::format("Started here, the program cuts without what the lines before have said: "
+                    "{}.",
+                    fmt::join(restart.missing, ", "));
+    finding.cure = "Enter that by hand first, or start at the tool change before.";
+    if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    return {};
+}
+
+void ProgramRunner::stop(core::Error error) {
+    run_.stopped = named(std::move(error), program_.file);
+    const std::string rule(gcode::rule_of(*run_.stopped));
+    const core::Severity severity = core::severity_of(run_.setup, rule);
+    if (rule.empty() || severity == core::Severity::off) return;
+    const bool in_main = run_.stopped->file == program_.file;
+    const auto text = program_.find_line(run_.stopped->where.line);
+    const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
+    run_.blocks.push_back({block,
+                           run_.stopped->where.line,
+                           in_main && text && *text ? std::string(**text) : std::string(),
+                           in_main ? std::string() : run_.stopped->file,
+                           {},
+                           {}});
+    core::Finding finding;
+    finding.rule = rule;
+    finding.severity = severity;
+    finding.block = block;
+    finding.message = run_.stopped->message + ". The control stops here with an alarm.";
+    finding.cure = rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
+                                     : "Look at the end, the centre and the plane of this arc.";
+    run_.findings.push_back(finding);
+}
+
+std::optional<core::Error> ProgramRunner::refusal(const gcode::BlockResult& block) const {
+    if (lowering_.moved_tilted)
+        return core::Error{core::ErrorCode::unsupported,
+                           {.line = block.line, .column = 1},
+                           "this block moves in a tilted plane or with a tool that is turned, "
+                           "and the machine of the set-up has no rotary axes that could: add "
+                           "them as [[axis]]",
+                           std::string(block.file)};
+    if (!lowering_.other_axis) return std::nullopt;
+    return core::Error{core::ErrorCode::unsupported,
+                       {.line = block.line, .column = 1},
+                       fmt::format("this block moves axis {}, which the machine of the set-up "
+                                   "does not have: add an [[axis]] of that name to its machine",
+                                   gcode::axis_letters[*lowering_.other_axis]),
+                       std::string(block.file)};
+}
+
+std::vector<core::Event> ProgramRunner::events_of(const gcode::BlockResult& block) {
+    std::vector<core::Event> events = fixture_events(run_.setup, block);
+    for (core::Event& event : gcode::lower(block, lowering_)) events.push_back(event);
+    for (core::Event& event : events) {
+        if (run_.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
+        if (speed_by_hand) take_any_speed(event);
+    }
+    return events;
+}
+
+std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
+                                                core::SimulatorState& state) {
+    const std::vector<core::Event> events = events_of(block);
+    if (auto refused = refusal(block)) return refused;
+    CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
+                         block.calls, {}};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events};
+    checked.result = core::run_block(run_.setup, of_block, state);
+    for (const gcode::Warning& warning : block.warnings) {
+        core::Finding finding = remark(run_.setup, warning);
+        finding.block = block.block;
+        if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    }
+    for (const core::Finding& finding : checked.result.findings) run_.findings.push_back(finding);
+    watch_offsets(offsets_, run_.setup, place_, of_block, state);
+    watch_units(units_, of_block);
+    run_.verdict = std::max(run_.verdict, checked.result.verdict);
+    run_.removed += checked.result.removed;
+    run_.blocks.push_back(std::move(checked));
+    std::vector<core::BlockTime> timed;
+    core::add_block(clock_, of_block, timed);
+    enter(timed);
+    return std::nullopt;
+}
+
+void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
+    for (const core::BlockTime& time : timed)
+        core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+}
+
+void ProgramRunner::hold_against_stock(const core::SimulatorState& state) {
+    for (core::Finding& finding : implausible_offsets(offsets_, run_.setup))
+        run_.findings.push_back(std::move(finding));
+    if (auto jump =
+            units_off_the_stock(units_, run_.setup, state.stock.outer_box, place_.modal.unit_said))
+        run_.findings.push_back(*std::move(jump));
+}
+
+void ProgramRunner::to_the_end(core::SimulatorState& state) {
+    run_blocks(state);
+    for (core::Finding& finding : core::end_of_run(run_.setup, state))
+        run_.findings.push_back(std::move(finding));
+    if (stock_is_stated) hold_against_stock(state);
+    std::vector<core::BlockTime> timed;
+    core::stop_clock(clock_, timed);
+    enter(timed);
+    run_.cycle_time = clock_.time;
+}
+
+CheckProgress ProgramRunner::progress(const gcode::BlockResult& block) {
+    if (block.file.empty()) last_line_ = block.line;
+    return {run_.blocks.size(),
+            static_cast<double>(last_line_) / static_cast<double>(program_.line_count()),
+            run_.findings.size()};
+}
+
+void ProgramRunner::run_blocks(core::SimulatorState& state) {
+    while (true) {
+        const auto next = interpreter_.next(place_);
+        if (!next) return stop(next.error());
+        if (!*next) break;
+        if (const auto refused = block(**next, state)) {
+            run_.stopped = named(*refused, program_.file);
+            return;
+        }
+        if (after_block && !after_block(progress(**next))) {
+            run_.stopped = named({core::ErrorCode::io,
+                                  {.line = (*next)->line, .column = 1},
+                                  "the check was stopped after this block: the rest of the "
+                                  "program is not checked",
+                                  std::string((*next)->file)},
+                                 program_.file);
+            return;
+        }
+    }
+    if (const auto warning = gcode::ending_warning(environment_, place_))
+        run_.findings.push_back(remark(run_.setup, *warning));
+}
+
+} // namespace app

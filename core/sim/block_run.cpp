@@ -1,0 +1,121 @@
+#include "core/sim/block_run.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace core {
+namespace {
+
+/// The place of the witness in time, at its earliest, where several moments are equally near.
+void settle_time(BlockRun& run, PairClearance& pair) {
+    if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
+    for (const TimedLeg& timed : run.legs) {
+        const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
+        if (pair.time < begin || pair.time > end) continue;
+        LegCheck check = run.leg_check(FluteUse::not_cutting);
+        const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
+        const double share =
+            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
+        pair.time = std::min(pair.time, begin + share * (end - begin));
+        return;
+    }
+}
+
+} // namespace
+
+void BlockRun::forget_bounds() {
+    state.memory.bounds.clear();
+    for (PairClearance& pair : result.pairs) pair.at_end = -infinity;
+}
+
+void BlockRun::carry_out(const ToolChange& change) {
+    if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
+    state.watch.air = {};
+    state.watch.has_fed = state.watch.told_swing = false;
+    forget_bounds();
+    state.tool = change.tool;
+    state.tool_known = true;
+    state.told_unchecked_tool = false;
+    result.tool = change.tool;
+    if (tool()) return check_tool_change();
+    if (change.tool)
+        find("tool-not-in-table",
+             fmt::format("Tool {} is called, but the set-up does not describe it.",
+                         value_of(*change.tool)),
+             fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
+}
+
+void BlockRun::carry_out(const FixtureChange& change) {
+    forget_bounds();
+    state.fixtures_there[change.fixture] = change.is_there;
+    const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
+    if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, result.pairs);
+}
+
+void BlockRun::check_tool_change() {
+    const Motion stay{.from = state.position, .to = state.position};
+    const Path path = path_of(stay, setup.machine, 0.0);
+    if (path.legs.empty() || !path.legs[0].start_known) return;
+    std::vector<PairClearance> pairs;
+    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, pairs);
+    const PairClearance* worst = deciding_pair(pairs);
+    if (!worst || worst->verdict == Verdict::clear) return;
+    find("tool-change-unsafe",
+         fmt::format("Tool {} is changed in where its {} {} only {:.3f} mm from {}; {:.3f} mm must "
+                     "be kept.",
+                     value_of(*state.tool), part_name(setup, worst->pair),
+                     worst->pair.part == PartKind::flutes ? "are" : "is",
+                     worst->found() ? worst->upper : worst->lower, body_name(setup, worst->pair),
+                     worst->allowance.distance),
+         "Move to a safe place, as with G28 or G53 Z0, before the tool change.");
+}
+
+Finding BlockRun::finding_about(const PairClearance& pair) const {
+    Finding finding =
+        finding_of(setup, pair, {result.motion, turns, result.duration, only_dog_leg}, state);
+    if (!pushes_centre || pair.pair != Pair{PartKind::flutes}) return finding;
+    const ToolDescription& described = tool()->description;
+    finding.message = fmt::format(
+        "Tool {} does not cut within {:g} mm of its axis, and its centre is pushed into the stock.",
+        value_of(described.number), described.centre_radius);
+    finding.cure = fmt::format(
+        "Ramp or wind in by at most {:.1f} degrees, in circles of more than {:g} mm radius; drill "
+        "first; or use a tool that cuts at its centre.",
+        std::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
+            / std::numbers::pi,
+        described.centre_radius);
+    return finding;
+}
+
+void BlockRun::conclude() {
+    std::sort(result.pairs.begin(), result.pairs.end(),
+              [](const PairClearance& a, const PairClearance& b) {
+                  return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
+                         < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
+              });
+    if (const PairClearance* worst = deciding_pair(result.pairs)) {
+        result.deciding = static_cast<size_t>(worst - result.pairs.data());
+        settle_time(*this, result.pairs[*result.deciding]);
+        result.verdict = worst->verdict;
+    }
+    if (result.motion != BlockMotion::none) {
+        CheckMemory& memory = state.memory;
+        memory.bounds.clear();
+        for (const PairClearance& pair : result.pairs)
+            memory.bounds.push_back({pair.pair, pair.at_end, pair.drift});
+        memory.deciding.reset();
+        if (result.deciding) {
+            memory.deciding = result.pairs[*result.deciding].pair;
+            memory.margin = result.pairs[*result.deciding].margin();
+        }
+    }
+    for (const PairClearance& pair : result.pairs)
+        if (pair.verdict != Verdict::clear) add(finding_about(pair));
+    if (result.checked) return;
+    result.verdict = std::max(result.verdict, Verdict::undecided);
+    result.deciding.reset();
+}
+
+} // namespace core

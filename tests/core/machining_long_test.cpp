@@ -1,0 +1,26 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/machining_tally.h"
+
+namespace core {
+namespace {
+
+void expect_sound(const test_support::MachiningTally& tally) {
+    testing::Test::RecordProperty("report", tally.report());
+    for (size_t i = 0; i < std::min<size_t>(tally.failures.size(), 20); ++i)
+        ADD_FAILURE() << tally.failures[i];
+}
+
+/// Random programs, every block of which is held against what is true of every point.
+class LongMachining : public testing::TestWithParam<unsigned> {};
+
+TEST_P(LongMachining, KeepsTheTruthBetweenLowerAndUpper) {
+    const auto tally = test_support::judged_programs(10'000 + 100 * GetParam(), 100, 25, false);
+    expect_sound(tally);
+    EXPECT_TRUE(tally.is_representative()) << tally.report();
+}
+
+INSTANTIATE_TEST_SUITE_P(HundredThousand, LongMachining, testing::Range(0U, 40U));
+
+} // namespace
+} // namespace core

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+
+namespace app_test {
+namespace {
+
+using test_support::program;
+using test_support::SetupWriter;
+
+/// The first number in a text, behind the given words.
+double number_behind(const std::string& text, const std::string& words) {
+    const size_t at = text.find(words);
+    double number = -1.0;
+    if (at == std::string::npos
+        || std::sscanf(text.c_str() + at + words.size(), "%lf", &number) != 1)
+        ADD_FAILURE() << "no number behind '" << words << "' in: " << text;
+    return number;
+}
+
+FindingLine finding_of(const Checked& checked, const std::string& rule) {
+    for (const FindingLine& finding : checked.findings)
+        if (finding.rule == rule) return finding;
+    ADD_FAILURE() << "no " << rule << " among: " << checked.errors();
+    return {};
+}
+
+/// Three passes along one slot; the holder, 20 in radius, hangs over both walls.
+Checked deep_slot(double stick_out) {
+    const SetupWriter setup = SetupWriter().lengths("").tool(
+        fmt::format("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
+                    "stick_out = {}\nholder = [[40, 40, 50]]\n",
+                    stick_out));
+    return check(setup,
+                 program({"G0 X-40. Y50.", "Z-12.", "G1 X140. F800.", "G0 Z60.", "X-40.", "Z-24.",
+                          "G1 X140.", "G0 Z60.", "X-40.", "Z-28.", "G1 X140.", "G0 Z60."}));
+}
+
+TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryAllowance) {
+    // 1 mm must be kept above the walls: 24 deep needs 25, 28 deep needs 29.
+    const FindingLine told = finding_of(deep_slot(24.0), "stick-out-short");
+    EXPECT_EQ(told.line, 12);
+    const double enough = number_behind(told.cure, "A stick-out of ");
+    EXPECT_NEAR(enough, 29.0, 0.11);
+    EXPECT_EQ(deep_slot(enough).errors(), "");
+    EXPECT_NE(deep_slot(enough - 0.2).errors(), "");
+}
+
+/// A slot of 24 in one pass.
+Checked slot_at_once(double flutes) {
+    const SetupWriter setup = SetupWriter().lengths("").tool(
+        fmt::format("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = {}\n"
+                    "stick_out = 60\nholder = [[40, 40, 50]]\n",
+                    flutes));
+    return check(setup, program({"G0 X-40. Y50.", "Z-24.", "G1 X140. F800.", "G0 Z60."}));
+}
+
+TEST(Cure, OfFlutesThatAreTooShortIsTheDepth) {
+    const FindingLine told = finding_of(slot_at_once(18.0), "over-engagement");
+    EXPECT_EQ(told.severity, "warning");
+    const double enough = number_behind(told.cure, "Flutes of ");
+    EXPECT_NEAR(enough, 24.0, 0.2);
+    EXPECT_EQ(slot_at_once(enough).errors(), "");
+    EXPECT_NE(slot_at_once(enough - 0.3).errors(), "");
+}
+
+/// Two pockets with a stud of 8 between them.
+Checked two_pockets(double retract) {
+    const SetupWriter setup = SetupWriter().fixture("stud", "box = [[48, 46, 0], [56, 54, 8]]");
+    return check(setup, program({"G0 X20. Y50.", "Z2.", "G1 Z-5. F200.", "X30. F800.",
+                                 fmt::format("G0 Z{:.3f}", retract), "X75.", "Z2.", "G1 Z-5. F200.",
+                                 "X85. F800.", "G0 Z60."}));
+}
+
+TEST(Cure, OfALowRetractClearsWhatStandsBetween) {
+    const FindingLine told = finding_of(two_pockets(4.0), "low-retract");
+    EXPECT_EQ(told.line, 11);
+    const double higher = number_behind(told.cure, "Retract ");
+    EXPECT_NEAR(higher, 6.0, 0.11); // 8 and the 2 that must be kept, less 4
+    EXPECT_EQ(two_pockets(4.0 + higher).of_severity("warning"), "");
+    EXPECT_EQ(two_pockets(4.0 + higher).errors(), "");
+    EXPECT_NE(two_pockets(4.0 + higher - 0.2).errors(), "");
+}
+
+TEST(LowRetract, IsOneThatPassesOverTheStockByLessThanHalfAMillimetre) {
+    const auto across_the_face = [](const std::string& z) {
+        return check(SetupWriter(), program({"G0 X-20. Y50.", "Z-3.", "G1 X10. F800.", "X-20.",
+                                             "G0 Z" + z, "X120.", "Z60."}));
+    };
+    EXPECT_EQ(across_the_face("0.3").of_severity("warning"), "low-retract 11");
+    EXPECT_EQ(across_the_face("0.3").errors(), "");
+    EXPECT_EQ(across_the_face("0.6").of_severity("warning"), "");
+}
+
+/// What the air-cut notes of a program are about.
+std::string air_cuts(const std::vector<std::string>& lines) {
+    const Checked checked = check(SetupWriter(), program(lines));
+    std::string found;
+    for (const FindingLine& finding : checked.findings)
+        if (finding.rule == "air-cut")
+            found += (found.empty() ? "" : ", ") + std::to_string(finding.line.value_or(0));
+    return found;
+}
+
+TEST(AirCut, IsOneNoteForASeries) {
+    EXPECT_EQ(air_cuts({"G0 X-20. Y50.", "Z5.", "G1 X120. F800.", "Y60.", "X-20.", "G0 Z60."}),
+              "8");
+}
+
+TEST(AirCut, IsNoSpringPassAndNoLeadIn) {
+    EXPECT_EQ(air_cuts({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "X-20.", "X120.", "G0 Z60."}),
+              "");
+    EXPECT_EQ(air_cuts({"G0 X-60. Y50.", "Z-5.", "G1 X-20. F800.", "X120.", "G0 Z60."}), "");
+}
+
+} // namespace
+} // namespace app_test

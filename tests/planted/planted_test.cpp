@@ -1,0 +1,139 @@
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "app/setup/setup_file.h"
+#include "tests/app/checked.h"
+
+namespace app_test {
+namespace {
+
+const std::filesystem::path folder = std::filesystem::path(FEELER_SOURCE_DIR) / "tests/planted";
+
+/// A row of the table: a program with a mistake, and the one without it.
+struct Planted {
+    std::string rule, dialect, program;
+    int line = 0; // 0: the program as a whole
+    std::string setup, right, right_setup;
+    std::vector<std::string> options, right_options;
+};
+
+std::vector<std::string> options_in(const std::string& word) {
+    return word == "-" ? std::vector<std::string>{} : std::vector<std::string>{word};
+}
+
+std::vector<Planted> table() {
+    std::ifstream file(folder / "table.txt");
+    std::vector<Planted> rows;
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        std::stringstream words(line);
+        Planted row;
+        std::string options, right_options;
+        words >> row.rule >> row.dialect >> row.program >> row.line >> row.setup >> row.right
+            >> row.right_setup >> options >> right_options;
+        row.options = options_in(options);
+        row.right_options = options_in(right_options);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Checked checked(const Planted& row, const std::string& program, const std::string& setup,
+                std::vector<std::string> options) {
+    options.insert(options.end(), {"--dialect", row.dialect});
+    return check_files(folder / program, folder / "setups" / (setup + ".toml"), options);
+}
+
+std::string text_of(const Checked& result) {
+    std::string text;
+    for (const FindingLine& finding : result.findings)
+        text += "\n  " + finding.severity + " " + finding.rule + " "
+                + (finding.line ? std::to_string(*finding.line) : "-") + ": " + finding.message;
+    return text + "\n" + result.err;
+}
+
+class PlantedRow : public testing::TestWithParam<Planted> {};
+
+TEST_P(PlantedRow, IsFoundAtItsLineWithItsSeverity) {
+    const Planted& row = GetParam();
+    const Checked result = checked(row, row.program, row.setup, row.options);
+    const auto severity = core::default_severity(row.rule);
+    ASSERT_TRUE(severity) << row.rule;
+    bool found = false;
+    for (const FindingLine& finding : result.findings)
+        found = found
+                || (finding.rule == row.rule && finding.line.value_or(0) == row.line
+                    && finding.severity == core::name_of(*severity) && !finding.message.empty());
+    EXPECT_TRUE(found) << row.program << ":" << row.line << " " << row.rule << text_of(result);
+    if (*severity == core::Severity::error) {
+        EXPECT_GE(result.status, 1) << row.program;
+    }
+}
+
+TEST_P(PlantedRow, HasATwinAboutWhichNothingIsSaid) {
+    const Planted& row = GetParam();
+    const Checked result = checked(row, row.right, row.right_setup, row.right_options);
+    EXPECT_EQ(result.status, 0) << row.right << text_of(result);
+    EXPECT_EQ(result.errors() + result.of_severity("warning"), "") << row.right << text_of(result);
+    const char* severity = core::name_of(core::default_severity(row.rule).value());
+    for (const FindingLine& finding : result.findings)
+        EXPECT_FALSE(finding.rule == row.rule && finding.severity == severity)
+            << row.right << text_of(result);
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, PlantedRow, testing::ValuesIn(table()), [](const auto& row) {
+    std::string name;
+    for (const char letter : row.param.program)
+        if (std::isalnum(static_cast<unsigned char>(letter)))
+            name += letter;
+        else
+            name += '_';
+    return name;
+});
+
+TEST(PlantedTable, HasAtLeastThreeProgramsForEachRule) {
+    std::map<std::string, int> count;
+    for (const Planted& row : table()) ++count[row.rule];
+    for (const char* rule : {"collision",
+                             "near-miss",
+                             "undecided",
+                             "missing-length-offset",
+                             "offset-not-tool",
+                             "length-offset-cancelled",
+                             "tool-not-in-table",
+                             "stick-out-short",
+                             "work-offset-unset",
+                             "offset-implausible",
+                             "home-through-part",
+                             "machine-move-with-state",
+                             "rapid-in-stock",
+                             "rapid-near-clamp",
+                             "dog-leg-rapid",
+                             "low-retract",
+                             "incremental-left-on",
+                             "state-left-over",
+                             "restart-in-the-middle",
+                             "units-jump",
+                             "missing-decimal-point",
+                             "block-delete",
+                             "arc-radius",
+                             "over-engagement",
+                             "tool-change-unsafe",
+                             "singular-orientation",
+                             "spindle-off",
+                             "no-feed",
+                             "over-travel",
+                             "rotary-with-tool-down",
+                             "first-move",
+                             "rest-material",
+                             "holder-into-wall",
+                             "air-cut"})
+        EXPECT_GE(count[rule], 3) << rule;
+}
+
+} // namespace
+} // namespace app_test

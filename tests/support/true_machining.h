@@ -1,0 +1,164 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "core/sim/tool_assembly.h"
+#include "tests/support/true_passage.h"
+
+namespace test_support {
+
+/// A box or an upright cone, whose distance to a point is a formula.
+using TrueSolid = std::variant<core::Aabb, core::ProfileElement>;
+
+/// How far outside a point is, 0 or less inside, and the nearest point of the solid.
+inline PieceDistance nearest_of(const TrueSolid& solid, const core::Vec3& p) {
+    if (const auto* cone = std::get_if<core::ProfileElement>(&solid)) return nearest_of(*cone, p);
+    const core::Aabb& box = std::get<core::Aabb>(solid);
+    const core::Vec3 nearest = glm::clamp(p, box.min, box.max);
+    if (nearest != p) return {glm::distance(nearest, p), nearest};
+    const core::Vec3 depth = glm::min(p - box.min, box.max - p);
+    return {-std::min({depth.x, depth.y, depth.z}), p};
+}
+
+struct TrueFixture {
+    TrueSolid solid;
+    TrueMount mount;
+    bool expendable = false;
+};
+
+/// A tool with what carries it. Frame: its tip is the origin.
+struct TrueTool {
+    std::array<std::optional<TrueProfile>, 4> parts; // by kind
+    double length = 0.0;
+
+    const TrueProfile* part(core::PartKind kind) const {
+        const auto& found = parts[size_t(kind)];
+        return found ? &*found : nullptr;
+    }
+};
+
+/// A tool on its way; `chips`: what its flutes meet of the stock is cut.
+struct TruePassage {
+    const TrueTool* tool;
+    TruePath path;
+    bool chips = false;
+    std::vector<bool> fixtures_there = {};
+    bool is_certain = true; // false: after a crash, when nobody knows what is left
+};
+
+/// Up to when a point is there for certain: a passage of the block, and a share of it.
+struct Removal {
+    size_t passage;
+    double share;
+};
+
+/// A stock as the set of points of its raw shape that no flutes have come to. Nothing is built of
+/// it: whether a point is there is asked of the whole history.
+struct TrueMachining {
+    TrueTrunnion machine;
+    TrueSolid stock;
+    TrueMount stock_mount;
+    std::vector<TrueFixture> fixtures;
+    std::vector<TruePassage> history; // those that cut, or may have
+
+    SeenPoint seen(const TruePassage& by, const TrueMount& mount, const core::Vec3& p) const {
+        return {machine, mount, by.path, by.tool->length, p};
+    }
+
+    /// The share from which on the flutes may have removed the point.
+    std::optional<double> first_cut(const TruePassage& by, const core::Vec3& p) const {
+        return first_within(*by.tool->part(core::PartKind::flutes), seen(by, stock_mount, p), 1e-9,
+                            Doubt::counts);
+    }
+
+    /// Whether the point of the raw stock is there for certain. Frame: the stock's.
+    bool is_spared(const core::Vec3& p) const {
+        if (nearest_of(stock, p).distance > 1e-12) return false; // rounding of a nearest point
+        for (const TruePassage& by : history)
+            if (first_cut(by, p)) return false;
+        return true;
+    }
+
+    /// Whether the point may be there, give or take `slack`.
+    bool may_be_there(const core::Vec3& p, double slack) const {
+        if (nearest_of(stock, p).distance > slack) return false;
+        for (const TruePassage& by : history)
+            if (by.is_certain
+                && first_within(*by.tool->part(core::PartKind::flutes), seen(by, stock_mount, p),
+                                -slack, Doubt::does_not_count))
+                return false;
+        return true;
+    }
+
+    /// Until when the point outlasts the passages of a block. After a crash of flutes that do not
+    /// cut, what they passed through counts for nothing.
+    Removal removal(const std::vector<TruePassage>& block, bool crashed,
+                    const core::Vec3& p) const {
+        for (size_t i = 0; i < block.size(); ++i) {
+            if (!block[i].chips && !crashed) continue;
+            if (const auto first = first_cut(block[i], p))
+                return {i, block[i].chips ? *first : 0.0};
+        }
+        return {block.size(), 0.0};
+    }
+
+    /// The same with what has certainly gone, by more than `slack`.
+    Removal certain_removal(const std::vector<TruePassage>& block, double slack,
+                            const core::Vec3& p) const {
+        for (size_t i = 0; i < block.size(); ++i) {
+            if (!block[i].chips) continue;
+            const auto first =
+                first_within(*block[i].tool->part(core::PartKind::flutes),
+                             seen(block[i], stock_mount, p), -slack, Doubt::does_not_count);
+            if (first) return {i, *first};
+        }
+        return {block.size(), 0.0};
+    }
+};
+
+/// Where a pair is near: how near, in which passage, and at which share of it.
+struct Nearness {
+    double distance = core::infinity;
+    size_t passage = 0;
+    double share = 0.0;
+};
+
+/// What is asked of a block: how near a part of the tool comes to a mounted body.
+struct TruePair {
+    core::PartKind part;
+    std::optional<size_t> fixture;
+
+    /// Whether the pair is one that must keep apart in this passage.
+    bool counts_in(const TrueMachining& world, const TruePassage& by) const {
+        if (!by.tool->part(part)) return false;
+        const bool chips = by.chips && part == core::PartKind::flutes;
+        if (!fixture) return !chips;
+        return by.fixtures_there[*fixture] && !(chips && world.fixtures[*fixture].expendable);
+    }
+    const TrueMount& mount(const TrueMachining& world) const {
+        return fixture ? world.fixtures[*fixture].mount : world.stock_mount;
+    }
+    const TrueSolid& solid(const TrueMachining& world) const {
+        return fixture ? world.fixtures[*fixture].solid : world.stock;
+    }
+};
+
+/// How near the pair's part comes to a point of its body while that is there; only what is nearer
+/// than `limit`.
+inline Nearness nearness(const TrueMachining& world, const std::vector<TruePassage>& block,
+                         const TruePair& pair, const core::Vec3& p, const Removal& removal,
+                         double limit) {
+    Nearness best;
+    for (size_t i = 0; i < block.size() && i <= removal.passage; ++i) {
+        const double until = i < removal.passage ? 1.0 : removal.share;
+        if (!pair.counts_in(world, block[i])) continue;
+        const auto [distance, share] = nearest_passage(*block[i].tool->part(pair.part),
+                                                       world.seen(block[i], pair.mount(world), p),
+                                                       until, std::min(limit, best.distance));
+        if (distance < best.distance) best = {distance, i, share};
+    }
+    return best.distance < limit ? best : Nearness{};
+}
+
+} // namespace test_support

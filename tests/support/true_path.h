@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/base/transform.h"
+#include "core/sim/axes.h"
+#include "core/sim/event.h"
+#include "tests/support/true_profile.h"
+
+namespace test_support {
+
+/// X, Y and Z move the tool; A tilts what carries the table C, each about a line through a point.
+struct TrueTrunnion {
+    core::Vec3 a_point = core::Vec3(0.0), c_point = core::Vec3(0.0);
+};
+
+inline core::Vec3 turned_about_x(const core::Vec3& p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+}
+inline core::Vec3 turned_about_z(const core::Vec3& p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+}
+
+constexpr double true_radian = std::numbers::pi / 180.0;
+
+/// A body that stands on the table or on the machine's base.
+struct TrueMount {
+    core::Transform link_from_body;
+    bool on_table = true;
+};
+
+/// Where a point that is mounted stands in the machine.
+inline core::Vec3 machine_place(const TrueTrunnion& machine, const TrueMount& mount,
+                                const core::AxisValues& at, const core::Vec3& p) {
+    core::Vec3 here = mount.link_from_body * p;
+    if (!mount.on_table) return here;
+    if (at[5] != 0.0)
+        here = turned_about_z(here - machine.c_point, -at[5] * true_radian) + machine.c_point;
+    if (at[3] != 0.0)
+        here = turned_about_x(here - machine.a_point, -at[3] * true_radian) + machine.a_point;
+    return here;
+}
+
+inline core::Vec3 mounted_place(const TrueTrunnion& machine, const TrueMount& mount,
+                                const core::AxisValues& at, core::Vec3 p) {
+    if (mount.on_table) {
+        p = turned_about_x(p - machine.a_point, at[3] * true_radian) + machine.a_point;
+        p = turned_about_z(p - machine.c_point, at[5] * true_radian) + machine.c_point;
+    }
+    return mount.link_from_body.inverse() * p;
+}
+
+/// One way of the machine: all axes evenly, or an arc.
+struct TruePath {
+    core::AxisValues from{}, to{};
+    std::optional<core::ArcPath> arc = {};
+
+    bool turns() const { return from[3] != to[3] || from[5] != to[5]; }
+    bool is_straight() const { return !arc && !turns(); }
+
+    core::AxisValues at(double share) const {
+        core::AxisValues values = from;
+        for (size_t i = 0; i < core::axis_count; ++i) values[i] += share * (to[i] - from[i]);
+        if (!arc) return values;
+        const int a = (arc->normal + 1) % 3, b = (arc->normal + 2) % 3;
+        const double u = from[size_t(a)] - arc->centre[a], v = from[size_t(b)] - arc->centre[b];
+        const double c = std::cos(share * arc->angle), s = std::sin(share * arc->angle);
+        values[size_t(a)] = arc->centre[a] + c * u - s * v;
+        values[size_t(b)] = arc->centre[b] + s * u + c * v;
+        return values;
+    }
+
+    /// Radians that the path bends by, however it does.
+    double bend() const {
+        if (arc) return std::abs(arc->angle);
+        return (std::abs(to[3] - from[3]) + std::abs(to[5] - from[5])) * true_radian;
+    }
+
+    /// How far from its axes a point goes round them; the arc's radius.
+    double bend_radius(const TrueTrunnion& machine, const core::Vec3& p_table) const {
+        if (!arc)
+            return glm::distance(p_table, machine.c_point)
+                   + glm::distance(machine.c_point, machine.a_point);
+        const int a = (arc->normal + 1) % 3, b = (arc->normal + 2) % 3;
+        return std::hypot(from[size_t(a)] - arc->centre[a], from[size_t(b)] - arc->centre[b]);
+    }
+};
+
+/// A mounted point as a tool sees it go by.
+///
+/// Between two shares it stays within `off` of the chord: an eighth of the square of the time
+/// times the acceleration, which is the square of the turn times the radius.
+struct SeenPoint {
+    const TrueTrunnion& machine;
+    const TrueMount& mount;
+    const TruePath& path;
+    double tool_length;
+    core::Vec3 p;
+
+    core::Vec3 operator()(double share) const {
+        const core::AxisValues at = path.at(share);
+        return machine_place(machine, mount, at, p) - core::Vec3(at[0], at[1], at[2] - tool_length);
+    }
+    double off(double share) const {
+        const double turn = path.bend() * share;
+        if (turn == 0.0) return 0.0;
+        const core::Vec3 p_table = mount.link_from_body * p;
+        return 0.125 * turn * turn * path.bend_radius(machine, p_table);
+    }
+};
+
+} // namespace test_support
