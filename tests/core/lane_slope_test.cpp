@@ -1,6 +1,8 @@
+#include <bit>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include "core/dbm/lane_cut.h"
 
@@ -95,6 +97,42 @@ TEST(LaneSlope, MeetsRoundedCornersAsLineByLine) {
     expect_equal({{{1, 2, 1, 2, 1}}}, 1e-6);
     expect_equal({{{0.2, 2.8, 0.2, 2.8, 0.2}}}, 1e-6);
     expect_equal({{{2.5, 0.5, 2.5, 0.5, 2.5}}}, 1e-6);
+}
+
+/// A number that changes with any bit of what random moves of the cutter sweep.
+uint64_t hash_of_stretches(const RevolvedProfile& flutes) {
+    std::mt19937 rng(11);
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, 0.0));
+    uint64_t hash = 1469598103934665603ULL;
+    for (int round = 0; round < 200; ++round) {
+        const CutterSweep sweep = random_move(rng, cutter);
+        const LanePlan plan = lane_plan(cutter->pieces[0].around, sweep, round % 3);
+        std::array<double, CornerStretches::size> u;
+        for (size_t i = 0; i < u.size(); ++i) u[i] = -6.0 + 0.5 * static_cast<double>(i);
+        CornerStretches found;
+        lane_cut().stretches(plan, u.data(), -3.0 + 0.05 * round, 0xffffff, found);
+        for (size_t i = 0; i < u.size(); ++i)
+            for (const double end : {found.lower[i], found.upper[i]})
+                hash = (hash ^ std::bit_cast<uint64_t>(end)) * 1099511628211ULL;
+    }
+    return hash;
+}
+
+TEST(LaneSlope, GivesTheSameBitsOnEveryInstructionSet) {
+    const auto choose = [](int64_t targets) {
+        hwy::SetSupportedTargetsForTest(targets);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    };
+    const std::vector<RevolvedProfile> shapes = {
+        {{{0, 1, 10, 3, 0}}}, {{{0, 0, 1.8, 3, 0}}}, {{{0, 3, 2, 1, 0}}}, {{{1, 2, 1, 2, 1}}}};
+    for (const RevolvedProfile& flutes : shapes) {
+        const uint64_t hash = hash_of_stretches(flutes);
+        for (int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
+            choose(left & -left);
+            EXPECT_EQ(hash_of_stretches(flutes), hash) << hwy::TargetName(left & -left);
+            choose(0);
+        }
+    }
 }
 
 } // namespace
