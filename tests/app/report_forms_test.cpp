@@ -1,0 +1,130 @@
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/progress.h"
+#include "app/report/csv_report.h"
+#include "app/report/json_report.h"
+
+namespace app {
+namespace {
+
+const std::string folder = std::string(FEELER_SOURCE_DIR) + "/assets/";
+
+CheckRun clamped_plate(core::Detail detail) {
+    return *run_check({.program = folder + "programs/clamped_plate_low.nc",
+                       .setup = folder + "setups/clamped_plate.toml",
+                       .detail = detail});
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+/// The cells of a row that quotes as RFC 4180 says.
+std::vector<std::string> cells_of(const std::string& row) {
+    std::vector<std::string> cells{""};
+    bool quoted = false;
+    for (const char c : row) {
+        if (c == '"')
+            quoted = !quoted;
+        else if (c == ',' && !quoted)
+            cells.emplace_back();
+        else if (c != '\r')
+            cells.back() += c;
+    }
+    return cells;
+}
+
+TEST(JsonLines, SayWhatJsonSays) {
+    const CheckRun run = clamped_plate(core::Detail::deciding_pair);
+    const auto whole = nlohmann::json::parse(json_report(run, false));
+    nlohmann::json blocks = nlohmann::json::array(), findings = nlohmann::json::array();
+    std::vector<std::string> order;
+    for (const std::string& line : lines_of(json_lines_report(run, false))) {
+        nlohmann::json record = nlohmann::json::parse(line);
+        const std::string kind = record["record"];
+        record.erase("record");
+        if (order.empty() || order.back() != kind) order.push_back(kind);
+        if (kind == "block") blocks.push_back(record);
+        if (kind == "finding") findings.push_back(record);
+        if (kind == "program") {
+            EXPECT_EQ(record["verdict"], whole["verdict"]);
+        }
+        if (kind == "end") {
+            EXPECT_EQ(record["statistics"], whole["statistics"]);
+        }
+    }
+    EXPECT_EQ(order, (std::vector<std::string>{"program", "block", "finding", "end"}));
+    EXPECT_EQ(blocks, whole["blocks"]);
+    EXPECT_EQ(findings, whole["findings"]);
+}
+
+TEST(Csv, HasARowForEachBlockWithTheNumbersOfJson) {
+    const CheckRun run = clamped_plate(core::Detail::deciding_pair);
+    const auto whole = nlohmann::json::parse(json_report(run, false));
+    const auto rows = lines_of(csv_report(run));
+    ASSERT_EQ(rows.size(), run.blocks.size() + 1);
+    const auto names = cells_of(rows[0]);
+    const auto column = [&](const std::string& name) {
+        return static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    bool has_finding = false;
+    for (size_t i = 0; i < run.blocks.size(); ++i) {
+        const auto cells = cells_of(rows[i + 1]);
+        const auto& block = whole["blocks"][i];
+        ASSERT_EQ(cells.size(), names.size()) << rows[i + 1];
+        EXPECT_EQ(cells[column("line")], std::to_string(block["line"].get<int>()));
+        EXPECT_EQ(cells[column("verdict")], block["verdict"]);
+        has_finding = has_finding || !cells[column("rules")].empty();
+        if (!block.contains("clearance")) continue;
+        EXPECT_NEAR(std::stod(cells[column("lower")]), block["clearance"]["lower"], 1e-6);
+        if (block["clearance"]["upper"].is_null()) {
+            EXPECT_EQ(cells[column("upper")], "");
+        } else {
+            EXPECT_NEAR(std::stod(cells[column("upper")]), block["clearance"]["upper"], 1e-6);
+        }
+    }
+    EXPECT_TRUE(has_finding);
+}
+
+TEST(VerdictOnly, FindsTheSameAsAFullCheck) {
+    const CheckRun full = clamped_plate(core::Detail::every_pair);
+    const CheckRun brief = clamped_plate(core::Detail::verdict);
+    ASSERT_EQ(full.findings.size(), brief.findings.size());
+    for (size_t i = 0; i < full.findings.size(); ++i) {
+        EXPECT_EQ(full.findings[i].rule, brief.findings[i].rule);
+        EXPECT_EQ(full.findings[i].message, brief.findings[i].message);
+    }
+    for (size_t i = 0; i < full.blocks.size(); ++i)
+        EXPECT_EQ(full.blocks[i].result.verdict, brief.blocks[i].result.verdict) << i;
+}
+
+TEST(Progress, FitsALineOfATerminal) {
+    EXPECT_EQ(progress_text({.blocks = 1, .share = 0.0, .findings = 1}, 0.2),
+              "[....................]   0 %  1 blocks, 1 finding");
+    EXPECT_EQ(progress_text({.blocks = 4500, .share = 0.25, .findings = 0}, 30.0),
+              "[#####...............]  25 %  4500 blocks, 0 findings, 1 min 30 s left");
+    EXPECT_LE(progress_text({1'000'000'000, 0.03, 1'000'000}, 1e6).size(), 79U);
+}
+
+TEST(Stopping, KeepsWhatWasCheckedAndSaysSo) {
+    size_t seen = 0;
+    const CheckRun run = *run_check({.program = folder + "programs/clamped_plate_low.nc",
+                                     .setup = folder + "setups/clamped_plate.toml",
+                                     .after_block = [&](const CheckProgress& progress) {
+                                         EXPECT_EQ(progress.blocks, ++seen);
+                                         EXPECT_LE(progress.share, 1.0);
+                                         return seen < 5;
+                                     }});
+    EXPECT_EQ(run.blocks.size(), 5U);
+    ASSERT_TRUE(run.stopped);
+    EXPECT_EQ(run.stopped->where.line, run.blocks.back().line);
+}
+
+} // namespace
+} // namespace app
