@@ -20,7 +20,7 @@ TEST_P(Machining, KeepsTheTruthBetweenLowerAndUpper) {
     EXPECT_TRUE(tally.is_representative()) << tally.report();
 }
 
-INSTANTIATE_TEST_SUITE_P(Random, Machining, testing::Range(0U, 12U));
+INSTANTIATE_TEST_SUITE_P(Random, Machining, testing::Range(0U, 8U));
 
 TEST(MachiningOnATrunnion, KeepsTheTruthBetweenLowerAndUpper) {
     expect_sound(test_support::judged_programs(7, 4, 4, true));

@@ -86,7 +86,7 @@ inline core::ExactBody exact_body(const TrueSolid& solid, bool as_mesh) {
 }
 
 inline void add_stock(Dice& dice, KnownSetup& known) {
-    const double h = known.setup.mesh_size = dice.between(0.6, 2.5);
+    const double h = known.setup.mesh_size = dice.between(1.0, 3.0);
     core::Vec3 size(dice.between(8, 50), dice.between(8, 50), dice.between(4, 25));
     if (dice.chance(0.2)) size[int(dice.index(3))] = h * dice.between(0.1, 1.2);
     if (dice.chance(0.3)) {
