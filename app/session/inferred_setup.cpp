@@ -12,6 +12,7 @@
 #include "app/session/stated_stock.h"
 #include "app/session/uncut_plunge.h"
 #include "app/session/work_places.h"
+#include "app/setup/ini_machine.h"
 #include "app/tools/program_tools.h"
 
 namespace app {
@@ -214,6 +215,8 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
         if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
     if (!file.environment.home) file.environment.home = gcode::AxisValues{};
     file.assumptions = notes;
+    const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
+    if (!speeds.empty()) file.assumptions.push_back(speeds);
     file.assumptions.push_back(
         fmt::format("no set-up: no fixtures, no limits of axes; all work offsets are at one place, "
                     "and the machine's zero, where it starts and has its home, is {:g} mm above "

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/body_table.h"
+#include "app/setup/ini_machine.h"
 #include "app/setup/machine_table.h"
 #include "app/setup/program_table.h"
 #include "app/setup/table_reader.h"
@@ -224,6 +225,8 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
         settings = read_program_table(*table, context.folder);
     apply_settings(overlaid(std::move(settings), over), file, error);
     if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
+    const std::string note = complete_machine(setup.machine, file.environment, true);
+    if (!note.empty()) file.assumptions.push_back(note);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     place_offsets(context);
     if (const auto library = root.string("tool_library")) {

@@ -20,7 +20,7 @@ struct MachiningTally {
 
     bool is_representative() const {
         return near > blocks / 20 && overlaps > blocks / 20 && witnesses > blocks / 2
-               && std::min({verdicts[0], 10 * verdicts[2], verdicts[3]}) > blocks / 10;
+               && std::min({verdicts[0], 20 * verdicts[2], verdicts[3]}) > blocks / 10;
     }
     std::string report() const {
         size_t narrow = 0;

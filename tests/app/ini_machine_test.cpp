@@ -1,0 +1,80 @@
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "app/setup/ini_machine.h"
+#include "app/setup/setup_file.h"
+#include "tests/support/scoped_folder.h"
+
+namespace app {
+namespace {
+
+/// A set-up whose program is read with this ini file.
+core::Machine machine_of(const std::string& ini, const std::string& axes = "") {
+    const test_support::ScopedFolder folder;
+    std::ofstream(folder / "mill.ini") << ini;
+    std::ofstream(folder / "setup.toml")
+        << "[program]\ndialect = \"linuxcnc\"\n[stock]\nbox = [[0,0,0],[1,1,1]]\n"
+        << axes;
+    ProgramSettings settings;
+    settings.ini = folder / "mill.ini";
+    const auto file = read_setup(folder / "setup.toml", settings);
+    EXPECT_TRUE(file) << (file ? "" : file.error().message);
+    return file ? file->setup.machine : core::Machine{};
+}
+
+constexpr const char* metric = "[TRAJ]\nLINEAR_UNITS = mm\n"
+                               "[AXIS_X]\nMIN_LIMIT = -5\nMAX_LIMIT = 500\nMAX_VELOCITY = 50\n"
+                               "MAX_ACCELERATION = 750\n[JOINT_0]\nHOME = 1\n"
+                               "[AXIS_Y]\nMAX_LIMIT = 300\n[JOINT_1]\nHOME = 2\n"
+                               "[JOINT_2]\nMIN_LIMIT = -100\nHOME = 3\n";
+
+TEST(IniMachine, HasTheLimitsSpeedsAndHomesOfTheFile) {
+    const core::Machine machine = machine_of(metric);
+    EXPECT_EQ(machine.axes[0].min, -5.0);
+    EXPECT_EQ(machine.axes[0].max, 500.0);
+    EXPECT_EQ(machine.axes[0].rapid, 3000.0);
+    EXPECT_EQ(machine.axes[0].acceleration, 750.0);
+    EXPECT_EQ(machine.axes[0].home, 1.0);
+    EXPECT_EQ(machine.axes[1].min, std::nullopt);
+    EXPECT_EQ(machine.axes[1].max, 300.0);
+    EXPECT_EQ(machine.axes[1].home, 2.0);
+    EXPECT_EQ(machine.axes[2].min, -100.0);
+    EXPECT_EQ(machine.axes[2].home, 3.0);
+}
+
+TEST(IniMachine, CountsInTheFilesUnit) {
+    const core::Machine machine =
+        machine_of("[TRAJ]\nLINEAR_UNITS = inch\n[AXIS_Z]\nMIN_LIMIT = -4\nMAX_VELOCITY = 1\n");
+    EXPECT_DOUBLE_EQ(machine.axes[2].min.value_or(0.0), -101.6);
+    EXPECT_DOUBLE_EQ(machine.axes[2].rapid.value_or(0.0), 1524.0);
+}
+
+TEST(IniMachine, GivesWayToWhatTheSetupSays) {
+    const core::Machine machine = machine_of(
+        metric, "[[machine.axis]]\nname = \"X\"\nmax = 400\n[[machine.axis]]\nname = \"Y\"\n"
+                "[[machine.axis]]\nname = \"Z\"\n");
+    EXPECT_EQ(machine.axes[0].max, 400.0);
+    EXPECT_EQ(machine.axes[0].min, -5.0);
+}
+
+TEST(IniMachine, SaysOfARotaryAxisThatItsPlaceIsNotKnown) {
+    gcode::Environment environment;
+    environment.ini_values = {{"_ini[axis_a]max_velocity", 30.0}, {"_ini[joint_0]home", 0.0}};
+    core::Machine machine;
+    const std::string note = complete_machine(machine, environment, true);
+    EXPECT_NE(note.find("axis A"), std::string::npos) << note;
+    EXPECT_FALSE(machine.axes[3].present);
+}
+
+TEST(IniMachine, TakesNoPlacesForAnInferredSetup) {
+    gcode::Environment environment;
+    environment.ini_values = {{"_ini[axis_x]max_limit", 30.0}, {"_ini[axis_x]max_velocity", 10.0}};
+    core::Machine machine;
+    EXPECT_FALSE(complete_machine(machine, environment, false).empty());
+    EXPECT_EQ(machine.axes[0].max, std::nullopt);
+    EXPECT_EQ(machine.axes[0].rapid, 600.0);
+}
+
+} // namespace
+} // namespace app
