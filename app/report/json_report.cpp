@@ -200,7 +200,8 @@ std::string json_lines_report(const CheckRun& run, bool pairs) {
         lines += dumped(record("block", block_json(run, block, pairs)), -1);
     for (const core::Finding& finding : run.findings)
         lines += dumped(record("finding", finding_json(run, finding)), -1);
-    Json ending = {{"record", "end"}};
+    Json ending = {{"record", "end"}, {"verdict", core::name_of(run.verdict)}};
+    if (run.stopped) ending["error"] = error_json(*run.stopped);
     add_ending(ending, run);
     return lines + dumped(ending, -1);
 }

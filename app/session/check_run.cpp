@@ -132,6 +132,8 @@ void conclude(CheckRun& run, const core::SimulatorState& state) {
     run.lines = core::line_count(state.stock.lines);
     for (const std::string& assumption : state.assumptions) run.assumptions.push_back(assumption);
     look_for_judged_motions(run);
+    // Nobody shall take a program for clear of which a part was not checked.
+    if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
 }
 

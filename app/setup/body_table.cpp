@@ -187,7 +187,8 @@ std::optional<int> m_code(const std::string& text) {
 }
 
 /// A `[[fixture.move]]` of the fixture that stands last; where it goes, if it is not taken away.
-std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last) {
+std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last,
+                                         std::set<int>& known_codes) {
     core::FixtureMove move{.from = last};
     if (const auto line = table.integer("line")) {
         if (*line < 1) table.refuse("line", "counts from 1");
@@ -205,6 +206,7 @@ std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup,
     const core::Transform to = read_pose(table);
     table.finish();
     setup.fixture_moves.push_back(move);
+    if (move.code) known_codes.insert(*move.code);
     return removed ? std::nullopt : std::optional(to);
 }
 
@@ -328,7 +330,7 @@ void read_fixture(TableReader& table, BodyContext& context) {
     const core::Transform body_from_stock = (stock_from_frame * frame_from_body).inverse();
     size_t last = setup.fixtures.size() - 1;
     for (TableReader& move : moves) {
-        const auto to = read_move(move, setup, last);
+        const auto to = read_move(move, setup, last, context.file.environment.known_m_codes);
         if (!to) continue;
         core::Fixture there = fixture;
         there.is_there = false;

@@ -62,6 +62,9 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
 
 void BlockRun::carry_out(const Motion& motion) {
     result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
+    drills_sideways = drills_sideways
+                      || (tool() && motion.kind != MotionKind::rapid
+                          && turns_to_cut(state.spindle, *tool()) && !cuts_along(*tool(), motion));
     const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "

@@ -72,10 +72,28 @@ void BlockRun::check_tool_change() {
          "Move to a safe place, as with G28 or G53 Z0, before the tool change.");
 }
 
+bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
+    if (tool.description.shape != ToolShape::drill || motion.tip) return true;
+    const auto way = [&](size_t i) {
+        return motion.from[i] && motion.to[i] ? std::abs(*motion.to[i] - *motion.from[i]) : 0.0;
+    };
+    if (way(3) + way(4) + way(5) > 0.0) return true;
+    // A drill may follow a hole that is not quite upright.
+    constexpr double slack = 0.1, slope = 0.05;
+    return !motion.arc && std::hypot(way(0), way(1)) <= slack + slope * way(2);
+}
+
 Finding BlockRun::finding_about(const PairClearance& pair) const {
     Finding finding =
         finding_of(setup, pair, {result.motion, turns, result.duration, only_dog_leg}, state);
-    if (!pushes_centre || pair.pair != Pair{PartKind::flutes}) return finding;
+    if (pair.pair != Pair{PartKind::flutes} || pair.verdict != Verdict::collision) return finding;
+    if (drills_sideways) {
+        finding.rule = "collision";
+        finding.message = fmt::format("Tool {} is a drill and is fed sideways into the stock.",
+                                      value_of(tool()->description.number));
+        finding.cure = "Drill along its axis, or mill with a tool that cuts at its side.";
+    }
+    if (!pushes_centre) return finding;
     const ToolDescription& described = tool()->description;
     finding.message = fmt::format(
         "Tool {} does not cut within {:g} mm of its axis, and its centre is pushed into the stock.",

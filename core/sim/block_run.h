@@ -21,7 +21,8 @@ struct BlockRun {
     std::vector<TimedLeg> legs = {};
     bool turns = false;         // rotary axes move
     bool pushes_centre = false; // down into the stock, where the tool does not cut
-    bool only_dog_leg = false;  // straight, a rapid of this block would be free
+    bool drills_sideways = false;
+    bool only_dog_leg = false; // straight, a rapid of this block would be free
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -60,7 +61,8 @@ struct BlockRun {
 
     FluteUse use(const Motion& motion) const {
         const bool feeds = motion.kind != MotionKind::rapid;
-        const bool cuts = tool() && turns_to_cut(state.spindle, *tool());
+        const bool cuts =
+            tool() && turns_to_cut(state.spindle, *tool()) && cuts_along(*tool(), motion);
         return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
     }
 

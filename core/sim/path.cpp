@@ -71,6 +71,12 @@ std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& hig
 }
 
 /// Each axis at its own speed: the path bends where an axis arrives.
+size_t moving_axes(const AxisValues& from, const AxisValues& to) {
+    size_t count = 0;
+    for (size_t i = 0; i < axis_count; ++i) count += from[i] != to[i];
+    return count;
+}
+
 void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to) {
     const AxisValues times = axis_times(from, to, machine, path);
     const double total = longest(times);
@@ -257,7 +263,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
         add_straight(path, *from, *to,
                      motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
                                        : 0.0);
-    } else if (machine.rapid == RapidStyle::dogleg && *from != *to) {
+    } else if (machine.rapid == RapidStyle::dogleg && moving_axes(*from, *to) > 1) {
         add_dogleg(path, machine, *from, *to);
     } else {
         add_straight(path, *from, *to, longest(axis_times(*from, *to, machine, path)));

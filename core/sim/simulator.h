@@ -40,6 +40,10 @@ inline bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool)
     return spindle.direction == tool.description.cuts && spindle.speed > 0.0;
 }
 
+/// Whether the tool cuts the way a motion goes: a drill cuts along its axis alone. Motions on which
+/// rotary axes move are taken to go such a way.
+bool cuts_along(const ToolAssembly& tool, const Motion& motion);
+
 /// What a block moves, as a report says it.
 enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
 

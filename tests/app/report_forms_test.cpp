@@ -124,6 +124,10 @@ TEST(Stopping, KeepsWhatWasCheckedAndSaysSo) {
     EXPECT_EQ(run.blocks.size(), 5U);
     ASSERT_TRUE(run.stopped);
     EXPECT_EQ(run.stopped->where.line, run.blocks.back().line);
+    EXPECT_EQ(run.verdict, core::Verdict::undecided);
+    const auto last = nlohmann::json::parse(lines_of(json_lines_report(run, false)).back());
+    EXPECT_EQ(last["verdict"], "undecided");
+    EXPECT_TRUE(last.contains("error"));
 }
 
 } // namespace

@@ -265,5 +265,34 @@ TEST(Simulator, FindsTheDogLegThatTheStraightRapidHides) {
     EXPECT_NE(rapid_past(setup).verdict, Verdict::clear);
 }
 
+TEST(Simulator, FindsADrillThatIsFedSidewaysIntoTheStock) {
+    auto drilling = plain_setup();
+    ToolDescription drill = drilling.tools.at(ToolNumber{1}).description;
+    drill.shape = ToolShape::drill;
+    drilling.tools.at(ToolNumber{1}) = *assemble(drill);
+    Shift run(drilling);
+    run.rapid({50.1, 50.2, 5});
+    EXPECT_EQ(run.feed({50.1, 50.2, -10}).verdict, Verdict::clear);
+    EXPECT_EQ(run.feed({50.15, 50.2, -12}).verdict, Verdict::clear);
+    const BlockResult sideways = run.feed({60, 50.2, -12});
+    EXPECT_EQ(sideways.verdict, Verdict::collision);
+    ASSERT_EQ(rules(sideways), Rules{"collision"});
+    EXPECT_NE(sideways.findings[0].message.find("drill"), std::string::npos);
+    EXPECT_EQ(run.rapid({60, 50.2, 5}).verdict, Verdict::clear);
+    EXPECT_EQ(run.feed({20, 50.2, 5}).verdict, Verdict::clear);
+}
+
+TEST(Simulator, RunsARapidOfOneAxisStraightWhateverTheSpeeds) {
+    auto dog_leg = plain_setup();
+    dog_leg.machine.rapid = RapidStyle::dogleg;
+    Shift run(dog_leg);
+    run.rapid({-20, 50, 60});
+    const BlockResult down = run.rapid({-20, 50, 20});
+    EXPECT_EQ(down.verdict, Verdict::clear);
+    const BlockResult into = run.rapid({50, 50, 20});
+    EXPECT_EQ(into.verdict, Verdict::clear);
+    EXPECT_EQ(run.rapid({50, 50, -3}).verdict, Verdict::collision);
+}
+
 } // namespace
 } // namespace core
