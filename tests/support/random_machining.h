@@ -82,6 +82,11 @@ private:
         at_ = values_at(tip_, at_[3], at_[5]);
     }
 
+    /// Drills cut along their axis alone.
+    bool cuts_along(const core::Motion& motion) const {
+        return turns_ && core::cuts_along(known_.setup.tools.at(number_), motion);
+    }
+
     void add_passage(KnownBlock& block, const TruePath& path, bool chips) {
         block.passages.push_back({&tool(), path, chips, there_});
     }
@@ -127,7 +132,7 @@ private:
         if (rapid && known_.setup.machine.rapid == core::RapidStyle::dogleg)
             add_dogleg(block, there);
         else
-            add_passage(block, {at_, there}, !rapid && turns_);
+            add_passage(block, {at_, there}, !rapid && cuts_along(motion));
         arrive(there, to);
     }
 
@@ -176,7 +181,7 @@ private:
                             .arc = arc,
                             .feed = 800.0};
         block.events.push_back(motion);
-        add_passage(block, path, turns_);
+        add_passage(block, path, cuts_along(motion));
         arrive(there, mounted_place(known_.world.machine, known_.world.stock_mount, there,
                                     {there[0], there[1], there[2] - tool().length}));
     }
