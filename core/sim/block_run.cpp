@@ -12,7 +12,7 @@ void settle_time(BlockRun& run, PairClearance& pair) {
     if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
-        if (pair.time < begin || pair.time > end) continue;
+        if (pair.time <= begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
         const double share =
@@ -30,6 +30,10 @@ void BlockRun::forget_bounds() {
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
+    // Only the tool that was there knows when it was nearest.
+    if (const PairClearance* worst = deciding_pair(result.pairs))
+        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())]);
+    legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
     state.watch.has_fed = state.watch.told_swing = false;
@@ -51,7 +55,8 @@ void BlockRun::carry_out(const FixtureChange& change) {
     state.fixtures_there[change.fixture] = change.is_there;
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
-    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, result.pairs);
+    leg_check(FluteUse::not_cutting)
+        .rest(path.legs[0].places[0], result.duration, state.stock, result.pairs);
 }
 
 void BlockRun::check_tool_change() {
@@ -59,7 +64,8 @@ void BlockRun::check_tool_change() {
     const Path path = path_of(stay, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
     std::vector<PairClearance> pairs;
-    leg_check(FluteUse::not_cutting).rest(path.legs[0].places[0], state.stock, pairs);
+    leg_check(FluteUse::not_cutting)
+        .rest(path.legs[0].places[0], result.duration, state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
     if (!worst || worst->verdict == Verdict::clear) return;
     find("tool-change-unsafe",

@@ -339,7 +339,7 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     check_fixtures(leg, start, anywhere);
     check_bodies(leg, start, stock, anywhere);
     std::vector<PairClearance> certain;
-    for (const AxisValues& place : leg.certain) rest(place, stock, certain);
+    for (const AxisValues& place : leg.certain) rest(place, 0.0, stock, certain);
     for (PairClearance& pair : anywhere) {
         const bool safe = pair.verdict == Verdict::clear;
         PairClearance now{.pair = pair.pair, .allowance = pair.allowance, .lower = pair.lower};
@@ -361,12 +361,12 @@ double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double li
                              - way.error);
 }
 
-void LegCheck::rest(const AxisValues& place, const CutModel& stock,
+void LegCheck::rest(const AxisValues& place, double time, const CutModel& stock,
                     std::vector<PairClearance>& pairs) {
     const Leg leg{.places = {place}};
     for (PairClearance& pair : pairs) pair.at_end = -infinity; // nobody says how it came here
-    check_fixtures(leg, 0.0, pairs);
-    check_bodies(leg, 0.0, stock, pairs);
+    check_fixtures(leg, time, pairs);
+    check_bodies(leg, time, stock, pairs);
 }
 
 double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,

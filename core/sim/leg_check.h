@@ -70,8 +70,9 @@ public:
     /// the leg turns too far to say.
     double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
 
-    /// Checks everything at rest, without cutting.
-    void rest(const AxisValues& place, const CutModel& stock, std::vector<PairClearance>& pairs);
+    /// Checks everything at rest, at `time` of the block, without cutting.
+    void rest(const AxisValues& place, double time, const CutModel& stock,
+              std::vector<PairClearance>& pairs);
 
     /// The least share of the leg after which the pair is as near as `distance` for the first time.
     /// `seen` is a share at which it was, if one is known.

@@ -30,7 +30,7 @@ struct Look {
 
     std::vector<PairClearance> at(const AxisValues& place) {
         std::vector<PairClearance> pairs;
-        check().rest(place, link.stock, pairs);
+        check().rest(place, 0.0, link.stock, pairs);
         return pairs;
     }
 

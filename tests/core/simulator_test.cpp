@@ -201,6 +201,24 @@ TEST(Simulator, LooksAtANewToolWhereItIsChangedIn) {
     EXPECT_EQ(rules(run.give({ToolChange{ToolNumber{2}}})), Rules({"tool-change-unsafe"}));
 }
 
+TEST(Simulator, KeepsTheTimeOfAToolThatIsChangedLaterInTheBlock) {
+    core::Setup setup = plain_setup();
+    ToolDescription bare = setup.tools.at(ToolNumber{1}).description;
+    bare.number = ToolNumber{2};
+    bare.holder = {};
+    setup.tools.emplace(bare.number, *assemble(bare));
+    Shift run(setup);
+    run.rapid({200, 50, -30});
+    const Motion nearer = run.motion(MotionKind::feed, {130, 50, -30}); // 70 mm at 10 mm/s
+    const Motion away = run.motion(MotionKind::feed, {200, 50, -30});
+    const BlockResult result = run.give({nearer, ToolChange{ToolNumber{2}}, away});
+    ASSERT_TRUE(result.deciding);
+    const PairClearance& holder = result.pairs[*result.deciding];
+    EXPECT_EQ(holder.pair, Pair{PartKind::holder});
+    EXPECT_NEAR(holder.upper, std::hypot(10, 15), 1e-3);
+    EXPECT_NEAR(holder.time, 7.0, 1e-6);
+}
+
 TEST(Simulator, CannotJudgeAToolThatNobodyDescribed) {
     Shift run(plain_setup());
     EXPECT_EQ(rules(run.give({ToolChange{ToolNumber{9}}})), Rules({"tool-not-in-table"}));
