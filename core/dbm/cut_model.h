@@ -27,6 +27,7 @@ struct CutModel {
     std::vector<SharedLog<SweepRun>> history; // per tile of columns: which of them came near it
     CutterSweep last;                         // of all moves, near or not
     double volume_owed = 0.0;                 // removed, but not yet reported (see cut), mm3
+    size_t loose_tests = 0;                   // of boxes, by searches since all boxes were fitted
 
     // Where lines run and where the corners of cells stand, along X, Y, Z.
     std::array<std::vector<double>, 3> places;
@@ -56,6 +57,10 @@ double cut(CutModel& model, const CutterSweep& sweep);
 /// Result: the same bits for any number of threads.
 /// Cost:   on two threads some half of the time of one, if there are hundreds of moves.
 std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, unsigned threads);
+
+/// Counts the boxes that a search has tested, and fits those round what has been cut since when
+/// searches have spent as much on loose ones as the fitting costs. Changes no answer.
+void note_search(CutModel& model, size_t box_tests);
 
 /// The square of a column, clipped to where the stock can be.
 Square cell_square(const CutModel& model, int i, int j);

@@ -75,10 +75,15 @@ void cut_tiles(CutModel& model, const ReadySweep& ready, const Mine& mine, const
     }
 }
 
-void fit_when_many_are_stale(CutModel& model) {
+/// How many tiles of one family wait for their boxes, at most.
+size_t most_stale(const CutModel& model) {
     size_t most = model.column_boxes.stale_tiles.size();
     for (const TileBoxes& boxes : model.line_boxes) most = std::max(most, boxes.stale_tiles.size());
-    if (most >= TileBoxes::most_stale) fit_boxes(model);
+    return most;
+}
+
+void fit_when_many_are_stale(CutModel& model) {
+    if (most_stale(model) >= TileBoxes::most_stale) fit_boxes(model);
 }
 
 /// What is to be reported of a volume that has been removed.
@@ -174,6 +179,13 @@ double cut(CutModel& model, const CutterSweep& sweep) {
         fit_when_many_are_stale(model);
     }
     return reported(model, sums);
+}
+
+void note_search(CutModel& model, size_t box_tests) {
+    constexpr size_t tests_per_tile = 128; // that take as long as fitting a tile of each family
+    model.loose_tests += box_tests;
+    const size_t stale = most_stale(model);
+    if (stale > 0 && model.loose_tests > tests_per_tile * stale) fit_boxes(model);
 }
 
 std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, unsigned threads) {

@@ -1,6 +1,7 @@
 #include "core/dbm/tile_boxes.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace core {
@@ -29,6 +30,63 @@ Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePlac
         }
     }
     return box;
+}
+
+/// The widest gap that stretches of matter leave among them.
+class GapSearch {
+public:
+    void add(double lower, double upper) {
+        if (lower < upper) stretches_[count_++] = {lower, upper};
+    }
+
+    BoxGap widest() {
+        std::sort(stretches_.begin(), stretches_.begin() + count_,
+                  [](const Interval& a, const Interval& b) { return a.lower < b.lower; });
+        BoxGap gap;
+        for (int i = 1; i < count_; ++i) {
+            const auto k = static_cast<size_t>(i);
+            const double end = stretches_[k - 1].upper;
+            if (stretches_[k].lower - end > gap.to - gap.from) gap = {end, stretches_[k].lower};
+            stretches_[k].upper = std::max(stretches_[k].upper, end);
+        }
+        return gap;
+    }
+
+    static constexpr int most = 64;
+    bool is_full() const { return count_ >= most; }
+
+private:
+    std::array<Interval, most> stretches_;
+    int count_ = 0;
+};
+
+BoxGap gap_of_block(const TileBoxes& tiles, const ScanLines& lines, size_t tile, size_t block) {
+    if (lines.tile(tile) == nullptr || lines.tile(tile)->layers.size() < 2) return {};
+    const LineRange range = lines_of_block(lines, tiles, tile, block);
+    GapSearch search;
+    for (int v = range.v_first; v < range.v_last; ++v) {
+        for (int u = range.u_first; u < range.u_last; ++u) {
+            for (const Interval& matter : lines.line(u, v)) {
+                if (search.is_full()) return {};
+                search.add(matter.lower, matter.upper);
+            }
+        }
+    }
+    return search.widest();
+}
+
+/// The gap of a tile whose blocks are fitted.
+BoxGap gap_of_tile(const TileBoxes& tiles, int axis, size_t tile) {
+    const size_t first = tile * TileBoxes::blocks_per_tile;
+    GapSearch search;
+    for (size_t block = first; block < first + TileBoxes::blocks_per_tile; ++block) {
+        const Aabb& box = tiles.blocks[block];
+        const BoxGap& gap = tiles.block_gaps[block];
+        if (box.empty()) continue;
+        search.add(box.min[axis], gap.empty() ? box.max[axis] : gap.from);
+        if (!gap.empty()) search.add(gap.to, box.max[axis]);
+    }
+    return search.widest();
 }
 
 constexpr int level_side = 4;
@@ -101,7 +159,9 @@ TileBoxes unfitted_boxes(const ScanLines& lines) {
     tiles.u_tiles = (lines.u_count() + side - 1) / side;
     tiles.v_tiles = (lines.v_count() + side - 1) / side;
     tiles.boxes.resize(lines.tile_count());
+    tiles.gaps.resize(tiles.boxes.size());
     tiles.blocks.resize(tiles.boxes.size() * TileBoxes::blocks_per_tile);
+    tiles.block_gaps.resize(tiles.blocks.size());
     tiles.stale.resize(tiles.boxes.size());
     for (size_t tile = 0; tile < tiles.boxes.size(); ++tile)
         if (lines.tile(tile) != nullptr) tiles.note(tile, 0xffff);
@@ -114,11 +174,15 @@ void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places) {
         Aabb whole;
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
-            if ((tiles.stale[tile] >> block) & 1U)
+            if ((tiles.stale[tile] >> block) & 1U) {
                 box = box_of_block(tiles, lines, places, tile, block);
+                tiles.block_gaps[tile * TileBoxes::blocks_per_tile + block] =
+                    gap_of_block(tiles, lines, tile, block);
+            }
             whole.extend(box);
         }
         tiles.boxes[tile] = whole;
+        tiles.gaps[tile] = gap_of_tile(tiles, lines.axis(), tile);
         tiles.stale[tile] = 0;
     }
     std::vector<uint32_t> fitted = std::exchange(tiles.stale_tiles, {});

@@ -13,9 +13,17 @@ struct TileLevel {
     std::vector<Aabb> boxes; // u fastest
 };
 
+/// A stretch along the lines, inside a box round matter, that holds none; empty where none is
+/// known.
+struct BoxGap {
+    double from = 0.0, to = 0.0;
+
+    bool empty() const { return from >= to; }
+};
+
 /// A box round the matter in each tile of a family of lines or columns, and in each 4 x 4 block of
-/// a tile; empty where there is none. Boxes of blocks that have been cut lately may still be those
-/// of before: too large, never too small.
+/// a tile, with its widest gap; empty where there is none. Boxes of blocks that have been cut
+/// lately may still be those of before: too large, never too small.
 struct TileBoxes {
     static constexpr int block_side = 4;
     static constexpr int blocks_per_side = ScanLines::tile_side / block_side;
@@ -25,8 +33,10 @@ struct TileBoxes {
     int u_tiles = 0;
     int v_tiles = 0;
     std::vector<Aabb> boxes;           // u fastest
+    std::vector<BoxGap> gaps;          // of the boxes
     std::vector<TileLevel> above;      // over the tiles; the last level is one box
     std::vector<Aabb> blocks;          // of 4 x 4 lines, the 16 of a tile in a row, u fastest
+    std::vector<BoxGap> block_gaps;    // of the blocks
     std::vector<uint16_t> stale;       // per tile: bit i, block i has been cut since it was fitted
     std::vector<uint32_t> stale_tiles; // those with any
 

@@ -119,6 +119,7 @@ LineRange tiles_of(const LineRange& lines) {
 }
 
 void fit_boxes(CutModel& model) {
+    model.loose_tests = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const auto family = static_cast<size_t>(axis);
         fit(model.line_boxes[family], model.lines.families[family],

@@ -86,6 +86,16 @@ private:
         return bound;
     }
 
+    /// The same for a box round lines along `axis` that has a gap.
+    double box_bound(const Aabb& box, const BoxGap& gap, int axis, double limit) {
+        const double whole = box_bound(box, limit);
+        if (whole >= limit || gap.empty()) return whole;
+        Aabb below = box, above = box;
+        below.max[axis] = gap.from;
+        above.min[axis] = gap.to;
+        return std::min(box_bound(below, limit), box_bound(above, limit));
+    }
+
     /// Distance of the nearest shape to a box, tight only where it is below `limit`.
     Separation nearest(const Aabb& box, double limit) {
         Separation best;
@@ -113,14 +123,15 @@ private:
     /// Runs `act` over the tiles with matter that may be nearer than `limit` says, about nearest
     /// first.
     template <typename Limit, typename Act>
-    void for_near_tiles(const TileBoxes& tiles, const Limit& limit, const Act& act) {
-        if (!tiles.above.empty()) for_tiles_below(tiles, tiles.above.size() - 1, 0, limit, act);
+    void for_near_tiles(const TileBoxes& tiles, int axis, const Limit& limit, const Act& act) {
+        if (!tiles.above.empty())
+            for_tiles_below(tiles, axis, tiles.above.size() - 1, 0, limit, act);
     }
 
     /// The same for the tiles under one box of a level.
     template <typename Limit, typename Act>
-    void for_tiles_below(const TileBoxes& tiles, size_t level, size_t index, const Limit& limit,
-                         const Act& act) {
+    void for_tiles_below(const TileBoxes& tiles, int axis, size_t level, size_t index,
+                         const Limit& limit, const Act& act) {
         const std::vector<Aabb>& boxes = level == 0 ? tiles.boxes : tiles.above[level - 1].boxes;
         const int across = level == 0 ? tiles.u_tiles : tiles.above[level - 1].u_count;
         NearBoxes near;
@@ -129,14 +140,16 @@ private:
             for (int u = range.u_first; u < range.u_last; ++u) {
                 const size_t part =
                     static_cast<size_t>(v) * static_cast<size_t>(across) + static_cast<size_t>(u);
-                if (!boxes[part].empty()) near.add(box_bound(boxes[part], limit()), part, limit());
+                if (boxes[part].empty()) continue;
+                const BoxGap gap = level == 0 ? tiles.gaps[part] : BoxGap{};
+                near.add(box_bound(boxes[part], gap, axis, limit()), part, limit());
             }
         }
         near.in_order(limit, [&](size_t part) {
             if (level == 0)
                 act(part);
             else
-                for_tiles_below(tiles, level - 1, part, limit, act);
+                for_tiles_below(tiles, axis, level - 1, part, limit, act);
         });
     }
 
@@ -151,7 +164,8 @@ private:
         NearBoxes near;
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             const Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
-            if (!box.empty()) near.add(box_bound(box, limit()), block, limit());
+            const BoxGap& gap = tiles.block_gaps[tile * TileBoxes::blocks_per_tile + block];
+            if (!box.empty()) near.add(box_bound(box, gap, lines.axis(), limit()), block, limit());
         }
         near.in_order(limit, [&](size_t block) { act(lines_of_block(lines, tiles, tile, block)); });
     }
@@ -161,7 +175,7 @@ private:
         const ScanLines& lines = stock_.lines.families[family];
         const TileBoxes& tiles = stock_.line_boxes[family];
         const auto limit = [&] { return line_limit(); };
-        for_near_tiles(tiles, limit, [&](size_t tile) {
+        for_near_tiles(tiles, axis, limit, [&](size_t tile) {
             for_blocks(lines, tiles, tile, limit, [&](const LineRange& range) {
                 for (int v = range.v_first; v < range.v_last; ++v)
                     for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
@@ -206,7 +220,7 @@ private:
         // Ties are passed over, and the bound lowered by what they may be nearer; none at the
         // limit.
         const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
-        for_near_tiles(stock_.column_boxes, limit, [&](size_t tile) {
+        for_near_tiles(stock_.column_boxes, 2, limit, [&](size_t tile) {
             for_columns(tile, limit, [&](int i, int j, const Square& square) {
                 const double bound = bound_of(square, stock_.columns.line(i, j), limit());
                 if (bound < lower_) nearest_cell_ = {i, j};
@@ -255,7 +269,7 @@ private:
         // Every column that is not looked at here, or not to its end, is at least this far away.
         refined_lower_ = goal_.threshold + same;
         const auto near_enough = [&] { return goal_.threshold + same; };
-        for_near_tiles(stock_.column_boxes, near_enough, [&](size_t tile) {
+        for_near_tiles(stock_.column_boxes, 2, near_enough, [&](size_t tile) {
             for_columns(tile, near_enough, [&](int i, int j, const Square& square) {
                 refine(i, j, square, stock_.columns.line(i, j));
             });

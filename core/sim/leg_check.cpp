@@ -318,6 +318,7 @@ double LegCheck::cut_along(const Leg& leg, CutModel& stock) {
 double LegCheck::run(const Leg& leg, double start, CutModel& stock,
                      std::vector<PairClearance>& pairs) {
     travel_ = greatest_travel(setup_.machine, leg);
+    const size_t tests_before = statistics_.box_tests;
     double removed = 0.0;
     if (!leg.straight) {
         check_hull(leg, start, stock, pairs);
@@ -328,6 +329,7 @@ double LegCheck::run(const Leg& leg, double start, CutModel& stock,
         check_fixtures(leg, start, pairs);
         removed = check_stock(leg, start, stock, pairs);
     }
+    note_search(stock, statistics_.box_tests - tests_before);
     for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
     return removed;
 }
