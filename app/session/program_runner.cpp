@@ -134,7 +134,7 @@ std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
                          block.calls, {}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
     checked.result = core::run_block(run_.setup, of_block, state);
     for (const gcode::Warning& warning : block.warnings) {
         core::Finding finding = remark(run_.setup, warning);

@@ -167,6 +167,9 @@ private:
     /// Adds what is known of a body after the cut.
     void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
                   bool cut, std::vector<PairClearance>& pairs);
+    /// Puts a pair that does not keep its allowance to the first of the moments at which it is as
+    /// near, whatever the search saw: what is left of the stock decides, before it is cut further.
+    void settle_time(PairClearance& now, const Leg& leg, double start, const CutModel& stock);
     /// Looks at a body that was not looked at before the cut, if it matters after all.
     void look_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
                    std::vector<PairClearance>& pairs);
