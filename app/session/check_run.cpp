@@ -192,6 +192,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     runner.after_block = job.after_block;
     runner.speed_by_hand = file.speed_by_hand;
     runner.stock_is_stated = stock_is_stated;
+    runner.offsets_stated = file.offsets_set;
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
@@ -205,6 +206,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     check_part(run);
     look_at_both_switch_positions(run, *program, file.environment);
     apply_allowed_rules(run, file.allow_comments);
+    gather_consequences(run, runner.length_doubts());
     return run;
 }
 

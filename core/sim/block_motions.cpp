@@ -115,7 +115,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
         watch_centre(motion, leg);
         removed += check.run(leg, result.duration, state.stock, result.pairs);
         legs.push_back({leg, result.duration});
-        if (use(motion) == FluteUse::cutting)
+        if (use(motion) == FluteUse::cutting && !state.watch.length_in_doubt)
             note_reach(state.watch.reaches,
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
                        result.pairs);

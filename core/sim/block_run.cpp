@@ -53,6 +53,7 @@ void BlockRun::carry_out(const ToolChange& change) {
 void BlockRun::carry_out(const FixtureChange& change) {
     forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
+    state.memory.cuts.erase(change.fixture); // another one may stand there
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
     leg_check(FluteUse::not_cutting)

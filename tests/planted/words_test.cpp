@@ -83,7 +83,7 @@ Checked changed_at(const std::string& z, const std::string& rules = "") {
 
 TEST(UnsafeToolChange, IsTheVerdictOfItsBlock) {
     const Checked inside = changed_at("30.");
-    EXPECT_EQ(inside.errors(), "tool-change-unsafe 8");
+    EXPECT_EQ(inside.errors(), "tool-change-unsafe 8, rapid-in-stock 9");
     EXPECT_EQ(inside.at_line(8).verdict, "collision");
     EXPECT_EQ(inside.verdict, "collision");
     EXPECT_THAT(finding_of(inside, "tool-change-unsafe").message, HasSubstr("stand in stock"));
@@ -95,7 +95,7 @@ TEST(UnsafeToolChange, IsTheVerdictOfItsBlock) {
 
 TEST(UnsafeToolChange, IsToldWhateverTheSetUpSaysIfBodiesOverlap) {
     const std::string off = "[rules]\ntool-change-unsafe = \"off\"\n";
-    EXPECT_EQ(changed_at("30.", off).errors(), "tool-change-unsafe 8");
+    EXPECT_EQ(changed_at("30.", off).errors(), "tool-change-unsafe 8, rapid-in-stock 9");
     EXPECT_EQ(changed_at("50.", off).errors(), "");
 }
 
