@@ -60,6 +60,12 @@ std::string listed(const std::set<std::string>& names) {
     return text;
 }
 
+/// Whether the block of a finding that is about one collides.
+bool collides_in(const CheckRun& run, const core::Finding& finding) {
+    const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
+    return block.verdict == core::Verdict::collision;
+}
+
 /// What a wrong length leads to.
 struct Consequences {
     std::set<core::BlockIndex> blocks;
@@ -73,8 +79,7 @@ struct Consequences {
         if (finding.pair[0].empty() && !goes_too_far) return;
         blocks.insert(*finding.block);
         bodies.insert(goes_too_far ? "the limit of Z" : finding.pair[1]);
-        const core::Verdict verdict = run.blocks[core::value_of(*finding.block)].result.verdict;
-        collides = collides || verdict == core::Verdict::collision;
+        collides = collides || collides_in(run, finding);
     }
 };
 
@@ -151,9 +156,10 @@ void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) 
         for (const core::Finding& finding : run.findings)
             if (comes_of_it(finding)) all.take(run, finding);
         std::optional<core::Finding> first;
-        if (all.worst > cause->severity)
+        if (all.worst > cause->severity && !all.blocks.empty())
             first = *std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
-                return comes_of_it(other) && other.severity == all.worst;
+                return comes_of_it(other) && other.severity == all.worst
+                       && (!all.collides || collides_in(run, other));
             });
         std::erase_if(run.findings, comes_of_it);
         tell_together(run, *cause, all, doubt.too_low, std::move(first));
