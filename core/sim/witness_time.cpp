@@ -15,7 +15,7 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, con
         const Separation found =
             pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
                                          limit + resolution, statistics_.shape_tests)
-                         : to_stock(body, moved, stock, 0.0, limit + resolution);
+                         : to_stock(body, moved, stock, {.limit = limit + resolution});
         return found.upper <= limit;
     };
     // Mostly it is where it was seen, and not before.

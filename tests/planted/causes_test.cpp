@@ -87,8 +87,8 @@ TEST(LengthOfAnotherTool, IsOneWarningAndOneError) {
                                                     "[[length_offset]]\nnumber = 2\nlength = 40\n");
     const Checked deep = check(setup, passes("G43 H2"));
     EXPECT_EQ(deep.of_severity("warning"), "offset-not-tool 5");
-    EXPECT_EQ(deep.errors(), "holder-into-wall 8");
-    const FindingLine told = finding_of(deep, "holder-into-wall");
+    EXPECT_EQ(deep.errors(), "collision 8");
+    const FindingLine told = finding_of(deep, "collision");
     EXPECT_THAT(told.message, HasSubstr("see offset-not-tool in line 5"));
     EXPECT_THAT(told.message, HasSubstr("55.000 mm lower"));
     const SetupWriter alike = SetupWriter().lengths("[[length_offset]]\nnumber = 2\nlength = 95\n");
