@@ -98,7 +98,11 @@ void look_for_judged_motions(CheckRun& run) {
     finding.severity = core::Severity::error;
     finding.block = first->block;
     finding.message = "No motion of the program could be judged.";
-    finding.cure = "Say where the axes stand at the first block: `start` under [program] in the "
+    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(),
+                                     [](const auto& f) { return f.rule == "first-move"; });
+    finding.cure =
+        !is_lost ? "Mend first what the other findings name."
+                 : "Say where the axes stand at the first block: `start` under [program] in the "
                    "set-up, or the machine's home.";
     run.findings.push_back(finding);
 }

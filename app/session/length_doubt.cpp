@@ -48,7 +48,7 @@ bool is_consequence(const core::Finding& finding) {
            || finding.rule == "offset-implausible";
 }
 
-/// "stock", "stock and clamp-1", "stock, clamp-1 and clamp-2".
+/// "the stock", "clamp-1 and the stock", "clamp-1, clamp-2 and the stock".
 std::string listed(const std::set<std::string>& names) {
     std::string text;
     size_t left = names.size();
@@ -78,12 +78,14 @@ struct Consequences {
         const bool goes_too_far = finding.rule == "over-travel";
         if (finding.pair[0].empty() && !goes_too_far) return;
         blocks.insert(*finding.block);
-        bodies.insert(goes_too_far ? "the limit of Z" : finding.pair[1]);
+        bodies.insert(goes_too_far                 ? "the limit of Z"
+                      : finding.pair[1] == "stock" ? "the stock"
+                                                   : finding.pair[1]);
         collides = collides || collides_in(run, finding);
     }
 };
 
-/// "The tool stands 95.000 mm lower than meant and runs into stock in 14 blocks from ...".
+/// "The tool stands 95.000 mm lower than meant and runs into the stock in 14 blocks from ...".
 std::string sentence(const CheckRun& run, const Consequences& all, double too_low) {
     const auto line = [&](core::BlockIndex block) {
         return run.blocks[core::value_of(block)].line;

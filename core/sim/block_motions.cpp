@@ -38,7 +38,9 @@ void BlockRun::check_limits(const Motion& motion) {
              fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} {} beyond its limit.",
                          axis_letters[i], below > above ? range.min[i] : range.max[i], beyond,
                          is_rotary(i) ? "degrees" : "mm"),
-             "Move the work, or use another tool length or work offset.");
+             i == 2         ? "Move the work, or use another tool length or work offset."
+             : is_rotary(i) ? "Turn the work, or reach the same place from the other side."
+                            : "Move the work, or use another work offset.");
     }
 }
 

@@ -61,6 +61,8 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     if (!room.empty()) return fmt::format("{} would do{}.", room, move);
     if (pair.pair.part == PartKind::machine)
         return "Move the work, or use a longer tool: a part of the machine comes too near.";
+    if (pair.pair.part == PartKind::shank && !fixture)
+        return "Longer flutes, a slimmer shank or neck, or less depth.";
     if (pair.pair.part != PartKind::flutes && !fixture)
         return "A longer stick-out or a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
@@ -95,6 +97,12 @@ std::string rapid_into_stock(const std::string& part, MoveWithin within) {
     return fmt::format("Rapid into material: the {} runs into the stock{}.", part, whose);
 }
 
+/// When in its block something happens.
+std::string how_far(double at) {
+    if (at < 0.005) return "right at its start";
+    return fmt::format("{:.0f} % of the way", 100.0 * at);
+}
+
 std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
     const char* kind = move.only_dog_leg ? "Straight this rapid would be free, but the axes do not "
@@ -106,13 +114,15 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
     if (rule == "spindle-off")
         return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
-        return fmt::format("{} {} runs into {}, {:.0f} % of the way.", kind, part, body,
-                           100.0 * at);
+        return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
     if (pair.verdict == Verdict::violation)
         return fmt::format(
             "{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.", kind, part,
             body, range(pair.lower, pair.upper), pair.allowance.distance,
             range(pair.allowance.distance - pair.upper, pair.allowance.distance - pair.lower));
+    if (pair.allowance.distance <= resolution)
+        return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
+                           kind, part, body);
     return fmt::format("{} {} may be as near to {} as {:.3f} mm; {:.3f} mm must be kept.", kind,
                        part, body, pair.lower, pair.allowance.distance);
 }
@@ -124,6 +134,11 @@ std::string in_the_plural(std::string message) {
         if (const size_t at = message.find(one); at != std::string::npos)
             message.replace(at, std::string(one).size(), many);
     return message;
+}
+
+/// What a sentence calls a body.
+std::string body_in_words(const Setup& setup, const Pair& pair) {
+    return pair.fixture ? body_name(setup, pair) : "the stock";
 }
 
 /// What a tool that was just changed in does to the body.
@@ -172,14 +187,14 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
     if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
     const std::string& part = part_name(setup, pair.pair);
-    const std::string& body = body_name(setup, pair.pair);
+    const std::string body = body_in_words(setup, pair.pair);
     const double at = move.duration > 0.0 ? pair.time / move.duration : 0.0;
     Finding finding;
     finding.rule = rule_of(pair, move, spindle_runs);
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
     finding.cure = cure_of(pair, finding.rule, body, move.within);
-    finding.pair = {part, body};
+    finding.pair = {part, body_name(setup, pair.pair)};
     finding.shortfall = shortfall_of(pair);
     if (!finding.cure.empty())
         finding.cure[0] =
@@ -192,7 +207,7 @@ Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber 
     finding.rule = "tool-change-unsafe";
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.pair = {part_name(setup, pair.pair), body_name(setup, pair.pair)};
-    finding.message = change_message(pair, tool, finding.pair[0], finding.pair[1]);
+    finding.message = change_message(pair, tool, finding.pair[0], body_in_words(setup, pair.pair));
     finding.cure = "Move to a safe place, as with G28 or G53 Z0, before the tool change.";
     finding.shortfall = shortfall_of(pair);
     return finding;

@@ -83,6 +83,7 @@ double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0;
 
 std::string in_blocks(const ToolReach& reach) {
     if (reach.looks > enough) return " in the first of these blocks, the others were not tried";
+    if (reach.blocks == 2) return " in both blocks";
     return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
 }
 
