@@ -32,6 +32,7 @@ struct BlockResult {
     std::string_view file{};       // of a subprogram's file; empty for the main program
     std::vector<uint32_t> calls{}; // lines that called it, the outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
+    bool goes_home = false;        // G28 or G30
     std::vector<CanonicalCommand> commands{};
     std::vector<uint32_t> columns{}; // of the words that the commands come from
     std::vector<Warning> warnings{};

@@ -38,7 +38,7 @@ void keep_way_home(Execution& execution, bool all) {
 core::Result<void> go_home(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
-    execution.result.is_cycle = true;
+    execution.result.is_cycle = execution.result.goes_home = true;
     const bool all = !execution.statement.has_axis_word();
     if (!all) {
         FEELER_TRY(const Position between, target_of(execution));

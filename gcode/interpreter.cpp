@@ -150,7 +150,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, Place pla
     result.calls.clear();
     for (size_t level = 1; level < state.frames.size(); ++level)
         result.calls.push_back(state.frames[level].called_from.line);
-    result.is_cycle = false;
+    result.is_cycle = result.goes_home = false;
     result.commands.clear();
     result.columns.clear();
     result.warnings.clear();

@@ -13,6 +13,8 @@ namespace {
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
+constexpr MotionCode arc_codes_end = 30; // G0 to G3; later ones are cycles and the like
+
 std::optional<uint32_t> number_in(std::string_view text) {
     uint32_t number = 0;
     const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -44,7 +46,22 @@ struct Meeting {
     ModalState before, after; // of the run from the beginning, around that block
     ModalState alone;         // of the run from the line
     bool alone_failed = false;
+    std::optional<MotionCode> motion; // that a block on the way went on with, and the other had not
 };
+
+bool is_motion(const CanonicalCommand& command) {
+    return is_feed(command) || std::holds_alternative<StraightTraverse>(command);
+}
+
+/// Whether a block moves as the motion code before it says: not home, by a cycle, or to a place of
+/// the machine.
+bool goes_on_moving(const BlockResult& block) {
+    const auto has = [&](std::string_view code) {
+        return block.text.find(code) != std::string_view::npos;
+    };
+    return !block.is_cycle && !has("G53") && !has("g53")
+           && std::any_of(block.commands.begin(), block.commands.end(), is_motion);
+}
 
 /// Lists what the run from the line lacks.
 class Needs {
@@ -112,6 +129,7 @@ private:
 
     void add_feed() {
         const ModalState& modal = at_.after;
+        if (at_.motion) need(fmt::format("G{}", *at_.motion / 10));
         if (lacks(&ModalState::feed_mode))
             need(fmt::format("G{}", modal.feed_mode == FeedMode::inverse_time ? 93
                                     : modal.feed_mode == FeedMode::per_turn   ? 95
@@ -147,14 +165,19 @@ private:
 std::optional<Meeting> meet(ProgramLibrary& library, const Environment& environment,
                             InterpreterState whole, InterpreterState alone) {
     Interpreter first(library, environment), second(library, environment);
+    std::optional<MotionCode> motion;
     while (true) {
-        Meeting meeting{.before = whole.modal, .after = {}, .alone = {}};
+        Meeting meeting{.before = whole.modal, .after = {}, .alone = {}, .motion = motion};
         const auto block = first.next(whole);
         if (!block || !*block) return std::nullopt;
         const uint32_t line = (*block)->line;
         const bool is_feed_block = feeds(**block);
         const auto other = second.next(alone);
         const bool parted = !other || !*other || (*other)->line != line;
+        const auto& active = whole.modal.motion;
+        const bool goes_on = active && *active <= arc_codes_end && active == meeting.before.motion
+                             && active != alone.modal.motion;
+        if (!motion && goes_on && goes_on_moving(**block)) meeting.motion = motion = active;
         if (!is_feed_block && !parted) continue;
         meeting.after = whole.modal;
         meeting.alone = alone.modal;

@@ -53,7 +53,7 @@ void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
         std::mismatch(off.begin(), off.end(), on.begin(), on.end(),
                       [](const Step& a, const Step& b) { return a.digest == b.digest; });
     if (here == off.end() && there == on.end()) {
-        note->message = "blocks with '/' are run here; the path is the same with the switch on";
+        note->message = "Blocks with '/' are run here; the path is the same with the switch on.";
         note->cure.clear();
         return;
     }

@@ -98,7 +98,11 @@ void look_for_judged_motions(CheckRun& run) {
     finding.severity = core::Severity::error;
     finding.block = first->block;
     finding.message = "No motion of the program could be judged.";
-    finding.cure = "Say where the axes stand at the first block: `start` under [program] in the "
+    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(),
+                                     [](const auto& f) { return f.rule == "first-move"; });
+    finding.cure =
+        !is_lost ? "Mend first what the other findings name."
+                 : "Say where the axes stand at the first block: `start` under [program] in the "
                    "set-up, or the machine's home.";
     run.findings.push_back(finding);
 }
@@ -192,6 +196,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     runner.after_block = job.after_block;
     runner.speed_by_hand = file.speed_by_hand;
     runner.stock_is_stated = stock_is_stated;
+    runner.offsets_stated = file.offsets_set;
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
@@ -205,6 +210,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     check_part(run);
     look_at_both_switch_positions(run, *program, file.environment);
     apply_allowed_rules(run, file.allow_comments);
+    gather_consequences(run, runner.length_doubts());
     return run;
 }
 

@@ -1,5 +1,7 @@
 #include "app/session/program_runner.h"
 
+#include <cctype>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +13,18 @@
 namespace app {
 namespace {
 
+/// As a sentence: with a capital, but for names, and a full stop.
+std::string as_sentence(std::string text) {
+    const auto is_small = [&](size_t i) {
+        return i < text.size()
+               && (std::islower(static_cast<unsigned char>(text[i])) || text[i] == ' ');
+    };
+    if (is_small(0) && is_small(1))
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!text.empty() && text.back() != '.') text += '.';
+    return text;
+}
+
 core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     core::Finding finding;
     finding.rule = warning.rule;
@@ -18,7 +32,7 @@ core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
     if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
         finding.severity = set->second;
-    finding.message = warning.message;
+    finding.message = as_sentence(warning.message);
     finding.cure = warning.cure;
     return finding;
 }
@@ -128,19 +142,27 @@ std::vector<core::Event> ProgramRunner::events_of(const gcode::BlockResult& bloc
     return events;
 }
 
+void ProgramRunner::remark_on(const gcode::BlockResult& block) {
+    for (const gcode::Warning& warning : block.warnings) {
+        // What the set-up states is stated, be it all zero.
+        const auto active = static_cast<int>(place_.modal.offsets.active);
+        if (warning.rule == "work-offset-unset" && offsets_stated.contains(active)) continue;
+        core::Finding finding = remark(run_.setup, warning);
+        finding.block = block.block;
+        if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    }
+}
+
 std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
                                                 core::SimulatorState& state) {
     const std::vector<core::Event> events = events_of(block);
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
                          block.calls, {}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
+    watch_length(lengths_, run_.setup, of_block, block.warnings, state);
     checked.result = core::run_block(run_.setup, of_block, state);
-    for (const gcode::Warning& warning : block.warnings) {
-        core::Finding finding = remark(run_.setup, warning);
-        finding.block = block.block;
-        if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
-    }
+    remark_on(block);
     for (const core::Finding& finding : checked.result.findings) run_.findings.push_back(finding);
     watch_offsets(offsets_, run_.setup, place_, of_block, state);
     watch_units(units_, of_block);

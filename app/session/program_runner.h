@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/check_run.h"
+#include "app/session/length_doubt.h"
 #include "app/session/offset_watch.h"
 #include "app/session/units_watch.h"
 #include "core/sim/block_clock.h"
@@ -21,7 +22,8 @@ public:
 
     std::function<bool(const CheckProgress&)> after_block; // false: stop there
     bool speed_by_hand = false;                            // whatever the program says of it
-    bool stock_is_stated = true; // false: it was made from the program's own cuts
+    std::set<int> offsets_stated; // work offsets that the set-up states, 0 is G54
+    bool stock_is_stated = true;  // false: it was made from the program's own cuts
 
     /// Begins in the middle of the program, at a line or "N210", as a control does that was just
     /// switched on.
@@ -32,7 +34,12 @@ public:
     /// Runs the program to its end or to its first error, which is then in the run.
     void to_the_end(core::SimulatorState& state);
 
+    /// Where the control counted with a wrong length.
+    const std::vector<LengthDoubt>& length_doubts() const { return lengths_.doubts; }
+
 private:
+    /// What the interpreter remarks of a block that was run.
+    void remark_on(const gcode::BlockResult& block);
     void run_blocks(core::SimulatorState& state);
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state);
@@ -59,6 +66,7 @@ private:
     uint32_t last_line_ = 0; // of the main program
     OffsetWatch offsets_ = {};
     UnitsWatch units_ = {};
+    LengthWatch lengths_ = {};
 };
 
 } // namespace app

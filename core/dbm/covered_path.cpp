@@ -103,29 +103,52 @@ Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb
     return path;
 }
 
-} // namespace
-
-bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
-    if (question.sideways <= 0.0) return false;
+/// The moves of a log that can serve, of those with these numbers.
+Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
+                    const PathQuestion& question, double top) {
     const bool upwards = widens_upwards(question.flutes);
     const double height = bounds(question.flutes).max.z;
     const Vec3 up = question.orientation[2];
     const Mat3 tool_from_stock = glm::transpose(question.orientation);
-    // What cut under the path reached up through it, to the stock's top and beyond.
-    const double top = top_along(stock.outer_box, up);
-    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
     Search search;
-    for (const uint32_t number : sweeps_near(stock, path.grown(question.sideways))) {
-        const CutterSweep& sweep = stock.log[number].sweep;
+    for (const uint32_t number : numbers) {
+        const CutterSweep& sweep = log[number].sweep;
         if (sweep.orientation[2] != up) continue;
         if (!same_profile(sweep.cutter->flutes, question.flutes)) continue;
         Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to,
                   question.sideways - sweep.cutter->path_error};
         if (move.near <= 0.0) continue;
+        // What cut under the path reached up through it, to the top of all matter and beyond.
         move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
         search.moves.push_back(move);
     }
+    return search;
+}
+
+bool is_covered(const Search& search, const PathQuestion& question) {
+    const Mat3 tool_from_stock = glm::transpose(question.orientation);
     return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
+}
+
+} // namespace
+
+bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
+    if (question.sideways <= 0.0) return false;
+    const Vec3 up = question.orientation[2];
+    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
+    const auto numbers = sweeps_near(stock, path.grown(question.sideways));
+    return is_covered(search_among(stock.log, numbers, question, top_along(stock.outer_box, up)),
+                      question);
+}
+
+bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuestion& question) {
+    if (question.sideways <= 0.0) return false;
+    const Vec3 up = question.orientation[2];
+    const Aabb path = over_and_under(question.from, question.to, up, box).grown(question.sideways);
+    std::vector<uint32_t> numbers;
+    for (uint32_t number = 0; number < log.size(); ++number)
+        if (overlaps(log.box(number), path)) numbers.push_back(number);
+    return is_covered(search_among(log, numbers, question, top_along(box, up)), question);
 }
 
 } // namespace core

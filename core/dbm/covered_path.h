@@ -24,4 +24,8 @@ struct PathQuestion {
 /// Cost:   the logged moves near the path, times the parts into which it must be divided.
 bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question);
 
+/// The same for another body that the flutes have cut: `box` holds all of it, `log` the moves that
+/// cut it.
+bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuestion& question);
+
 } // namespace core

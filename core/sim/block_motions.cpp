@@ -38,7 +38,9 @@ void BlockRun::check_limits(const Motion& motion) {
              fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} {} beyond its limit.",
                          axis_letters[i], below > above ? range.min[i] : range.max[i], beyond,
                          is_rotary(i) ? "degrees" : "mm"),
-             "Move the work, or use another tool length or work offset.");
+             i == 2         ? "Move the work, or use another tool length or work offset."
+             : is_rotary(i) ? "Turn the work, or reach the same place from the other side."
+                            : "Move the work, or use another work offset.");
     }
 }
 
@@ -115,11 +117,12 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
         watch_centre(motion, leg);
         removed += check.run(leg, result.duration, state.stock, result.pairs);
         legs.push_back({leg, result.duration});
-        if (use(motion) == FluteUse::cutting)
+        if (use(motion) == FluteUse::cutting && !state.watch.length_in_doubt)
             note_reach(state.watch.reaches,
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
                        result.pairs);
     }
+    note_worst(motion.kind);
     result.removed += removed;
     if (before) look_at_rapid(motion, path, *before);
     if (!rapid) look_at_feed(motion, path, removed);

@@ -31,8 +31,8 @@ void BlockRun::forget_bounds() {
 
 void BlockRun::carry_out(const ToolChange& change) {
     // Only the tool that was there knows when it was nearest.
-    if (const PairClearance* worst = deciding_pair(result.pairs))
-        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())]);
+    if (const PairClearance* nearest = deciding_pair(result.pairs))
+        settle_time(*this, result.pairs[static_cast<size_t>(nearest - result.pairs.data())]);
     legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
@@ -53,6 +53,7 @@ void BlockRun::carry_out(const ToolChange& change) {
 void BlockRun::carry_out(const FixtureChange& change) {
     forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
+    state.memory.cuts.erase(change.fixture); // another one may stand there
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
     leg_check(FluteUse::not_cutting)
@@ -66,16 +67,10 @@ void BlockRun::check_tool_change() {
     std::vector<PairClearance> pairs;
     leg_check(FluteUse::not_cutting)
         .rest(path.legs[0].places[0], result.duration, state.stock, pairs);
-    const PairClearance* worst = deciding_pair(pairs);
-    if (!worst || worst->verdict == Verdict::clear) return;
-    find("tool-change-unsafe",
-         fmt::format("Tool {} is changed in where its {} {} only {:.3f} mm from {}; {:.3f} mm must "
-                     "be kept.",
-                     value_of(*state.tool), part_name(setup, worst->pair),
-                     worst->pair.part == PartKind::flutes ? "are" : "is",
-                     worst->found() ? worst->upper : worst->lower, body_name(setup, worst->pair),
-                     worst->allowance.distance),
-         "Move to a safe place, as with G28 or G53 Z0, before the tool change.");
+    const PairClearance* nearest = deciding_pair(pairs);
+    if (!nearest || nearest->verdict == Verdict::clear) return;
+    at_change = nearest->verdict;
+    add(unsafe_change(setup, *nearest, *state.tool));
 }
 
 bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
@@ -89,9 +84,33 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
     return !motion.arc && std::hypot(way(0), way(1)) <= slack + slope * way(2);
 }
 
+void BlockRun::note_worst(MotionKind kind) {
+    for (const PairClearance& pair : result.pairs) {
+        if (pair.verdict == Verdict::clear) continue;
+        const auto known =
+            std::find_if(worst_motions.begin(), worst_motions.end(),
+                         [&](const WorstMotion& one) { return one.pair == pair.pair; });
+        if (known == worst_motions.end())
+            worst_motions.push_back({pair.pair, pair.verdict, pair.upper, kind});
+        else if (pair.verdict > known->verdict || pair.upper < known->upper)
+            *known = {pair.pair, pair.verdict, pair.upper, kind};
+    }
+}
+
+BlockMove BlockRun::move_of(const PairClearance& pair) const {
+    BlockMove move{result.motion, turns, result.duration, only_dog_leg};
+    if (move.motion != BlockMotion::cycle) return move;
+    move.within = block.goes_home  ? MoveWithin::way_home
+                  : block.is_cycle ? MoveWithin::cycle
+                                   : MoveWithin::block;
+    for (const WorstMotion& one : worst_motions)
+        if (one.pair == pair.pair && one.kind == MotionKind::rapid)
+            move.motion = BlockMotion::rapid;
+    return move;
+}
+
 Finding BlockRun::finding_about(const PairClearance& pair) const {
-    Finding finding =
-        finding_of(setup, pair, {result.motion, turns, result.duration, only_dog_leg}, state);
+    Finding finding = finding_of(setup, pair, move_of(pair), state);
     if (pair.pair != Pair{PartKind::flutes} || pair.verdict != Verdict::collision) return finding;
     if (drills_sideways) {
         finding.rule = "collision";
@@ -119,11 +138,15 @@ void BlockRun::conclude() {
                   return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
                          < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
-    if (const PairClearance* worst = deciding_pair(result.pairs)) {
-        result.deciding = static_cast<size_t>(worst - result.pairs.data());
-        settle_time(*this, result.pairs[*result.deciding]);
-        result.verdict = worst->verdict;
+    if (const PairClearance* nearest = deciding_pair(result.pairs)) {
+        result.deciding = static_cast<size_t>(nearest - result.pairs.data());
+        result.verdict = nearest->verdict;
     }
+    for (PairClearance& pair : result.pairs)
+        if (pair.verdict != Verdict::clear
+            || (result.deciding && &pair == &result.pairs[*result.deciding]))
+            settle_time(*this, pair);
+    result.verdict = std::max(result.verdict, at_change);
     if (result.motion != BlockMotion::none) {
         CheckMemory& memory = state.memory;
         memory.bounds.clear();

@@ -12,6 +12,14 @@ struct TimedLeg {
     double start; // seconds after the block's start
 };
 
+/// A pair that does not keep its allowance, and the kind of motion in which it is worst.
+struct WorstMotion {
+    Pair pair;
+    Verdict verdict = Verdict::clear;
+    double upper = infinity;
+    MotionKind kind = MotionKind::rapid;
+};
+
 /// A block while it is carried out.
 struct BlockRun {
     const Setup& setup;
@@ -19,8 +27,10 @@ struct BlockRun {
     SimulatorState& state;
     BlockResult result = {};
     std::vector<TimedLeg> legs = {};
-    bool turns = false;         // rotary axes move
-    bool pushes_centre = false; // down into the stock, where the tool does not cut
+    std::vector<WorstMotion> worst_motions = {};
+    Verdict at_change = Verdict::clear; // of the new tool where it was changed in
+    bool turns = false;                 // rotary axes move
+    bool pushes_centre = false;         // down into the stock, where the tool does not cut
     bool drills_sideways = false;
     bool only_dog_leg = false; // straight, a rapid of this block would be free
 
@@ -79,6 +89,9 @@ struct BlockRun {
     void look_at_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
     void watch_centre(const Motion& motion, const Leg& leg);
+    void note_worst(MotionKind kind);
+    /// The motion that a finding about the pair speaks of.
+    BlockMove move_of(const PairClearance& pair) const;
     Finding finding_about(const PairClearance& pair) const;
     void check_tool_change();
     void forget_bounds();

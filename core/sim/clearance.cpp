@@ -44,11 +44,13 @@ double contact_shrink(const Allowance& allowance, const RevolvedProfile& part) {
 }
 
 void merge(PairClearance& known, const PairClearance& later) {
+    // What only touched before and collides now is seen at the collision.
+    const bool is_worse = later.verdict > known.verdict && later.upper == known.upper;
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
     known.at_end = later.lower;
     known.drift = 0.0;
-    if (later.upper >= known.upper) return;
+    if (later.upper >= known.upper && !(is_worse && later.found())) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;
     known.on_body = later.on_body;

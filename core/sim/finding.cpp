@@ -1,7 +1,10 @@
 #include "core/sim/finding.h"
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "core/sim/verdict.h"
 
@@ -50,6 +53,21 @@ constexpr std::array<std::pair<const char*, Severity>, 37> rules = {{
     {"program", Severity::warning},
 }};
 
+/// How many letters must be changed, put in or left out.
+size_t letters_apart(const std::string& a, const std::string& b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = std::exchange(row[0], i + 1);
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+        }
+    }
+    return row.back();
+}
+
 } // namespace
 
 const char* name_of(Severity severity) {
@@ -82,6 +100,13 @@ std::optional<Severity> default_severity(const std::string& rule) {
     for (const auto& [name, severity] : rules)
         if (rule == name) return severity;
     return std::nullopt;
+}
+
+std::string nearest_rule(const std::string& name) {
+    const auto* nearest = std::min_element(rules.begin(), rules.end(), [&](auto& a, auto& b) {
+        return letters_apart(name, a.first) < letters_apart(name, b.first);
+    });
+    return nearest->first;
 }
 
 } // namespace core

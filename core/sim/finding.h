@@ -30,4 +30,8 @@ using RuleSeverities = std::map<std::string, Severity>;
 /// The severity a rule has unless the set-up says otherwise; empty for a name that is no rule.
 std::optional<Severity> default_severity(const std::string& rule);
 
+/// The rule whose name takes the fewest letters changed, put in or left out to make it from this
+/// one.
+std::string nearest_rule(const std::string& name);
+
 } // namespace core

@@ -33,9 +33,19 @@ std::string way_out(const PairClearance& pair, double missing) {
                        away[axis] > 0.0 ? '+' : '-');
 }
 
-std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body) {
+std::string cure_of_rapid(MoveWithin within) {
+    if (within == MoveWithin::way_home)
+        return "Retract along the tool first, as with G91 G28 Z0 or G53 G0 Z0; then the other axes "
+               "go home.";
+    if (within == MoveWithin::cycle)
+        return "Raise the plane from which the cycle feeds and to which it retracts.";
+    return "Raise the retract height, or feed through the material.";
+}
+
+std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body,
+                    MoveWithin within) {
     const bool fixture = pair.pair.fixture.has_value();
-    if (rule == "rapid-in-stock") return "Raise the retract height, or feed through the material.";
+    if (rule == "rapid-in-stock") return cure_of_rapid(within);
     if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
     if (rule == "spindle-off")
         return "Start the spindle the right way round before the tool feeds into the stock.";
@@ -51,6 +61,8 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     if (!room.empty()) return fmt::format("{} would do{}.", room, move);
     if (pair.pair.part == PartKind::machine)
         return "Move the work, or use a longer tool: a part of the machine comes too near.";
+    if (pair.pair.part == PartKind::shank && !fixture)
+        return "Longer flutes, a slimmer shank or neck, or less depth.";
     if (pair.pair.part != PartKind::flutes && !fixture)
         return "A longer stick-out or a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
@@ -62,25 +74,55 @@ std::string range(double low, double high) {
     return fmt::format("{:.3f} to {:.3f}", low, high);
 }
 
+/// Whose rapid it is.
+const char* words_for_rapid(MoveWithin within) {
+    switch (within) {
+    case MoveWithin::way_home:
+        return "On the way to the reference point (G28, G30), a rapid, the";
+    case MoveWithin::cycle:
+        return "On a rapid of this cycle, the";
+    case MoveWithin::block:
+        return "On a rapid within this block, the";
+    default:
+        return "On a rapid, the";
+    }
+}
+
+std::string rapid_into_stock(const std::string& part, MoveWithin within) {
+    const char* whose = within == MoveWithin::way_home
+                            ? " on the way to the reference point (G28, G30)"
+                        : within == MoveWithin::cycle ? " on a rapid of this cycle"
+                        : within == MoveWithin::block ? " on a rapid within this block"
+                                                      : "";
+    return fmt::format("Rapid into material: the {} runs into the stock{}.", part, whose);
+}
+
+/// When in its block something happens.
+std::string how_far(double at) {
+    if (at < 0.005) return "right at its start";
+    return fmt::format("{:.0f} % of the way", 100.0 * at);
+}
+
 std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
     const char* kind = move.only_dog_leg ? "Straight this rapid would be free, but the axes do not "
                                            "arrive together: the"
                        : move.turns      ? "While rotary axes turn, the"
-                       : move.motion == BlockMotion::rapid ? "On a rapid, the"
+                       : move.motion == BlockMotion::rapid ? words_for_rapid(move.within)
                                                            : "The";
-    if (rule == "rapid-in-stock")
-        return fmt::format("Rapid into material: the {} runs into the stock.", part);
+    if (rule == "rapid-in-stock") return rapid_into_stock(part, move.within);
     if (rule == "spindle-off")
         return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
-        return fmt::format("{} {} runs into {}, {:.0f} % of the way.", kind, part, body,
-                           100.0 * at);
+        return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
     if (pair.verdict == Verdict::violation)
         return fmt::format(
             "{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.", kind, part,
             body, range(pair.lower, pair.upper), pair.allowance.distance,
             range(pair.allowance.distance - pair.upper, pair.allowance.distance - pair.lower));
+    if (pair.allowance.distance <= resolution)
+        return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
+                           kind, part, body);
     return fmt::format("{} {} may be as near to {} as {:.3f} mm; {:.3f} mm must be kept.", kind,
                        part, body, pair.lower, pair.allowance.distance);
 }
@@ -92,6 +134,38 @@ std::string in_the_plural(std::string message) {
         if (const size_t at = message.find(one); at != std::string::npos)
             message.replace(at, std::string(one).size(), many);
     return message;
+}
+
+/// What a sentence calls a body.
+std::string body_in_words(const Setup& setup, const Pair& pair) {
+    return pair.fixture ? body_name(setup, pair) : "the stock";
+}
+
+/// What a tool that was just changed in does to the body.
+std::string change_message(const PairClearance& pair, ToolNumber tool, const std::string& part,
+                           const std::string& body) {
+    const bool many = pair.pair.part == PartKind::flutes;
+    const int number = value_of(tool);
+    if (pair.verdict == Verdict::collision)
+        return fmt::format("Tool {} is changed in where its {} {} in {}.", number, part,
+                           many ? "stand" : "stands", body);
+    if (pair.verdict == Verdict::violation)
+        return fmt::format("Tool {} is changed in where its {} {} only {} mm from {}; {:.3f} mm "
+                           "must be kept.",
+                           number, part, many ? "are" : "is", range(pair.lower, pair.upper), body,
+                           pair.allowance.distance);
+    return fmt::format("Tool {} is changed in where its {} may be as near to {} as {:.3f} mm; "
+                       "{:.3f} mm must be kept.",
+                       number, part, body, pair.lower, pair.allowance.distance);
+}
+
+/// Whatever it is called, a collision is never passed over.
+Severity severity_about(const Setup& setup, const PairClearance& pair, const std::string& rule) {
+    return pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, rule);
+}
+
+double shortfall_of(const PairClearance& pair) {
+    return pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
 }
 
 } // namespace
@@ -113,21 +187,29 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
     if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
     const std::string& part = part_name(setup, pair.pair);
-    const std::string& body = body_name(setup, pair.pair);
+    const std::string body = body_in_words(setup, pair.pair);
     const double at = move.duration > 0.0 ? pair.time / move.duration : 0.0;
     Finding finding;
     finding.rule = rule_of(pair, move, spindle_runs);
-    // Whatever it is called, a collision is never passed over.
-    finding.severity =
-        pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, finding.rule);
+    finding.severity = severity_about(setup, pair, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
-    finding.cure = cure_of(pair, finding.rule, body);
-    finding.pair = {part, body};
-    finding.shortfall =
-        pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
+    finding.cure = cure_of(pair, finding.rule, body, move.within);
+    finding.pair = {part, body_name(setup, pair.pair)};
+    finding.shortfall = shortfall_of(pair);
     if (!finding.cure.empty())
         finding.cure[0] =
             static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
+    return finding;
+}
+
+Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool) {
+    Finding finding;
+    finding.rule = "tool-change-unsafe";
+    finding.severity = severity_about(setup, pair, finding.rule);
+    finding.pair = {part_name(setup, pair.pair), body_name(setup, pair.pair)};
+    finding.message = change_message(pair, tool, finding.pair[0], body_in_words(setup, pair.pair));
+    finding.cure = "Move to a safe place, as with G28 or G53 Z0, before the tool change.";
+    finding.shortfall = shortfall_of(pair);
     return finding;
 }
 

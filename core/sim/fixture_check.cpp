@@ -1,3 +1,4 @@
+#include "core/dbm/covered_path.h"
 #include "core/sim/leg_check.h"
 #include "core/sim/pair_entry.h"
 
@@ -82,12 +83,56 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     check_fixture(stretch(leg, 0.5, 1.0), start, fixture, body, pairs);
 }
 
-bool LegCheck::may_meet(const MovingBody& body, size_t fixture,
-                        std::vector<PairClearance>& pairs) const {
+std::optional<Aabb> LegCheck::box_beside_stock(size_t fixture) const {
+    const Fixture& body = setup_.fixtures[fixture];
+    if (body.mount.link != setup_.stock_mount.link) return std::nullopt;
+    const Transform stock_from = stock_from_fixture(setup_, body, {});
+    const Aabb own = bounds(body.body);
+    Aabb box;
+    for (int corner = 0; corner < 8; ++corner)
+        box.extend(stock_from
+                   * Vec3(corner & 1 ? own.max.x : own.min.x, corner & 2 ? own.max.y : own.min.y,
+                          corner & 4 ? own.max.z : own.min.z));
+    return box;
+}
+
+void LegCheck::note_cut(const Leg& leg, size_t fixture) {
+    if (!leg.straight || leg.places.size() < 2) return;
+    const auto box = box_beside_stock(fixture);
+    const RelativeLeg way = against_stock(bodies_[0], leg);
+    if (!box || way.turns || !overlaps(bounds(bodies_[0], way), *box)) return;
+    memory_.cuts[fixture].push_back({.cutter = cutter_for(way),
+                                     .from = way.places.front(),
+                                     .to = way.places.back(),
+                                     .orientation = way.orientation,
+                                     .block = value_of(block_)});
+}
+
+bool LegCheck::is_in_own_cut(const Leg& leg, size_t fixture) const {
+    const auto cuts = memory_.cuts.find(fixture);
+    if (cuts == memory_.cuts.end() || !leg.straight) return false;
+    const RelativeLeg way = against_stock(bodies_[0], leg);
+    if (way.turns || way.places.size() > 2) return false;
+    const auto box = box_beside_stock(fixture);
+    const Allowance contact = allowance_of(setup_, {PartKind::flutes});
+    return box
+           && runs_in_own_cut(cuts->second, *box,
+                              {.flutes = tool_.parts[0].profile,
+                               .from = way.places.front(),
+                               .to = way.places.back(),
+                               .sideways = 0.5 * contact_depth(contact) - way.error,
+                               .orientation = way.orientation});
+}
+
+bool LegCheck::may_meet(const Leg& leg, const MovingBody& body, size_t fixture,
+                        std::vector<PairClearance>& pairs) {
     if (!fixtures_there_[fixture] || is_exempt(setup_.machine, body, setup_.fixtures[fixture]))
         return false;
-    const bool chips = body.kind == PartKind::flutes && use_ == FluteUse::cutting;
-    if (!chips || !setup_.fixtures[fixture].expendable) return true;
+    if (body.kind != PartKind::flutes || !setup_.fixtures[fixture].expendable) return true;
+    if (use_ == FluteUse::cutting)
+        note_cut(leg, fixture);
+    else if (!is_in_own_cut(leg, fixture))
+        return true;
     let_pass(pair_of(body, fixture), pairs);
     return false;
 }
@@ -97,7 +142,8 @@ void LegCheck::check_fixtures(const Leg& leg, double start, std::vector<PairClea
     for (const bool likely : {true, false})
         for (size_t fixture = 0; fixture < setup_.fixtures.size(); ++fixture)
             for (const MovingBody& body : bodies_)
-                if ((first == pair_of(body, fixture)) == likely && may_meet(body, fixture, pairs))
+                if ((first == pair_of(body, fixture)) == likely
+                    && may_meet(leg, body, fixture, pairs))
                     check_fixture(leg, start, fixture, body, pairs);
 }
 

@@ -207,8 +207,7 @@ void LegCheck::conclude(const BodyCheck& check, const Leg& leg, double start, co
     const bool is_told = check.before.whole && !cut;
     const Observation after = is_told ? check.before : look_again(check, leg, stock);
     PairClearance now = clearance(check.body, leg, start, check.before, after);
-    if (now.verdict == Verdict::collision)
-        now.time = start + leg.begin + earliest(leg, now.pair, 0.0, stock) * (leg.end - leg.begin);
+    settle_time(now, leg, start, stock);
     merge(known, now);
     known.drift = travel_;
 }
@@ -269,7 +268,8 @@ bool LegCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
         if (says_nothing(known, pairs)) continue;
         if (stays_away(known, leg, against_stock(*body, leg))) continue;
         const Observation seen = observe(*body, leg, stock, known.upper);
-        const PairClearance now = clearance(*body, leg, start, seen, seen);
+        PairClearance now = clearance(*body, leg, start, seen, seen);
+        if (body->kind != PartKind::flutes) settle_time(now, leg, start, stock);
         gouged = gouged || (body->kind == PartKind::flutes && now.verdict == Verdict::collision);
         merge(known, now);
         known.drift = travel_;
@@ -369,34 +369,6 @@ void LegCheck::rest(const AxisValues& place, double time, const CutModel& stock,
     for (PairClearance& pair : pairs) pair.at_end = -infinity; // nobody says how it came here
     check_fixtures(leg, time, pairs);
     check_bodies(leg, time, stock, pairs);
-}
-
-double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
-                          std::optional<double> seen) {
-    if (!leg.straight || leg.places.size() < 2) return 0.0;
-    const MovingBody& body = body_of(pair);
-    const Mount& target = pair.fixture ? setup_.fixtures[*pair.fixture].mount : setup_.stock_mount;
-    const auto reached = [&](double share) {
-        const RelativeLeg moved =
-            relative_leg(setup_.machine, target, body.mover, stretch(leg, 0.0, share));
-        if (moved.error == infinity) return true;
-        const double limit = distance + moved.error + resolution;
-        const Separation found =
-            pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
-                                         limit + resolution, statistics_.shape_tests)
-                         : to_stock(body, moved, stock, {.limit = limit + resolution});
-        return found.upper <= limit;
-    };
-    // Mostly it is where it was seen, and not before.
-    constexpr double step = 1e-4;
-    double before = 0.0, after = 1.0;
-    if (seen && (*seen <= step || !reached(*seen - step))) return *seen;
-    if (reached(0.0)) return 0.0;
-    for (int i = 0; i < 24; ++i) {
-        const double middle = 0.5 * (before + after);
-        (reached(middle) ? after : before) = middle;
-    }
-    return after;
 }
 
 } // namespace core

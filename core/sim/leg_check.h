@@ -1,36 +1,12 @@
 #pragma once
 
-#include <map>
-
-#include "core/dbm/cut_model.h"
 #include "core/distance/stock_distance.h"
-#include "core/sim/clearance.h"
+#include "core/sim/check_memory.h"
 #include "core/sim/moving_body.h"
 #include "core/sim/path.h"
 #include "core/sim/statistics.h"
 
 namespace core {
-
-/// What a pair keeps apart at least, where the machine stands now.
-struct PairBound {
-    Pair pair;
-    double apart = 0.0;
-    double drift = 0.0; // the way since the pair was measured
-};
-
-/// What a check keeps from leg to leg to be faster; no verdict depends on it.
-struct CheckMemory {
-    /// Cutting takes nothing nearer, and a motion no more than it is long: so bounds hold from
-    /// block to block, until a tool or a fixture is changed.
-    std::vector<PairBound> bounds;
-    std::optional<Pair> deciding; // the pair that decided the last block: likely the next one, too
-    double margin = 0.0;          // of that pair
-
-    /// Where each kind of body last met the stock most nearly: a good place to look first.
-    std::array<std::optional<LineId>, 5> hints;
-    /// Cutters made ready, by the tool's number and the path error they allow for.
-    std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
-};
 
 /// No point of any body goes farther over a leg, as any other body sees it, mm; infinite where
 /// rotary axes move or the way is not known.
@@ -113,7 +89,14 @@ private:
 
     void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
     /// Whether a body and a fixture are a pair that must keep apart over this leg.
-    bool may_meet(const MovingBody& body, size_t fixture, std::vector<PairClearance>& pairs) const;
+    bool may_meet(const Leg& leg, const MovingBody& body, size_t fixture,
+                  std::vector<PairClearance>& pairs);
+    /// The box of an expendable fixture that stands still against the stock, in the stock's frame.
+    std::optional<Aabb> box_beside_stock(size_t fixture) const;
+    /// Writes down what the flutes cut of an expendable fixture.
+    void note_cut(const Leg& leg, size_t fixture);
+    /// Whether the flutes go only where they have cut the fixture before.
+    bool is_in_own_cut(const Leg& leg, size_t fixture) const;
     void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
     /// What is known of a body and a fixture over a leg, from one look at the whole of it.
@@ -166,6 +149,9 @@ private:
     /// Adds what is known of a body after the cut.
     void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
                   bool cut, std::vector<PairClearance>& pairs);
+    /// Puts a pair that does not keep its allowance to the first of the moments at which it is as
+    /// near, whatever the search saw: what is left of the stock decides, before it is cut further.
+    void settle_time(PairClearance& now, const Leg& leg, double start, const CutModel& stock);
     /// Looks at a body that was not looked at before the cut, if it matters after all.
     void look_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
                    std::vector<PairClearance>& pairs);

@@ -68,6 +68,7 @@ struct BlockEvents {
     BlockIndex block{};
     bool is_cycle = false; // one block with several motions: a canned cycle, G28
     std::span<const Event> events;
+    bool goes_home = false; // G28 or G30
 };
 
 /// The state before the first block, with the machine at `position`.

@@ -65,7 +65,12 @@ double needed(const CutLeg& cut, PartKind from, double known) {
     return high;
 }
 
-double top_of_flutes(const ToolAssembly& tool) { return bounds(tool.parts[0].profile).max.z; }
+/// As long as whoever described the tool says, else as their shape is high: some reach a little
+/// into the neck for the sake of the check.
+double top_of_flutes(const ToolAssembly& tool) {
+    const double stated = tool.description.flute_length;
+    return stated > 0.0 ? stated : bounds(tool.parts[0].profile).max.z;
+}
 
 double stick_out_of(const ToolAssembly& tool) {
     for (const ToolPart& part : tool.parts)
@@ -78,6 +83,7 @@ double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0;
 
 std::string in_blocks(const ToolReach& reach) {
     if (reach.looks > enough) return " in the first of these blocks, the others were not tried";
+    if (reach.blocks == 2) return " in both blocks";
     return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
 }
 

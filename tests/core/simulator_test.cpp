@@ -186,8 +186,9 @@ TEST(Simulator, LetsFeedingFlutesCutAnExpendableFixture) {
         {"tab", posed(convex(ProfileElement{-30, 5, 12, 5, 0}), translation({150, 50, 0})), true});
     Shift run(setup);
     run.rapid({130, 50, 2.5});
-    EXPECT_EQ(run.feed({150, 50, 2.5}).verdict, Verdict::clear);
-    EXPECT_EQ(run.rapid({130, 50, 2.5}).verdict, Verdict::collision);
+    EXPECT_EQ(run.feed({146, 50, 2.5}).verdict, Verdict::clear);
+    EXPECT_EQ(run.rapid({130, 50, 2.5}).verdict, Verdict::clear); // by the way it came
+    EXPECT_EQ(run.rapid({150, 57, 2.5}).verdict, Verdict::collision);
 }
 
 TEST(Simulator, LooksAtANewToolWhereItIsChangedIn) {

@@ -36,7 +36,15 @@ core::Result<Restart> restarted(uint32_t line, std::optional<core::ToolNumber> t
 
 TEST(Restart, ListsWhatTheFirstCutNeeds) {
     EXPECT_THAT(restarted(8)->missing, ElementsAre("T3 in the spindle", "G43 H3", "G55", "S4500 M3",
-                                                   "M8", "F200", "the tool at Y20 Z-5"));
+                                                   "M8", "G1", "F200", "the tool at Y20 Z-5"));
+}
+
+TEST(Restart, ListsTheMotionCodeThatABlockOnTheWayGoesOnWith) {
+    EXPECT_THAT(restarted(8)->missing, testing::Contains("G1"));
+    // A control that was just switched on begins with G0.
+    EXPECT_THAT(restarted(6)->missing, testing::Not(testing::Contains("G0")));
+    EXPECT_THAT(restarted(9)->missing, testing::Not(testing::Contains(testing::StartsWith("G2"))));
+    EXPECT_THAT(restarted(7)->missing, testing::Not(testing::Contains("G1")));
 }
 
 TEST(Restart, DoesNotListWhatTheBlockItselfSays) {

@@ -32,15 +32,22 @@ bool says(const Checked& checked, const std::string& what) {
                        [&](const std::string& text) { return text.find(what) != text.npos; });
 }
 
+/// The names alone.
+std::vector<std::string> names_in(const std::string& line) {
+    std::vector<std::string> names;
+    for (const app::AllowedRule& rule : app::allowed_rules(line)) names.push_back(rule.name);
+    return names;
+}
+
 TEST(AllowedRules, AreReadFromCommentsOnly) {
-    EXPECT_THAT(app::allowed_rules("G0 X5. (feeler: allow rapid-near-clamp)"),
+    EXPECT_THAT(names_in("G0 X5. (feeler: allow rapid-near-clamp)"),
                 ElementsAre("rapid-near-clamp"));
-    EXPECT_THAT(app::allowed_rules("G0 X5 ; FEELER:ALLOW near-miss, air-cut"),
+    EXPECT_THAT(names_in("G0 X5 ; FEELER:ALLOW near-miss, air-cut"),
                 ElementsAre("near-miss", "air-cut"));
-    EXPECT_THAT(app::allowed_rules("(a) X5 (feeler: allow near-miss) (feeler: allow air-cut)"),
+    EXPECT_THAT(names_in("(a) X5 (feeler: allow near-miss) (feeler: allow air-cut)"),
                 ElementsAre("near-miss", "air-cut"));
-    EXPECT_THAT(app::allowed_rules("(feeler gauge)"), IsEmpty());
-    EXPECT_THAT(app::allowed_rules("feeler: allow near-miss"), IsEmpty());
+    EXPECT_THAT(names_in("(feeler gauge)"), IsEmpty());
+    EXPECT_THAT(names_in("feeler: allow near-miss"), IsEmpty());
 }
 
 TEST(AllowedRules, CountWhereTheSetUpPermitsIt) {
@@ -74,6 +81,30 @@ TEST(AllowedRules, NeverCoverACollision) {
               program({"G0 X-20. Y50.", "Z-5.", "X120. (feeler: allow rapid-in-stock)", "Z60."}));
     EXPECT_EQ(checked.errors(), "rapid-in-stock 8");
     EXPECT_TRUE(says(checked, "a collision is never allowed"));
+}
+
+TEST(AllowedRules, SayWhichNameIsNoRule) {
+    const Checked wrong =
+        checked_with("(feeler: allow rapid-near-clmp)", "allow_comments = true\n");
+    EXPECT_EQ(wrong.errors(), "rapid-near-clamp 8");
+    EXPECT_EQ(wrong.of_severity("warning"), "program 8");
+    for (const FindingLine& finding : wrong.findings) {
+        if (finding.rule != "program") continue;
+        EXPECT_THAT(finding.message, testing::HasSubstr("Line 8, column 22: "));
+        EXPECT_THAT(finding.message, testing::HasSubstr("rapid-near-clmp"));
+        EXPECT_EQ(finding.cure, "Write rapid-near-clamp if that is meant.");
+    }
+}
+
+TEST(AllowedRules, SayOnceWhichCommentIsNotPermittedAlsoWhereNothingWasFound) {
+    const Checked checked =
+        check(past_a_clamp("allow_comments = false\n"),
+              program({"G0 X-20. Y97.8", "Z60. ; feeler: allow near-miss", "M98 P2000 L3"})
+                  + "O2000\nX120. (feeler: allow near-miss)\nX-20.\nM99\n");
+    EXPECT_EQ(checked.errors(), "");
+    EXPECT_EQ(checked.of_severity("warning"), "");
+    EXPECT_THAT(checked.of_severity("note"), testing::HasSubstr("program 7, program 11"));
+    EXPECT_EQ(checked.status, 0);
 }
 
 TEST(AllowedRules, SayWhichSeveritiesTheSetUpChanged) {
