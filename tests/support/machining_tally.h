@@ -186,9 +186,8 @@ private:
             until = known_.world.certain_removal(block, slack, p);
         }
         const Nearness near = nearness(known_.world, block, pair, p, until, core::infinity);
-        // A witness on the edge of a cut may be gone, to within the slack, while it is nearest.
-        constexpr double width = 1e-3;
-        if (near.distance > claim.upper + width)
+        constexpr double rounding = 1e-6;
+        if (near.distance > claim.upper + rounding)
             fail("the witness is as near as upper says", describe(claim, {p, near}));
         if (claim.verdict == core::Verdict::collision && near.distance > 1e-6)
             fail("what collides overlaps", describe(claim, {p, near}));
