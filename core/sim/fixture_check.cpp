@@ -25,8 +25,9 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
     const Allowance& allowance = known.allowance;
     const double limit =
         std::min(setup_.search_limit, known.upper) + (relative.turns ? relative.error : 0.0);
-    const Separation found = widened(
-        distance_over(relative, body, fixture.body, limit, statistics_.shape_tests), relative);
+    const Separation seen =
+        distance_over(relative, body, fixture.body, limit, statistics_.shape_tests);
+    const Separation found = widened(seen, relative);
     PairClearance now{.pair = known.pair, .allowance = allowance};
     now.lower = std::min(found.lower, setup_.search_limit);
     if (found.found()) {
@@ -39,18 +40,46 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
     }
     now.verdict = judge_distance(allowance, now.lower, now.upper);
     const bool may_touch = allowance.distance <= resolution && now.lower <= 0.0;
-    if (now.upper > 0.0 && !may_touch) return now;
+    if (seen.upper > 0.0 && !may_touch) return now;
     if (!body.profile) {
-        now.verdict = judge_contact(allowance, now.lower, now.upper);
+        if (may_touch || now.upper == 0.0)
+            now.verdict = judge_contact(allowance, now.lower, now.upper);
         return now;
     }
-    const RevolvedProfile inner =
-        shrunk_around(*body.profile, contact_shrink(allowance, *body.profile));
-    const Separation shrunk = widened(
-        distance_over(relative, inner, fixture.body, setup_.search_limit, statistics_.shape_tests),
-        relative);
-    now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
+    const auto look = [&](const RevolvedProfile& part) {
+        return distance_over(relative, part, fixture.body, setup_.search_limit,
+                             statistics_.shape_tests);
+    };
+    if (seen.upper == 0.0 && relative.error > 0.0) {
+        const RevolvedProfile sure = surely_passing(*body.profile, relative);
+        if (!sure.empty() && look(sure).upper == 0.0) now.upper = 0.0;
+    }
+    if (now.upper > 0.0 && !may_touch) return now;
+    const Separation inner =
+        look(shrunk_around(*body.profile, contact_shrink(allowance, *body.profile)));
+    const bool collides = inner.upper == 0.0 && now.upper == 0.0;
+    const Separation shrunk = widened(inner, relative);
+    now.verdict = judge_contact(allowance, shrunk.lower, collides ? 0.0 : shrunk.upper);
     return now;
+}
+
+void LegCheck::check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                             PairClearance& known) {
+    constexpr double sharp = 1e-3, finest = 1e-5; // mm: of the interval, of a chord's error
+    const Mount& mount = setup_.fixtures[fixture].mount;
+    const RelativeLeg relative = relative_leg(setup_.machine, mount, body.mover, leg);
+    PairClearance now = look_at_fixture(leg, start, relative, body, known);
+    const double nearest = std::min({known.upper, now.upper, setup_.search_limit});
+    const bool is_told =
+        now.verdict == Verdict::undecided ? relative.error <= finest : now.lower >= nearest - sharp;
+    if (is_told || !leg.arc.motion || now.verdict == Verdict::collision) return merge(known, now);
+    if (now.lower <= 0.0) {
+        const Leg still = still_half_way(leg);
+        const RelativeLeg here = relative_leg(setup_.machine, mount, body.mover, still);
+        const PairClearance there = look_at_fixture(still, start, here, body, known);
+        if (there.verdict == Verdict::collision) return merge(known, there);
+    }
+    for (const Leg& half : halves(leg)) check_passage(half, start, fixture, body, known);
 }
 
 void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
@@ -61,7 +90,7 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     const RelativeLeg relative =
         relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, leg);
     if (stays_away(known, leg, relative)) return;
-    if (!relative.turns) return merge(known, look_at_fixture(leg, start, relative, body, known));
+    if (!relative.turns) return check_passage(leg, start, fixture, body, known);
     // A body that turns: half of the way at a time, until it is far or seen sharply enough.
     const double apart = distance(bounds(body, relative), bounds(setup_.fixtures[fixture].body));
     if (is_far(known, apart, setup_.search_limit)) return;

@@ -74,18 +74,6 @@ Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, co
     return found.separation;
 }
 
-void LegCheck::look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
-                             const CutModel& stock, double nearest) {
-    // Where the body really is at one moment is a sure witness.
-    const Observation here = observe(body, still_half_way(leg), stock, nearest);
-    seen.shrunk.upper = here.shrunk.upper;
-    if (here.plain.upper >= seen.plain.upper) return;
-    const double lower = seen.plain.lower;
-    seen.plain = here.plain;
-    seen.plain.lower = std::min(lower, here.plain.upper);
-    seen.plain.time_a = 0.5;
-}
-
 LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
                                         const CutModel& stock, double nearest) {
     const Allowance allowance = allowance_of(setup_, pair_of(body));
@@ -107,10 +95,7 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     } else if (seen.plain.upper == 0.0) {
         seen.shrunk = seen.plain;
     }
-    const bool near = seen.plain.lower <= error;
-    seen.plain = widened(seen.plain, relative);
-    seen.shrunk = widened(seen.shrunk, relative);
-    if (relative.turns && near) look_half_way(seen, body, leg, stock, nearest);
+    if (error > 0.0) make_sure(seen, body, leg, relative, stock, nearest);
     return seen;
 }
 

@@ -116,6 +116,9 @@ private:
     bool may_meet(const MovingBody& body, size_t fixture, std::vector<PairClearance>& pairs) const;
     void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
+    /// The same of a leg on which nothing turns, divided while that makes the answer sharper.
+    void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                       PairClearance& known);
     /// What is known of a body and a fixture over a leg, from one look at the whole of it.
     PairClearance look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
                                   const MovingBody& body, const PairClearance& known);
@@ -158,6 +161,10 @@ private:
                         double nearest);
     void look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
                        const CutModel& stock, double nearest);
+    /// Takes the error of a leg into account: an overlap stays one only if it is found where the
+    /// body really goes.
+    void make_sure(Observation& seen, const MovingBody& body, const Leg& leg,
+                   const RelativeLeg& relative, const CutModel& stock, double nearest);
     /// Whether the body goes only where the flutes have cut before (see runs_in_own_cut).
     bool retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                   const Allowance& allowance) const;
