@@ -70,8 +70,8 @@ void LegCheck::check_passage(const Leg& leg, double start, size_t fixture, const
     const RelativeLeg relative = relative_leg(setup_.machine, mount, body.mover, leg);
     PairClearance now = look_at_fixture(leg, start, relative, body, known);
     const double nearest = std::min({known.upper, now.upper, setup_.search_limit});
-    const bool is_told =
-        now.verdict == Verdict::undecided ? relative.error <= finest : now.lower >= nearest - sharp;
+    const bool is_told = relative.error <= finest
+                         || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp);
     if (is_told || !leg.arc.motion || now.verdict == Verdict::collision) return merge(known, now);
     if (now.lower <= 0.0) {
         const Leg still = still_half_way(leg);
