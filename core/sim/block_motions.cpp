@@ -120,6 +120,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
                        result.pairs);
     }
+    check.settle(result.pairs);
     result.removed += removed;
     if (before) look_at_rapid(motion, path, *before);
     if (!rapid) look_at_feed(motion, path, removed);

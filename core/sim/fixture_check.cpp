@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/sim/leg_check.h"
 #include "core/sim/pair_entry.h"
 
@@ -63,23 +65,55 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
     return now;
 }
 
-void LegCheck::check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                             PairClearance& known) {
-    constexpr double sharp = 1e-3, finest = 1e-5; // mm: of the interval, of a chord's error
-    const Mount& mount = setup_.fixtures[fixture].mount;
-    const RelativeLeg relative = relative_leg(setup_.machine, mount, body.mover, leg);
-    PairClearance now = look_at_fixture(leg, start, relative, body, known);
+bool LegCheck::is_sharp(const PairClearance& now, const PairClearance& known) const {
+    constexpr double sharp = 1e-3; // mm
     const double nearest = std::min({known.upper, now.upper, setup_.search_limit});
-    const bool is_told = relative.error <= finest
-                         || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp);
-    if (is_told || !leg.arc.motion || now.verdict == Verdict::collision) return merge(known, now);
-    if (now.lower <= 0.0) {
-        const Leg still = still_half_way(leg);
-        const RelativeLeg here = relative_leg(setup_.machine, mount, body.mover, still);
-        const PairClearance there = look_at_fixture(still, start, here, body, known);
+    return now.verdict == Verdict::collision
+           || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp);
+}
+
+void LegCheck::check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                             const RelativeLeg& relative, PairClearance& known) {
+    PairClearance now = look_at_fixture(leg, start, relative, body, known);
+    if (!leg.arc.motion || is_sharp(now, known)) return merge(known, now);
+    doubtful_.push_back({leg, start, fixture, &body, now});
+    // Its lower bound waits for `settle`: another chord may turn out to be nearer.
+    const double lower = now.lower;
+    now.lower = infinity;
+    now.verdict = Verdict::clear;
+    merge(known, now);
+    known.at_end = lower;
+}
+
+void LegCheck::divide(const Doubtful& doubt, PairClearance& known) {
+    const Mount& mount = setup_.fixtures[doubt.fixture].mount;
+    const auto look = [&](const Leg& leg) {
+        const RelativeLeg relative = relative_leg(setup_.machine, mount, doubt.body->mover, leg);
+        return look_at_fixture(leg, doubt.start, relative, *doubt.body, known);
+    };
+    constexpr double finest = 1e-5; // mm, of a chord's error
+    if (is_sharp(doubt.seen, known) || doubt.leg.path_error <= finest)
+        return merge(known, doubt.seen);
+    if (doubt.seen.lower <= 0.0) {
+        const PairClearance there = look(still_half_way(doubt.leg));
         if (there.verdict == Verdict::collision) return merge(known, there);
     }
-    for (const Leg& half : halves(leg)) check_passage(half, start, fixture, body, known);
+    for (const Leg& half : halves(doubt.leg))
+        divide({half, doubt.start, doubt.fixture, doubt.body, look(half)}, known);
+}
+
+void LegCheck::settle(std::vector<PairClearance>& pairs) {
+    std::stable_sort(doubtful_.begin(), doubtful_.end(), [](const Doubtful& a, const Doubtful& b) {
+        return a.seen.lower < b.seen.lower;
+    });
+    for (const Doubtful& doubt : doubtful_) {
+        PairClearance& known = entry(pairs, doubt.seen.pair, setup_);
+        const double at_end = known.at_end, drift = known.drift;
+        divide(doubt, known);
+        known.at_end = at_end;
+        known.drift = drift;
+    }
+    doubtful_.clear();
 }
 
 void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
@@ -90,7 +124,7 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     const RelativeLeg relative =
         relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, leg);
     if (stays_away(known, leg, relative)) return;
-    if (!relative.turns) return check_passage(leg, start, fixture, body, known);
+    if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: half of the way at a time, until it is far or seen sharply enough.
     const double apart = distance(bounds(body, relative), bounds(setup_.fixtures[fixture].body));
     if (is_far(known, apart, setup_.search_limit)) return;

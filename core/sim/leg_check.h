@@ -66,6 +66,9 @@ public:
     /// Result: the volume removed, mm3.
     double run(const Leg& leg, double start, CutModel& stock, std::vector<PairClearance>& pairs);
 
+    /// Divides the chords that left a doubt about a fixture. To be called behind the last leg.
+    void settle(std::vector<PairClearance>& pairs);
+
     /// A lower bound of how near the flutes come to the stock over a leg, up to `limit`; 0 where
     /// the leg turns too far to say.
     double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
@@ -116,9 +119,22 @@ private:
     bool may_meet(const MovingBody& body, size_t fixture, std::vector<PairClearance>& pairs) const;
     void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
-    /// The same of a leg on which nothing turns, divided while that makes the answer sharper.
+    /// A chord of an arc that leaves a doubt about a fixture, and what was seen of it.
+    struct Doubtful {
+        Leg leg;
+        double start;
+        size_t fixture;
+        const MovingBody* body;
+        PairClearance seen;
+    };
+
+    /// The same of a leg on which nothing turns. A chord that leaves a doubt waits for `settle`.
     void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                       PairClearance& known);
+                       const RelativeLeg& relative, PairClearance& known);
+    /// Whether what was seen of a leg tells enough of a pair of which this is known.
+    bool is_sharp(const PairClearance& now, const PairClearance& known) const;
+    /// Adds what is known of a chord when it has been halved for as long as it leaves a doubt.
+    void divide(const Doubtful& doubt, PairClearance& known);
     /// What is known of a body and a fixture over a leg, from one look at the whole of it.
     PairClearance look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
                                   const MovingBody& body, const PairClearance& known);
@@ -204,7 +220,8 @@ private:
     Statistics& statistics_;
     std::vector<MovingBody> bodies_;
     double travel_ = infinity; // no point goes farther over the leg that is being checked, mm
-    bool only_tool_ = false;   // bodies of the machine have been held against the stock already
+    std::vector<Doubtful> doubtful_;
+    bool only_tool_ = false; // bodies of the machine have been held against the stock already
 };
 
 } // namespace core
