@@ -7,16 +7,16 @@
 namespace core {
 namespace {
 
-/// The place of the witness in time, at its earliest, where several moments are equally near.
-void settle_time(BlockRun& run, PairClearance& pair) {
+/// The place of the witness in time, at its earliest, where several moments are equally near:
+/// `nearest` is how near it is on the programmed way.
+void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
     if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time <= begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
-        const double share =
-            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
+        const double share = check.earliest(timed.leg, pair.pair, nearest, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
     }
@@ -32,7 +32,8 @@ void BlockRun::forget_bounds() {
 void BlockRun::carry_out(const ToolChange& change) {
     // Only the tool that was there knows when it was nearest.
     if (const PairClearance* worst = deciding_pair(result.pairs))
-        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())]);
+        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())],
+                    worst->upper);
     legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
@@ -48,6 +49,12 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Tool {} is called, but the set-up does not describe it.",
                          value_of(*change.tool)),
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
+}
+
+void BlockRun::carry_out(const PathModeChange& change) {
+    if (change_mode(state.corners, change, setup.machine))
+        state.assumptions.insert("corners are passed as programmed where G64 states no tolerance "
+                                 "and the machine no corner_tolerance");
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
@@ -119,9 +126,13 @@ void BlockRun::conclude() {
                   return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
                          < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
+    for (PairClearance& pair : result.pairs) widen(pair, off_path, state.corners);
     if (const PairClearance* worst = deciding_pair(result.pairs)) {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
-        settle_time(*this, result.pairs[*result.deciding]);
+        const double off = off_way(worst->pair, off_path, state.corners);
+        settle_time(*this, result.pairs[*result.deciding],
+                    worst->verdict == Verdict::collision ? worst->upper
+                                                         : std::max(0.0, worst->upper - off));
         result.verdict = worst->verdict;
     }
     if (result.motion != BlockMotion::none) {

@@ -81,7 +81,8 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     const double error = relative.error;
     const double limit = std::min(setup_.search_limit, nearest) + (relative.turns ? error : 0.0);
     Observation seen{.travel = relative.travel};
-    const double threshold = deciding_distance(allowance) + (relative.turns ? error : 0.0);
+    const double threshold =
+        deciding_distance(allowance) + off_path(allowance) + (relative.turns ? error : 0.0);
     seen.plain = to_stock(body, relative, stock, threshold, limit);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
     if (may_touch && retraces(body, relative, stock, allowance)) {
@@ -105,11 +106,11 @@ LegCheck::Observation LegCheck::observe_lower(const MovingBody& body, const Leg&
     if (relative.turns) return observe(body, leg, stock, nearest);
     const Allowance allowance = allowance_of(setup_, pair_of(body));
     const double limit = std::min(setup_.search_limit, nearest);
-    const double threshold = deciding_distance(allowance);
+    const double threshold = deciding_distance(allowance) + off_path(allowance);
     Observation seen{.travel = relative.travel, .whole = false};
     seen.plain = widened(to_stock(body, relative, stock, threshold, limit, 0.0, StockBound::lower),
                          relative);
-    if (seen.plain.lower <= allowance.distance + resolution)
+    if (seen.plain.lower <= allowance.distance + resolution + off_path(allowance))
         return observe(body, leg, stock, nearest);
     return seen;
 }

@@ -26,6 +26,8 @@ struct CheckMemory {
     std::optional<Pair> deciding; // the pair that decided the last block: likely the next one, too
     double margin = 0.0;          // of that pair
 
+    double off_path = 0.0; // that is taken off every lower bound behind the block, mm
+
     /// Where each kind of body last met the stock most nearly: a good place to look first.
     std::array<std::optional<LineId>, 5> hints;
     /// Cutters made ready, by the tool's number and the path error they allow for.
@@ -102,6 +104,10 @@ private:
     /// Whether a lower bound shows that.
     bool is_beside_the_point(const Allowance& allowance, double lower,
                              const std::vector<PairClearance>& pairs) const;
+    /// What must be kept on top, of a pair that must keep apart.
+    double off_path(const Allowance& allowance) const {
+        return allowance.distance > resolution ? memory_.off_path : 0.0;
+    }
     /// Whether a pair will say nothing if the block decides about as the last one did.
     bool says_likely_nothing(const PairClearance& known) const;
     /// The bodies, that of the pair with the stock or a fixture which decided the last block first.

@@ -49,6 +49,7 @@ struct MachineBody {
 struct Machine {
     std::array<MachineAxis, axis_count> axes = three_axes();
     RapidStyle rapid = RapidStyle::straight;
+    std::optional<double> corner_tolerance; // mm, where the program states none
     LinkId spindle = link_of(2); // what carries the tool
     LinkId table = LinkId::base; // what carries the work
     std::vector<MachineBody> bodies;
