@@ -39,6 +39,13 @@ private:
     size_t count_ = 0;
 };
 
+/// A box for the general search; matter on a line is a segment to it.
+ConvexShape convex_body(const Aabb& box) {
+    const Vec3 size = box.size();
+    const int flat = int(size.x == 0.0) + int(size.y == 0.0) + int(size.z == 0.0);
+    return flat >= 2 ? convex_segment(box.min, box.max) : convex(box);
+}
+
 /// One search: several shapes against one stock.
 class StockSearch {
 public:
@@ -53,11 +60,13 @@ public:
 
     StockSeparation run() {
         if (goal_.first_line) search_line(*goal_.first_line);
-        if (goal_.bound != StockBound::lower)
+        const double found = std::min(upper_.upper, promised_.bound);
+        if (goal_.bound != StockBound::lower && found > goal_.enough)
             for (int axis = 0; axis < 3; ++axis) search_lines(axis);
         keep_promise();
         lower_ = 0.0;
         if (goal_.bound != StockBound::upper) search_columns();
+        if (goal_.bound == StockBound::lower) search_lines_of_nearest_cell();
         if (goal_.bound != StockBound::upper && lower_ < goal_.threshold
             && upper_.upper >= goal_.threshold)
             refine_columns();
@@ -77,18 +86,23 @@ private:
         return bound;
     }
 
-    /// Distance of the nearest shape to a convex body, tight only where it is below `limit`.
-    Separation nearest(const ConvexShape& body, const Aabb& box, double limit) {
+    /// Distance of the nearest shape to a box, tight only where it is below `limit`.
+    Separation nearest(const Aabb& box, double limit) {
         Separation best;
         double lower = infinity;
         for (size_t i = 0; i < shapes_.size(); ++i) {
-            if (const double bound = distance_bound(outlines_[i], box, limit); bound >= limit) {
+            const ShapeOutline& mine = outlines_[i];
+            const double bound =
+                mine.exact ? distance(mine.box, box) : distance_bound(mine, box, limit);
+            if (bound >= limit) {
                 lower = std::min(lower, bound);
                 continue;
             }
             ++result_.shape_tests;
-            const Separation found =
-                core::separation(shapes_[i], body, {.tolerance = same, .limit = limit});
+            const SeparationGoal goal{.tolerance = same, .limit = limit};
+            const Separation found = mine.exact
+                                         ? core::separation(mine.sweep, box, goal)
+                                         : core::separation(shapes_[i], convex_body(box), goal);
             lower = std::min(lower, found.lower);
             if (found.upper < best.upper) best = found;
         }
@@ -166,17 +180,17 @@ private:
 
     /// Matter that is certainly there, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
-        const double bound = box_bound({glm::min(a, b), glm::max(a, b)}, line_limit());
+        const Aabb matter{glm::min(a, b), glm::max(a, b)};
+        const double bound = box_bound(matter, line_limit());
         if (bound >= line_limit()) return;
         if (is_exact_)
-            promised_ = {bound, a, b}; // the witness is found once, at the end
+            promised_ = {bound, matter}; // the witness is found once, at the end
         else
-            measure(a, b, line_limit());
+            measure(matter, line_limit());
     }
 
-    void measure(const Vec3& a, const Vec3& b, double limit) {
-        const Separation found =
-            nearest(convex_segment(a, b), {glm::min(a, b), glm::max(a, b)}, limit);
+    void measure(const Aabb& matter, double limit) {
+        const Separation found = nearest(matter, limit);
         if (found.upper < upper_.upper) upper_ = found;
     }
 
@@ -184,7 +198,7 @@ private:
     void keep_promise() {
         if (promised_.bound == infinity) return;
         const Promise line = std::exchange(promised_, {});
-        measure(line.a, line.b, std::min(goal_.limit, upper_.upper));
+        measure(line.matter, std::min(goal_.limit, upper_.upper));
     }
 
     void search_columns() {
@@ -194,10 +208,22 @@ private:
         const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
         for_near_tiles(stock_.column_boxes, limit, [&](size_t tile) {
             for_columns(tile, limit, [&](int i, int j, const Square& square) {
-                lower_ = std::min(lower_, bound_of(square, stock_.columns.line(i, j), limit()));
+                const double bound = bound_of(square, stock_.columns.line(i, j), limit());
+                if (bound < lower_) nearest_cell_ = {i, j};
+                lower_ = std::min(lower_, bound);
             });
         });
         lower_ = std::max(0.0, limit());
+    }
+
+    /// Matter by the nearest column, for the next search to begin with.
+    void search_lines_of_nearest_cell() {
+        const auto [i, j] = nearest_cell_;
+        const ScanLines& lines = stock_.lines.families[2];
+        for (int v = std::max(j - 1, 0); v <= std::min(j, lines.v_count() - 1); ++v)
+            for (int u = std::max(i - 1, 0); u <= std::min(i, lines.u_count() - 1); ++u)
+                search_line({2, u, v});
+        keep_promise();
     }
 
     template <typename Limit, typename Act>
@@ -220,8 +246,7 @@ private:
                 bound = std::min(bound, here);
                 continue;
             }
-            bound =
-                std::min(bound, is_exact_ ? here - same : nearest(convex(box), box, limit).lower);
+            bound = std::min(bound, is_exact_ ? here - same : nearest(box, limit).lower);
         }
         return bound;
     }
@@ -272,13 +297,14 @@ private:
     /// Matter on a line that is this far away, as outlines say.
     struct Promise {
         double bound = infinity;
-        Vec3 a = Vec3(0.0), b = Vec3(0.0);
+        Aabb matter;
     };
 
     Separation upper_;
     Promise promised_;
     double lower_ = infinity;
     double refined_lower_ = infinity;
+    std::pair<int, int> nearest_cell_{-1, -1}; // of the column that gave `lower_`
     StockSeparation result_;
 };
 

@@ -21,6 +21,7 @@ enum class StockBound : uint8_t { both, lower, upper };
 struct StockGoal {
     double limit = 50.0; // mm: beyond it nobody asks
     StockBound bound = StockBound::both;
+    double enough = 0.0;         // mm: of an upper bound no greater, no lesser one is looked for
     double threshold = 0.0;      // mm: the interval is narrowed until it lies on one side of this
     double finest = 0.03;        // mm: squares are not divided below this side
     size_t work_limit = 100'000; // squares that may be worked out afresh

@@ -54,19 +54,18 @@ double LegCheck::finest_error(const MovingBody& body) const {
 }
 
 Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                              double threshold, double limit, double shrink, StockBound bound) {
+                              StockGoal goal, double shrink) {
     // Most bodies of a machine are far away, and made of many triangles.
-    if (body.body && distance(bounds(body, leg), stock.outer_box) >= limit) return {.lower = limit};
+    if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
+        return {.lower = goal.limit};
     const std::vector<ConvexShape> shapes =
         !body.profile  ? shapes_of(*body.body, leg)
         : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
                        : shapes_of(*body.profile, leg);
     std::optional<LineId>& hint = memory_.hints[static_cast<size_t>(body.kind)];
-    const StockSeparation found = separation(shapes, stock,
-                                             {.limit = limit,
-                                              .bound = bound,
-                                              .threshold = std::min(threshold, limit),
-                                              .first_line = hint});
+    goal.first_line = hint;
+    goal.threshold = std::min(goal.threshold, goal.limit);
+    const StockSeparation found = separation(shapes, stock, goal);
     if (found.line) hint = found.line;
     statistics_.box_tests += found.box_tests;
     statistics_.shape_tests += found.shape_tests;
@@ -83,14 +82,15 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     Observation seen{.travel = relative.travel};
     const double threshold =
         deciding_distance(allowance) + off_path(allowance) + (relative.turns ? error : 0.0);
-    seen.plain = to_stock(body, relative, stock, threshold, limit);
+    seen.plain = to_stock(body, relative, stock, {.limit = limit, .threshold = threshold});
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
     if (may_touch && retraces(body, relative, stock, allowance)) {
         seen.shrunk.lower = infinity; // no stock where the shrunk part goes
     } else if (body.profile && (may_touch || seen.plain.upper == 0.0)) {
         const double just_apart = resolution + error;
-        seen.shrunk = to_stock(body, relative, stock, just_apart, 2.0 * just_apart,
-                               contact_shrink(allowance, *body.profile));
+        seen.shrunk =
+            to_stock(body, relative, stock, {.limit = 2.0 * just_apart, .threshold = just_apart},
+                     contact_shrink(allowance, *body.profile));
         // What meets a part of the body meets the body, though its own search ended before.
         if (seen.shrunk.upper == 0.0) seen.plain = seen.shrunk;
     } else if (seen.plain.upper == 0.0) {
@@ -108,8 +108,8 @@ LegCheck::Observation LegCheck::observe_lower(const MovingBody& body, const Leg&
     const double limit = std::min(setup_.search_limit, nearest);
     const double threshold = deciding_distance(allowance) + off_path(allowance);
     Observation seen{.travel = relative.travel, .whole = false};
-    seen.plain = widened(to_stock(body, relative, stock, threshold, limit, 0.0, StockBound::lower),
-                         relative);
+    const StockGoal goal{.limit = limit, .bound = StockBound::lower, .threshold = threshold};
+    seen.plain = widened(to_stock(body, relative, stock, goal), relative);
     if (seen.plain.lower <= allowance.distance + resolution + off_path(allowance))
         return observe(body, leg, stock, nearest);
     return seen;
@@ -208,7 +208,7 @@ void LegCheck::look_late(const MovingBody& body, const Leg& leg, double start,
     const RelativeLeg flutes = against_stock(bodies_[0], leg);
     const double limit = std::min(setup_.search_limit, known.upper);
     Observation seen;
-    seen.plain = widened(to_stock(body, relative, stock, 0.0, limit), relative);
+    seen.plain = widened(to_stock(body, relative, stock, {.limit = limit}), relative);
     const double taken = distance(bounds(body, relative), bounds(bodies_[0], flutes));
     const double carried = known.at_end - travel_;
     const double fresh = std::min(seen.plain.lower, taken - resolution);
@@ -240,8 +240,9 @@ LegCheck::Observation LegCheck::look_again(const BodyCheck& check, const Leg& le
     after.plain = Separation{.lower = after.plain.lower};
     if (after.plain.lower >= limit) return after;
     const RelativeLeg relative = against_stock(check.body, leg);
-    after.plain = widened(to_stock(check.body, relative, stock, 0.0, limit, 0.0, StockBound::upper),
-                          relative);
+    const StockGoal goal{
+        .limit = limit, .bound = StockBound::upper, .enough = after.plain.lower + resolution};
+    after.plain = widened(to_stock(check.body, relative, stock, goal), relative);
     return after;
 }
 
@@ -342,9 +343,8 @@ double LegCheck::room_of_flutes(const Leg& leg, const CutModel& stock, double li
     if (tool_.parts.empty() || !leg.straight) return 0.0;
     const RelativeLeg way = against_stock(bodies_[0], leg);
     if (way.error >= limit) return 0.0;
-    const double far = limit + way.error;
-    return std::max(0.0, to_stock(bodies_[0], way, stock, far, far, 0.0, StockBound::lower).lower
-                             - way.error);
+    const StockGoal goal{.limit = limit + way.error, .bound = StockBound::lower};
+    return std::max(0.0, to_stock(bodies_[0], way, stock, goal).lower - way.error);
 }
 
 void LegCheck::rest(const AxisValues& place, double time, const CutModel& stock,
@@ -368,7 +368,7 @@ double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, con
         const Separation found =
             pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
                                          limit + resolution, statistics_.shape_tests)
-                         : to_stock(body, moved, stock, 0.0, limit + resolution);
+                         : to_stock(body, moved, stock, {.limit = limit + resolution});
         return found.upper <= limit;
     };
     // Mostly it is where it was seen, and not before.

@@ -146,8 +146,7 @@ private:
                                   const MovingBody& body, const PairClearance& known);
 
     Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                        double threshold, double limit, double shrink = 0.0,
-                        StockBound bound = StockBound::both);
+                        StockGoal goal, double shrink = 0.0);
 
     /// The same as `observe`, without an upper bound if the lower one tells enough.
     Observation observe_lower(const MovingBody& body, const Leg& leg, const CutModel& stock,

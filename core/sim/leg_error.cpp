@@ -29,7 +29,8 @@ void LegCheck::make_sure(Observation& seen, const MovingBody& body, const Leg& l
     if (sure.empty()) return;
     MovingBody inner = body;
     inner.profile = &sure;
-    Separation found = to_stock(inner, relative, stock, 0.0, resolution, 0.0, StockBound::upper);
+    Separation found =
+        to_stock(inner, relative, stock, {.limit = resolution, .bound = StockBound::upper});
     if (found.upper > 0.0) return;
     found.lower = 0.0;
     seen.plain = found;

@@ -38,7 +38,7 @@ bool LegCheck::is_seen_from_afar(const Leg& leg, double start, const CutModel& s
         const double nearest = known && !chips ? known->upper : infinity;
         Observation look{.travel = relative.travel};
         const double limit = std::min(setup_.search_limit, nearest) + relative.error;
-        look.plain = widened(to_stock(body, relative, stock, 0.0, limit), relative);
+        look.plain = widened(to_stock(body, relative, stock, {.limit = limit}), relative);
         const double lower = look.plain.lower;
         if (lower <= 0.0) return false;
         if (chips) continue;

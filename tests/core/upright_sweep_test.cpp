@@ -1,0 +1,119 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/distance/upright_sweep.h"
+
+namespace core {
+namespace {
+
+/// Numbers of a lattice as often as not, so that faces, rims and edges lie in one plane.
+class Dice {
+public:
+    double length(double most) {
+        const double any = std::uniform_real_distribution<double>(0.0, most)(rng_);
+        return rng_() % 2 ? any : std::round(2.0 * any) / 2.0;
+    }
+    double place(double most) { return length(2.0 * most) - most; }
+    bool chance(unsigned one_in) { return rng_() % one_in == 0; }
+
+    UprightSweep sweep() {
+        UprightSweep s;
+        s.element.z0 = place(2.0);
+        s.element.z1 = s.element.z0 + (chance(5) ? 0.0 : length(4.0));
+        s.element.r0 = length(2.0);
+        s.element.r1 = chance(2) ? s.element.r0 : length(2.0);
+        if (chance(6)) s.element.r0 = 0.0;
+        if (chance(3)) s.element.margin = length(1.0);
+        s.from = {place(6.0), place(6.0), place(6.0)};
+        for (int axis = 0; axis < 3; ++axis)
+            if (chance(2)) s.by[axis] = place(5.0);
+        return s;
+    }
+    Aabb box() {
+        Aabb b;
+        b.min = {place(2.0), place(2.0), place(2.0)};
+        b.max = b.min;
+        for (int axis = 0; axis < 3; ++axis)
+            if (!chance(3)) b.max[axis] += length(4.0);
+        return b;
+    }
+
+private:
+    std::mt19937 rng_{20'261};
+};
+
+ConvexShape shape_of(const UprightSweep& sweep) {
+    const Vec3 places[] = {sweep.from, sweep.from + sweep.by};
+    return swept(convex(sweep.element), places);
+}
+
+/// How far a point is outside a piece that stands still, from its definition.
+double outside(const ProfileElement& element, const Vec3& p) {
+    const double r = std::hypot(p.x, p.y);
+    double least = infinity;
+    constexpr int steps = 2000;
+    for (int i = 0; i <= steps; ++i) {
+        const double share = double(i) / steps;
+        const double z = element.z0 + share * (element.z1 - element.z0);
+        const double wide = element.r0 + share * (element.r1 - element.r0);
+        const double inner = element.z0 == element.z1 ? std::max(element.r0, element.r1) : wide;
+        least = std::min(least, std::hypot(std::max(0.0, r - inner), p.z - z));
+    }
+    return std::max(0.0, least - element.margin);
+}
+
+TEST(UprightSweep, IsAsFarFromABoxAsTheGeneralSearchSays) {
+    Dice dice;
+    for (int i = 0; i < 200'000; ++i) {
+        const UprightSweep sweep = dice.sweep();
+        const Aabb box = dice.box();
+        const Separation found = separation(sweep, box, {.tolerance = 1e-9});
+        const Separation truth = separation(shape_of(sweep), convex(box), {.tolerance = 1e-9});
+        ASSERT_LE(found.lower, truth.upper + 1e-8) << i;
+        ASSERT_GE(found.upper, truth.lower - 1e-8) << i;
+        ASSERT_LE(found.lower, found.upper) << i;
+        ASSERT_LE(found.upper - found.lower, 1e-8) << i;
+    }
+}
+
+TEST(UprightSweep, GivesPointsOfThePieceAndTheBox) {
+    Dice dice;
+    for (int i = 0; i < 3'000; ++i) {
+        const UprightSweep sweep = dice.sweep();
+        const Aabb box = dice.box();
+        const Separation found = separation(sweep, box);
+        ASSERT_NEAR(glm::length(found.point_a - found.point_b), found.upper, 1e-9) << i;
+        ASSERT_LE(distance_squared(found.point_b, box), 1e-18) << i;
+        const Vec3 here = sweep.from + found.time_a * sweep.by;
+        ASSERT_LE(outside(sweep.element, found.point_a - here), 2e-3) << i;
+    }
+}
+
+TEST(UprightSweep, StaysBelowTheDistanceWhereALimitEndsTheSearch) {
+    Dice dice;
+    for (int i = 0; i < 100'000; ++i) {
+        const UprightSweep sweep = dice.sweep();
+        const Aabb box = dice.box();
+        const double limit = dice.length(6.0);
+        const double distance = separation(sweep, box, {.tolerance = 1e-9}).upper;
+        const double bound = distance_bound(sweep, box, limit);
+        ASSERT_LE(bound, distance + 1e-9) << i;
+        ASSERT_GE(bound, std::min(limit, distance) - 2e-7) << i;
+    }
+}
+
+TEST(UprightSweep, FindsTheMomentOnASlope) {
+    // A cylinder that climbs past an edge: 5 - 8 t beside it and 1 + 6 t above it.
+    const UprightSweep sweep{{.z0 = 0, .r0 = 1, .z1 = 5, .r1 = 1}, {-6, 0, 2}, {8, 0, 6}};
+    const Separation found = separation(sweep, {{0, -1, 0}, {1, 1, 1}}, {.tolerance = 1e-12});
+    EXPECT_NEAR(found.upper, 3.8, 1e-9);
+    EXPECT_NEAR(found.lower, 3.8, 1e-9);
+    EXPECT_NEAR(found.time_a, 0.34, 1e-6);
+    EXPECT_NEAR(found.point_b.x, 0.0, 1e-12);
+    EXPECT_NEAR(found.point_b.z, 1.0, 1e-12);
+    EXPECT_NEAR(found.point_a.z, 4.04, 1e-5);
+}
+
+} // namespace
+} // namespace core
