@@ -210,6 +210,7 @@ struct Visitor {
         if (command.mode == PathMode::exact_path) change.blending = core::Blending::exact_path;
         if (command.mode == PathMode::exact_stop) change.blending = core::Blending::exact_stop;
         if (command.tolerance > 0.0) change.tolerance = command.tolerance;
+        change.joining = command.naive_tolerance;
         events.emplace_back(change);
     }
     void operator()(const EnableOverride&) {}

@@ -171,6 +171,9 @@ void read_machine(TableReader& table, core::Machine& machine, const MeshSource& 
         read_machine_body(body, machine, source);
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
         machine.rapid = *rapid == "dogleg" ? core::RapidStyle::dogleg : core::RapidStyle::straight;
+    machine.corner_tolerance = table.number("corner_tolerance");
+    if (machine.corner_tolerance && *machine.corner_tolerance < 0.0)
+        table.refuse("corner_tolerance", "must be 0 or above");
     check_directions(table, machine);
     table.finish();
 }

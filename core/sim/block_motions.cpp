@@ -44,6 +44,17 @@ void BlockRun::check_limits(const Motion& motion) {
     }
 }
 
+void BlockRun::round_corners(const Motion& motion) {
+    RoundedCorners& corners = state.corners;
+    if (corners.by == 0.0) return;
+    off_path = std::max(off_path, corners.by);
+    if (use(motion) == FluteUse::cutting) corners.of_cuts = std::max(corners.of_cuts, corners.by);
+    state.assumptions.insert(
+        fmt::format("feeds may be up to {:g} mm off their programmed way while the control rounds "
+                    "corners (G64): clearances say so",
+                    corners.by));
+}
+
 void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     std::vector<PairClearance> pairs;
@@ -74,6 +85,8 @@ void BlockRun::carry_out(const Motion& motion) {
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
     if (motion.from != state.position) forget_bounds();
+    if (motion.kind != MotionKind::rapid && tool()) round_corners(motion);
+    state.memory.off_path = off_path + state.corners.of_cuts;
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
@@ -122,6 +135,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
                        result.pairs);
     }
+    check.settle(result.pairs);
     note_worst(motion.kind);
     result.removed += removed;
     if (before) look_at_rapid(motion, path, *before);

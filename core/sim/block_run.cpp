@@ -7,16 +7,16 @@
 namespace core {
 namespace {
 
-/// The place of the witness in time, at its earliest, where several moments are equally near.
-void settle_time(BlockRun& run, PairClearance& pair) {
+/// The place of the witness in time, at its earliest, where several moments are equally near:
+/// `nearest` is how near it is on the programmed way.
+void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
     if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
     for (const TimedLeg& timed : run.legs) {
         const double begin = timed.start + timed.leg.begin, end = timed.start + timed.leg.end;
         if (pair.time <= begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
-        const double share =
-            check.earliest(timed.leg, pair.pair, pair.upper, run.state.stock, seen);
+        const double share = check.earliest(timed.leg, pair.pair, nearest, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + share * (end - begin));
         return;
     }
@@ -31,8 +31,9 @@ void BlockRun::forget_bounds() {
 
 void BlockRun::carry_out(const ToolChange& change) {
     // Only the tool that was there knows when it was nearest.
-    if (const PairClearance* nearest = deciding_pair(result.pairs))
-        settle_time(*this, result.pairs[static_cast<size_t>(nearest - result.pairs.data())]);
+    if (const PairClearance* worst = deciding_pair(result.pairs))
+        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())],
+                    worst->upper);
     legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
@@ -48,6 +49,12 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Tool {} is called, but the set-up does not describe it.",
                          value_of(*change.tool)),
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
+}
+
+void BlockRun::carry_out(const PathModeChange& change) {
+    if (change_mode(state.corners, change, setup.machine))
+        state.assumptions.insert("corners are passed as programmed where G64 states no tolerance "
+                                 "and the machine no corner_tolerance");
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
@@ -138,14 +145,18 @@ void BlockRun::conclude() {
                   return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
                          < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
-    if (const PairClearance* nearest = deciding_pair(result.pairs)) {
-        result.deciding = static_cast<size_t>(nearest - result.pairs.data());
-        result.verdict = nearest->verdict;
+    std::vector<double> on_the_way; // how near each pair is where the program goes
+    for (PairClearance& pair : result.pairs) {
+        on_the_way.push_back(pair.upper);
+        widen(pair, off_path, state.corners);
     }
-    for (PairClearance& pair : result.pairs)
-        if (pair.verdict != Verdict::clear
-            || (result.deciding && &pair == &result.pairs[*result.deciding]))
-            settle_time(*this, pair);
+    if (const PairClearance* worst = deciding_pair(result.pairs)) {
+        result.deciding = static_cast<size_t>(worst - result.pairs.data());
+        result.verdict = worst->verdict;
+    }
+    for (size_t i = 0; i < result.pairs.size(); ++i)
+        if (result.pairs[i].verdict != Verdict::clear || result.deciding == i)
+            settle_time(*this, result.pairs[i], on_the_way[i]);
     result.verdict = std::max(result.verdict, at_change);
     if (result.motion != BlockMotion::none) {
         CheckMemory& memory = state.memory;

@@ -32,6 +32,7 @@ struct BlockRun {
     bool turns = false;                 // rotary axes move
     bool pushes_centre = false;         // down into the stock, where the tool does not cut
     bool drills_sideways = false;
+    double off_path = 0.0;     // that rounded corners may take its feeds, mm
     bool only_dog_leg = false; // straight, a rapid of this block would be free
 
     const ToolAssembly* tool() const {
@@ -81,7 +82,7 @@ struct BlockRun {
     void carry_out(const SpindleChange& change) { state.spindle = change; }
     void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
     void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
-    void carry_out(const PathModeChange&) {} // moves nothing; BlockClock needs it
+    void carry_out(const PathModeChange& change);
     void carry_out(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
@@ -96,6 +97,7 @@ struct BlockRun {
     void check_tool_change();
     void forget_bounds();
     void check_limits(const Motion& motion);
+    void round_corners(const Motion& motion);
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
 };

@@ -24,6 +24,8 @@ struct CheckMemory {
     std::optional<Pair> deciding; // the pair that decided the last block: likely the next one, too
     double margin = 0.0;          // of that pair
 
+    double off_path = 0.0; // that is taken off every lower bound behind the block, mm
+
     /// Where each kind of body last met the stock most nearly: a good place to look first.
     std::array<std::optional<LineId>, 5> hints;
     /// Cutters made ready, by the tool's number and the path error they allow for.

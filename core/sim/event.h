@@ -67,6 +67,7 @@ enum class Blending : uint8_t { exact_stop, exact_path, continuous };
 struct PathModeChange {
     Blending blending = Blending::continuous;
     std::optional<double> tolerance; // mm; empty: not stated
+    double joining = 0.0;            // short moves this near to a line may be joined to it, mm
 };
 
 /// A fixture that somebody puts there or takes away, by its index in the set-up.

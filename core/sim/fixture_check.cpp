@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/dbm/covered_path.h"
 #include "core/sim/leg_check.h"
 #include "core/sim/pair_entry.h"
@@ -26,8 +28,9 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
     const Allowance& allowance = known.allowance;
     const double limit =
         std::min(setup_.search_limit, known.upper) + (relative.turns ? relative.error : 0.0);
-    const Separation found = widened(
-        distance_over(relative, body, fixture.body, limit, statistics_.shape_tests), relative);
+    const Separation seen =
+        distance_over(relative, body, fixture.body, limit, statistics_.shape_tests);
+    const Separation found = widened(seen, relative);
     PairClearance now{.pair = known.pair, .allowance = allowance};
     now.lower = std::min(found.lower, setup_.search_limit);
     if (found.found()) {
@@ -40,18 +43,78 @@ PairClearance LegCheck::look_at_fixture(const Leg& leg, double start, const Rela
     }
     now.verdict = judge_distance(allowance, now.lower, now.upper);
     const bool may_touch = allowance.distance <= resolution && now.lower <= 0.0;
-    if (now.upper > 0.0 && !may_touch) return now;
+    if (seen.upper > 0.0 && !may_touch) return now;
     if (!body.profile) {
-        now.verdict = judge_contact(allowance, now.lower, now.upper);
+        if (may_touch || now.upper == 0.0)
+            now.verdict = judge_contact(allowance, now.lower, now.upper);
         return now;
     }
-    const RevolvedProfile inner =
-        shrunk_around(*body.profile, contact_shrink(allowance, *body.profile));
-    const Separation shrunk = widened(
-        distance_over(relative, inner, fixture.body, setup_.search_limit, statistics_.shape_tests),
-        relative);
-    now.verdict = judge_contact(allowance, shrunk.lower, shrunk.upper);
+    const auto look = [&](const RevolvedProfile& part) {
+        return distance_over(relative, part, fixture.body, setup_.search_limit,
+                             statistics_.shape_tests);
+    };
+    if (seen.upper == 0.0 && relative.error > 0.0) {
+        const RevolvedProfile sure = surely_passing(*body.profile, relative);
+        if (!sure.empty() && look(sure).upper == 0.0) now.upper = 0.0;
+    }
+    if (now.upper > 0.0 && !may_touch) return now;
+    const Separation inner =
+        look(shrunk_around(*body.profile, contact_shrink(allowance, *body.profile)));
+    const bool collides = inner.upper == 0.0 && now.upper == 0.0;
+    const Separation shrunk = widened(inner, relative);
+    now.verdict = judge_contact(allowance, shrunk.lower, collides ? 0.0 : shrunk.upper);
     return now;
+}
+
+bool LegCheck::is_sharp(const PairClearance& now, const PairClearance& known) const {
+    constexpr double sharp = 1e-3; // mm
+    const double nearest = std::min({known.upper, now.upper, setup_.search_limit});
+    return now.verdict == Verdict::collision
+           || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp);
+}
+
+void LegCheck::check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                             const RelativeLeg& relative, PairClearance& known) {
+    PairClearance now = look_at_fixture(leg, start, relative, body, known);
+    if (!leg.arc.motion || is_sharp(now, known)) return merge(known, now);
+    doubtful_.push_back({leg, start, fixture, &body, now});
+    // Its lower bound waits for `settle`: another chord may turn out to be nearer.
+    const double lower = now.lower;
+    now.lower = infinity;
+    now.verdict = Verdict::clear;
+    merge(known, now);
+    known.at_end = lower;
+}
+
+void LegCheck::divide(const Doubtful& doubt, PairClearance& known) {
+    const Mount& mount = setup_.fixtures[doubt.fixture].mount;
+    const auto look = [&](const Leg& leg) {
+        const RelativeLeg relative = relative_leg(setup_.machine, mount, doubt.body->mover, leg);
+        return look_at_fixture(leg, doubt.start, relative, *doubt.body, known);
+    };
+    constexpr double finest = 1e-5; // mm, of a chord's error
+    if (is_sharp(doubt.seen, known) || doubt.leg.path_error <= finest)
+        return merge(known, doubt.seen);
+    if (doubt.seen.lower <= 0.0) {
+        const PairClearance there = look(still_half_way(doubt.leg));
+        if (there.verdict == Verdict::collision) return merge(known, there);
+    }
+    for (const Leg& half : halves(doubt.leg))
+        divide({half, doubt.start, doubt.fixture, doubt.body, look(half)}, known);
+}
+
+void LegCheck::settle(std::vector<PairClearance>& pairs) {
+    std::stable_sort(doubtful_.begin(), doubtful_.end(), [](const Doubtful& a, const Doubtful& b) {
+        return a.seen.lower < b.seen.lower;
+    });
+    for (const Doubtful& doubt : doubtful_) {
+        PairClearance& known = entry(pairs, doubt.seen.pair, setup_);
+        const double at_end = known.at_end, drift = known.drift;
+        divide(doubt, known);
+        known.at_end = at_end;
+        known.drift = drift;
+    }
+    doubtful_.clear();
 }
 
 void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
@@ -62,7 +125,7 @@ void LegCheck::check_fixture(const Leg& leg, double start, size_t fixture, const
     const RelativeLeg relative =
         relative_leg(setup_.machine, setup_.fixtures[fixture].mount, body.mover, leg);
     if (stays_away(known, leg, relative)) return;
-    if (!relative.turns) return merge(known, look_at_fixture(leg, start, relative, body, known));
+    if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: half of the way at a time, until it is far or seen sharply enough.
     const double apart = distance(bounds(body, relative), bounds(setup_.fixtures[fixture].body));
     if (is_far(known, apart, setup_.search_limit)) return;

@@ -73,18 +73,6 @@ Separation LegCheck::to_stock(const MovingBody& body, const RelativeLeg& leg, co
     return found.separation;
 }
 
-void LegCheck::look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
-                             const CutModel& stock, double nearest) {
-    // Where the body really is at one moment is a sure witness.
-    const Observation here = observe(body, still_half_way(leg), stock, nearest);
-    seen.shrunk.upper = here.shrunk.upper;
-    if (here.plain.upper >= seen.plain.upper) return;
-    const double lower = seen.plain.lower;
-    seen.plain = here.plain;
-    seen.plain.lower = std::min(lower, here.plain.upper);
-    seen.plain.time_a = 0.5;
-}
-
 LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
                                         const CutModel& stock, double nearest) {
     const Allowance allowance = allowance_of(setup_, pair_of(body));
@@ -92,7 +80,8 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     const double error = relative.error;
     const double limit = std::min(setup_.search_limit, nearest) + (relative.turns ? error : 0.0);
     Observation seen{.travel = relative.travel};
-    const double threshold = deciding_distance(allowance) + (relative.turns ? error : 0.0);
+    const double threshold =
+        deciding_distance(allowance) + off_path(allowance) + (relative.turns ? error : 0.0);
     seen.plain = to_stock(body, relative, stock, {.limit = limit, .threshold = threshold});
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
     if (may_touch && retraces(body, relative, stock, allowance)) {
@@ -107,10 +96,7 @@ LegCheck::Observation LegCheck::observe(const MovingBody& body, const Leg& leg,
     } else if (seen.plain.upper == 0.0) {
         seen.shrunk = seen.plain;
     }
-    const bool near = seen.plain.lower <= error;
-    seen.plain = widened(seen.plain, relative);
-    seen.shrunk = widened(seen.shrunk, relative);
-    if (relative.turns && near) look_half_way(seen, body, leg, stock, nearest);
+    if (error > 0.0) make_sure(seen, body, leg, relative, stock, nearest);
     return seen;
 }
 
@@ -120,11 +106,11 @@ LegCheck::Observation LegCheck::observe_lower(const MovingBody& body, const Leg&
     if (relative.turns) return observe(body, leg, stock, nearest);
     const Allowance allowance = allowance_of(setup_, pair_of(body));
     const double limit = std::min(setup_.search_limit, nearest);
-    const double threshold = deciding_distance(allowance);
+    const double threshold = deciding_distance(allowance) + off_path(allowance);
     Observation seen{.travel = relative.travel, .whole = false};
     const StockGoal goal{.limit = limit, .bound = StockBound::lower, .threshold = threshold};
     seen.plain = widened(to_stock(body, relative, stock, goal), relative);
-    if (seen.plain.lower <= allowance.distance + resolution)
+    if (seen.plain.lower <= allowance.distance + resolution + off_path(allowance))
         return observe(body, leg, stock, nearest);
     return seen;
 }

@@ -42,6 +42,9 @@ public:
     /// Result: the volume removed, mm3.
     double run(const Leg& leg, double start, CutModel& stock, std::vector<PairClearance>& pairs);
 
+    /// Divides the chords that left a doubt about a fixture. To be called behind the last leg.
+    void settle(std::vector<PairClearance>& pairs);
+
     /// A lower bound of how near the flutes come to the stock over a leg, up to `limit`; 0 where
     /// the leg turns too far to say.
     double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
@@ -75,6 +78,10 @@ private:
     /// Whether a lower bound shows that.
     bool is_beside_the_point(const Allowance& allowance, double lower,
                              const std::vector<PairClearance>& pairs) const;
+    /// What must be kept on top, of a pair that must keep apart.
+    double off_path(const Allowance& allowance) const {
+        return allowance.distance > resolution ? memory_.off_path : 0.0;
+    }
     /// Whether a pair will say nothing if the block decides about as the last one did.
     bool says_likely_nothing(const PairClearance& known) const;
     /// The bodies, that of the pair with the stock or a fixture which decided the last block first.
@@ -99,6 +106,22 @@ private:
     bool is_in_own_cut(const Leg& leg, size_t fixture) const;
     void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        std::vector<PairClearance>& pairs);
+    /// A chord of an arc that leaves a doubt about a fixture, and what was seen of it.
+    struct Doubtful {
+        Leg leg;
+        double start;
+        size_t fixture;
+        const MovingBody* body;
+        PairClearance seen;
+    };
+
+    /// The same of a leg on which nothing turns. A chord that leaves a doubt waits for `settle`.
+    void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                       const RelativeLeg& relative, PairClearance& known);
+    /// Whether what was seen of a leg tells enough of a pair of which this is known.
+    bool is_sharp(const PairClearance& now, const PairClearance& known) const;
+    /// Adds what is known of a chord when it has been halved for as long as it leaves a doubt.
+    void divide(const Doubtful& doubt, PairClearance& known);
     /// What is known of a body and a fixture over a leg, from one look at the whole of it.
     PairClearance look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
                                   const MovingBody& body, const PairClearance& known);
@@ -140,6 +163,10 @@ private:
                         double nearest);
     void look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
                        const CutModel& stock, double nearest);
+    /// Takes the error of a leg into account: an overlap stays one only if it is found where the
+    /// body really goes.
+    void make_sure(Observation& seen, const MovingBody& body, const Leg& leg,
+                   const RelativeLeg& relative, const CutModel& stock, double nearest);
     /// Whether the body goes only where the flutes have cut before (see runs_in_own_cut).
     bool retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                   const Allowance& allowance) const;
@@ -182,7 +209,8 @@ private:
     Statistics& statistics_;
     std::vector<MovingBody> bodies_;
     double travel_ = infinity; // no point goes farther over the leg that is being checked, mm
-    bool only_tool_ = false;   // bodies of the machine have been held against the stock already
+    std::vector<Doubtful> doubtful_;
+    bool only_tool_ = false; // bodies of the machine have been held against the stock already
 };
 
 } // namespace core

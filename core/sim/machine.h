@@ -49,8 +49,9 @@ struct MachineBody {
 struct Machine {
     std::array<MachineAxis, axis_count> axes = three_axes();
     RapidStyle rapid = RapidStyle::straight;
-    LinkId spindle = link_of(2); // what carries the tool
-    LinkId table = LinkId::base; // what carries the work
+    std::optional<double> corner_tolerance; // mm, where the program states none
+    LinkId spindle = link_of(2);            // what carries the tool
+    LinkId table = LinkId::base;            // what carries the work
     std::vector<MachineBody> bodies;
 
     bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }

@@ -39,7 +39,7 @@ bool LegCheck::says_nothing(PairClearance& known, const std::vector<PairClearanc
 bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
                                    const std::vector<PairClearance>& pairs) const {
     if (setup_.detail == Detail::every_pair) return false;
-    const double must_keep = allowance.distance + resolution;
+    const double must_keep = allowance.distance + resolution + memory_.off_path;
     if (setup_.detail == Detail::verdict) return lower > must_keep;
     double least = infinity;
     for (const PairClearance& other : pairs)
@@ -49,7 +49,7 @@ bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
 
 bool LegCheck::says_likely_nothing(const PairClearance& known) const {
     const double apart = known.at_end - travel_;
-    const double must_keep = known.allowance.distance + resolution;
+    const double must_keep = known.allowance.distance + resolution + memory_.off_path;
     constexpr double slack = 0.1; // mm: how much more room the next block often has
     // A bound that has lost more would say too little, should the pair decide after all; of what
     // keeps away from the flutes a late look tells more.

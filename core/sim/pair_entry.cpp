@@ -24,8 +24,12 @@ bool is_far(PairClearance& known, double apart, double search_limit) {
 
 Separation widened(Separation found, const RelativeLeg& leg) {
     found.lower = std::max(0.0, found.lower - leg.error);
-    if (found.upper > 0.0 || leg.turns) found.upper += leg.error;
+    found.upper += leg.error;
     return found;
+}
+
+RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg) {
+    return leg.turns ? RevolvedProfile{} : shrunk_within(part, leg.error);
 }
 
 } // namespace core

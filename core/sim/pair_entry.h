@@ -17,8 +17,12 @@ bool stays_away(PairClearance& known, const Leg& leg, const RelativeLeg& relativ
 /// than the search limit. Notes the bound if so.
 bool is_far(PairClearance& known, double apart, double search_limit);
 
-/// What a look at a leg says of the real way, given the leg's error. A body that turns has not been
+/// What a look at a leg says of the real way, given the leg's error. The body has not quite been
 /// where the look put it, so an overlap is only as sure as the error.
 Separation widened(Separation found, const RelativeLeg& leg);
+
+/// What is left of a part when the leg's error is taken off everywhere: wherever it goes, the part
+/// itself really goes. Empty where the leg turns, or when nothing is left.
+RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg);
 
 } // namespace core

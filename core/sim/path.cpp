@@ -20,6 +20,13 @@ std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
     return values;
 }
 
+/// The values of a position that is known.
+AxisValues values_of(const AxisPosition& p) {
+    AxisValues values{};
+    for (size_t i = 0; i < axis_count; ++i) values[i] = p[i].value_or(0.0);
+    return values;
+}
+
 double rapid_speed(const MachineAxis& axis, Path& path) {
     if (!axis.rapid) path.assumed_speed = true;
     return axis.rapid.value_or(assumed_rapid);
@@ -124,36 +131,54 @@ AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues
     return p;
 }
 
-double arc_radius(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
+/// The radii at both ends.
+std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
+                                    const AxisValues& to) {
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
     const auto radius = [&](const AxisValues& place) {
         return std::hypot(place[static_cast<size_t>(a)] - arc.centre[a],
                           place[static_cast<size_t>(b)] - arc.centre[b]);
     };
-    return std::max(radius(from), radius(to));
+    return {radius(from), radius(to)};
+}
+
+/// The bend of an arc or spiral: on a step of the angle it stays within the step's square times
+/// this of a chord that is passed evenly.
+///
+/// That is an eighth of the second derivative by the angle, whose part towards the centre is the
+/// radius, and whose part across is twice what the radius changes by.
+double bend(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
+    const auto [first, last] = arc_radii(arc, from, to);
+    const double drift = arc.angle != 0.0 ? 2.0 * (last - first) / arc.angle : 0.0;
+    return 0.125 * std::hypot(std::max(first, last), drift);
 }
 
 void add_arc(Path& path, const Motion& motion, const AxisValues& from, const AxisValues& to,
              double max_error) {
     const ArcPath& arc = *motion.arc;
-    const double radius = arc_radius(arc, from, to);
-    // The sagitta of a chord is r (1 - cos(step / 2)); a spiral's drift adds less than as much
-    // again.
+    const auto [first_radius, last_radius] = arc_radii(arc, from, to);
+    const double radius = std::max(first_radius, last_radius);
     const double widest = radius > max_error ? 2.0 * std::acos(1.0 - 0.5 * max_error / radius)
                                              : std::numbers::pi / 2.0;
-    const double step = std::min(widest, std::numbers::pi / 2.0);
+    // Where the radius changes fast, that chord would be too long.
+    const double most = std::sqrt(max_error / std::max(bend(arc, from, to), 1e-12));
+    const double step = std::min({widest, most, std::numbers::pi / 2.0});
     const int count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.angle) / step)));
     const auto normal = static_cast<size_t>(arc.normal);
     const double rise = to[normal] - from[normal];
     const double length = std::hypot(radius * arc.angle, rise);
     path.duration = motion.feed > 0.0 ? length / motion.feed * seconds_per_minute : 0.0;
+    const auto whole = std::make_shared<const Motion>(motion);
     AxisValues here = from;
+    double before = 0.0;
     for (int i = 1; i <= count; ++i) {
         const double share = static_cast<double>(i) / count;
         const AxisValues next = i == count ? to : on_arc(motion, from, to, share);
-        path.legs.push_back(
-            {{here, next}, path.duration * (i - 1) / count, path.duration * share, max_error});
+        Leg chord{{here, next}, path.duration * (i - 1) / count, path.duration * share, max_error};
+        chord.arc = {whole, before, share};
+        path.legs.push_back(std::move(chord));
         here = next;
+        before = share;
     }
 }
 
@@ -242,11 +267,28 @@ Leg stretch(const Leg& leg, double first, double last) {
         leg.path_error};
 }
 
+std::array<Leg, 2> halves(const Leg& leg) {
+    std::array<Leg, 2> parts = {stretch(leg, 0.0, 0.5), stretch(leg, 0.5, 1.0)};
+    if (!leg.arc.motion) return parts;
+    const Motion& motion = *leg.arc.motion;
+    const AxisValues from = values_of(motion.from), to = values_of(motion.to);
+    const double middle = 0.5 * (leg.arc.first + leg.arc.last);
+    const double step = (leg.arc.last - middle) * motion.arc->angle;
+    parts[0].places[1] = parts[1].places[0] = on_arc(motion, from, to, middle);
+    parts[0].arc = {leg.arc.motion, leg.arc.first, middle};
+    parts[1].arc = {leg.arc.motion, middle, leg.arc.last};
+    for (Leg& part : parts)
+        part.path_error = std::min(leg.path_error, bend(*motion.arc, from, to) * step * step);
+    return parts;
+}
+
 Leg still_half_way(const Leg& leg) {
-    const Leg first_half = stretch(leg, 0.0, 0.5);
+    const Leg first_half = halves(leg)[0];
     Leg still = first_half;
     still.places = {first_half.places[1]};
     still.begin = first_half.end;
+    if (leg.arc.motion) still.path_error = 0.0;
+    still.arc = {};
     return still;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -7,6 +9,12 @@
 #include "core/sim/machine.h"
 
 namespace core {
+
+/// A piece of an arc or helix, between two shares of its angle.
+struct ArcPiece {
+    std::shared_ptr<const Motion> motion; // the whole of it; empty: no arc
+    double first = 0.0, last = 1.0;
+};
 
 /// A piece of a motion that is checked as a whole.
 ///
@@ -21,12 +29,17 @@ struct Leg {
     bool straight = true;
     bool start_known = true; // false: the machine may come from anywhere within its limits
     std::vector<AxisValues> certain = {};
+    ArcPiece arc = {}; // whose chord it is
 };
 
 /// The part of a straight leg between two shares of it, 0..1.
 Leg stretch(const Leg& leg, double first, double last);
 
-/// The place half way along a straight leg, as a leg on which nothing moves.
+/// The halves of a straight leg. Those of a chord meet on the arc, and are nearer to it.
+std::array<Leg, 2> halves(const Leg& leg);
+
+/// The place half way along a straight leg, as a leg on which nothing moves; of a chord the one on
+/// the arc.
 Leg still_half_way(const Leg& leg);
 
 /// A motion as legs, in order. Empty when an axis may stand anywhere.
@@ -48,7 +61,8 @@ double chord_error(double mesh_size);
 ///        a dog-leg rapid is a leg for each change of direction, or one box of the axes that move
 ///        when speeds are unknown; a motion from an unknown place is the hull of the limits. A
 ///        path of the tip becomes legs on which the axes stay within `max_error` of where the
-///        control has them. Rotary axes from or to an unknown angle leave the path empty.
+///        control has them. Rotary axes from or to an unknown angle leave the path empty. The
+///        chords of an arc end on it.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
 /// The least and greatest value of each axis.

@@ -30,6 +30,7 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     state.position = position;
     for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
     state.pieces = watch_of(state.stock);
+    state.corners = corners_at_start(setup.machine);
     return state;
 }
 

@@ -10,6 +10,7 @@
 #include "core/sim/leg_check.h"
 #include "core/sim/loose_pieces.h"
 #include "core/sim/path.h"
+#include "core/sim/rounded_corners.h"
 #include "core/sim/run_watch.h"
 #include "core/sim/statistics.h"
 
@@ -30,6 +31,7 @@ struct SimulatorState {
     double time = 0.0; // seconds since the program's start, everything at full speed
     Statistics statistics;
     CheckMemory memory;
+    RoundedCorners corners;
     std::set<std::string> assumptions; // what had to be taken for granted on the way
     bool told_unknown_start = false;
     bool told_unchecked_tool = false; // of the tool that is in the spindle now

@@ -16,6 +16,7 @@ struct MachiningTally {
     double widest = 0.0;                 // against fixtures, mm
     std::vector<double> stock_widths;    // over the mesh size
     size_t settled = 0;                  // stock pairs that are decided or narrower than 0.05 mm
+    size_t standing = 0;                 // points beside a cut, looked for in the columns
     std::vector<std::string> failures;
 
     bool is_representative() const {
@@ -186,9 +187,8 @@ private:
             until = known_.world.certain_removal(block, slack, p);
         }
         const Nearness near = nearness(known_.world, block, pair, p, until, core::infinity);
-        // A witness on the edge of a cut may be gone, to within the slack, while it is nearest.
-        constexpr double width = 1e-3;
-        if (near.distance > claim.upper + width)
+        constexpr double rounding = 1e-6;
+        if (near.distance > claim.upper + rounding)
             fail("the witness is as near as upper says", describe(claim, {p, near}));
         if (claim.verdict == core::Verdict::collision && near.distance > 1e-6)
             fail("what collides overlaps", describe(claim, {p, near}));
@@ -219,9 +219,24 @@ private:
             known_.world.history.push_back(by);
             known_.world.history.back().is_certain = by.chips;
         }
+        const size_t kept = cloud_.size();
         for (const TruePassage& by : block)
             if (by.chips)
                 for (int i = 0; i < 8; ++i) keep_beside(by);
+        for (size_t i = kept; i < cloud_.size(); ++i) judge_columns(cloud_[i]);
+    }
+
+    /// The columns must hold what stands, however finely they are divided.
+    void judge_columns(const core::Vec3& p) {
+        const core::Vec3 half(1e-9);
+        const core::ConvexShape point[] = {core::convex(core::Aabb{p - half, p + half})};
+        core::StockGoal goal{.limit = 1.0, .bound = core::StockBound::lower};
+        goal.threshold = goal.finest = 1e-3;
+        const double lower = core::separation(point, state_->stock, goal).separation.lower;
+        ++tally_.standing;
+        if (lower > 1e-8)
+            fail("what stands is in a column",
+                 fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }
 
     /// Keeps a point near the wall that a passage has cut, as it may be all that stands of a fin.

@@ -76,6 +76,19 @@ inline std::optional<double> first_straight(const core::ProfileElement& e, const
     return out;
 }
 
+/// A share at which the profile is nearer than `level`, and just before which it is not: it is so
+/// at `high`, and not at `low`.
+inline double certain_crossing(const TrueProfile& part, const SeenPoint& seen, double low,
+                               double high, double level) {
+    for (int i = 0; i < 30; ++i) {
+        const double middle = 0.5 * (low + high);
+        (true_distance(part.profile, seen(middle)) > level ? low : high) = middle;
+    }
+    return high;
+}
+
+/// The first share between two at which the profile may be nearer than `level`, up to a hundredth
+/// of a millimetre too early; or, where a doubt does not count, certainly is.
 inline std::optional<double> first_bent(const TrueProfile& part, const SeenPoint& seen, double low,
                                         double high, double level, Doubt doubt) {
     constexpr double fine = 0.01; // mm
@@ -86,8 +99,11 @@ inline std::optional<double> first_bent(const TrueProfile& part, const SeenPoint
     const double at_a = true_distance(part.profile, a), at_b = true_distance(part.profile, b);
     if (at_a <= level) return low;
     if (0.5 * (at_a + at_b - way) - off > level) return std::nullopt;
-    if (way < fine && off < fine)
-        return doubt == Doubt::counts || at_b <= level ? std::optional(low) : std::nullopt;
+    if (way < fine && off < fine) {
+        if (doubt == Doubt::counts) return low;
+        return at_b <= level ? std::optional(certain_crossing(part, seen, low, high, level))
+                             : std::nullopt;
+    }
     const double middle = 0.5 * (low + high);
     if (const auto first = first_bent(part, seen, low, middle, level, doubt)) return first;
     return first_bent(part, seen, middle, high, level, doubt);

@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include "core/sim/simulator.h"
+
+namespace core {
+namespace {
+
+/// A clamp in the corner of an L, on its inner side, and one outside; the tool is a bare cylinder
+/// of 10 mm. Its way bends at the origin, from along X to along Y.
+core::Setup around_a_corner(double gap, bool inside) {
+    core::Setup setup;
+    setup.stock = {SolidBox{{{900, 900, -10}, {910, 910, 0}}}, 0.0};
+    ToolDescription tool;
+    tool.number = ToolNumber{1};
+    tool.diameter = 10.0;
+    tool.flute_length = 60.0;
+    setup.tools.emplace(tool.number, *assemble(tool));
+    Fixture pin;
+    pin.name = "pin";
+    pin.body = convex(ProfileElement{-100.0, 3.0, 100.0, 3.0, 0.0});
+    const double away = (3.0 + 5.0 + gap) / std::sqrt(2.0);
+    pin.mount.link_from_body =
+        translation(inside ? Vec3(-3.0 - 5.0 - gap, 3.0 + 5.0 + gap, 0.0) : Vec3(away, -away, 0.0));
+    setup.fixtures.push_back(std::move(pin));
+    return setup;
+}
+
+/// What is known of the clamp when the tool comes to the corner and leaves it.
+struct Corner {
+    core::Setup setup;
+    SimulatorState state;
+    uint32_t block = 0;
+    PairClearance seen = {};
+    std::vector<Verdict> verdicts = {};
+
+    explicit Corner(core::Setup with) : setup(std::move(with)), state(*start_of_run(setup, {})) {
+        give({ToolChange{ToolNumber{1}}});
+        give({SpindleChange{SpindleDirection::clockwise, 5000.0}});
+    }
+    void give(const std::vector<Event>& events) {
+        const BlockResult result = run_block(setup, {BlockIndex{block++}, false, events}, state);
+        for (const PairClearance& pair : result.pairs) {
+            if (pair.pair != Pair{PartKind::flutes, 0}) continue;
+            merge(seen, pair);
+            verdicts.push_back(pair.verdict);
+        }
+    }
+    void pass(MotionKind kind = MotionKind::feed) {
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        const double feed = kind == MotionKind::feed ? 600.0 : 0.0;
+        give({Motion{.kind = kind, .from = {-50, 0, z}, .to = {0, 0, z}, .feed = feed}});
+        give({Motion{.kind = kind, .from = {0, 0, z}, .to = {0, 50, z}, .feed = feed}});
+    }
+};
+
+constexpr PathModeChange within(double tolerance) { return {Blending::continuous, tolerance}; }
+
+TEST(RoundedCorners, ComeNearerToAClampInsideByTheTolerance) {
+    const double gap = 2.1, tolerance = 0.3;
+    Corner corner(around_a_corner(gap, true));
+    corner.give({within(tolerance)});
+    corner.pass();
+    // A way that is off by the tolerance towards the clamp is one that the control may take.
+    EXPECT_LE(corner.seen.lower, gap - tolerance + 1e-9);
+    EXPECT_GE(corner.seen.lower, gap - tolerance - 1e-3);
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "2 mm must be kept";
+}
+
+TEST(RoundedCorners, StayFartherFromAClampOutside) {
+    const double gap = 1.9, tolerance = 0.3;
+    Corner corner(around_a_corner(gap, false));
+    corner.give({within(tolerance)});
+    corner.pass();
+    EXPECT_GE(corner.seen.upper, gap + tolerance - 1e-9);
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "2 mm must be kept";
+}
+
+TEST(RoundedCorners, LeaveNoDoubtWhereTheAllowanceIsKeptAllTheSame) {
+    for (const Detail detail : {Detail::every_pair, Detail::deciding_pair, Detail::verdict}) {
+        core::Setup setup = around_a_corner(2.31, true);
+        setup.detail = detail;
+        Corner corner(std::move(setup));
+        corner.give({within(0.3)});
+        corner.pass();
+        for (const Verdict verdict : corner.verdicts) EXPECT_EQ(verdict, Verdict::clear);
+    }
+}
+
+TEST(RoundedCorners, AreNoneAtExactStopsAndOnRapids) {
+    for (const Blending blending : {Blending::exact_stop, Blending::exact_path}) {
+        Corner corner(around_a_corner(2.1, true));
+        corner.give({within(0.3)});
+        corner.give({PathModeChange{blending, {}}});
+        corner.pass();
+        EXPECT_NEAR(corner.seen.lower, 2.1, 1e-6);
+        EXPECT_NEAR(corner.seen.upper, 2.1, 1e-6);
+    }
+    Corner corner(around_a_corner(2.1, true));
+    corner.give({within(0.3)});
+    corner.pass(MotionKind::rapid);
+    EXPECT_NEAR(corner.seen.lower, 2.1, 1e-6);
+}
+
+TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
+    core::Setup setup = around_a_corner(2.1, true);
+    setup.machine.corner_tolerance = 0.2;
+    Corner corner(std::move(setup));
+    corner.pass();
+    EXPECT_NEAR(corner.seen.lower, 1.9, 1e-6);
+    EXPECT_EQ(corner.state.assumptions.size(), 1U) << "the term of the bound is listed";
+    Corner unstated(around_a_corner(2.1, true));
+    unstated.give({PathModeChange{Blending::continuous, {}}});
+    unstated.pass();
+    EXPECT_NEAR(unstated.seen.lower, 2.1, 1e-6);
+    EXPECT_EQ(unstated.state.assumptions.size(), 1U) << "what is taken for granted is listed";
+}
+
+TEST(RoundedCorners, LeaveACrashACrash) {
+    Corner corner(around_a_corner(-2.0, true));
+    corner.give({within(0.05)});
+    corner.pass();
+    EXPECT_EQ(corner.seen.verdict, Verdict::collision);
+}
+
+} // namespace
+} // namespace core
