@@ -53,7 +53,7 @@ Setup beside_a_fin() {
     Setup setup;
     setup.mesh_size = 0.1;
     setup.detail = Detail::deciding_pair;
-    setup.stock = {SolidBox{{{0.0, -0.5, 0.0}, {0.2, 0.5, 3.0}}}, 0.0};
+    setup.stock = {SolidBox{{{0.0, -0.5, 0.0}, {0.2, 0.5, 2.0}}}, 0.0};
     return setup;
 }
 
@@ -67,18 +67,18 @@ Setup on_a_trunnion() {
 }
 
 TEST(LateLook, KnowsWhatTheFlutesTookOnTheirWay) {
-    // The fin is 2 mm below the shank until the flutes take it, and then all is 10 mm away.
+    // The fin is 2.9 mm below the shank until the flutes take it, and then nothing is left.
     Nibbler run(beside_a_fin(), {-5.5, 0.0, -0.1});
     const BlockResult near = run.go(MotionKind::rapid, {{0, 0.2}});
     ASSERT_TRUE(near.deciding);
     ASSERT_EQ(near.pairs[*near.deciding].pair, Pair{PartKind::flutes});
     const BlockResult nibble = run.go(MotionKind::feed, {{0, 0.6}});
-    ASSERT_GT(nibble.removed, 0.5);
+    ASSERT_GT(nibble.removed, 0.3);
     bool told = false;
     for (const PairClearance& pair : nibble.pairs) {
         if (pair.pair != Pair{PartKind::shank}) continue;
         told = true;
-        EXPECT_LE(pair.lower, 2.0) << "the wall of the shank comes over the fin";
+        EXPECT_LE(pair.lower, 3.0) << "the wall of the shank comes over the fin";
     }
     EXPECT_TRUE(told);
 }
