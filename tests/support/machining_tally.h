@@ -16,7 +16,8 @@ struct MachiningTally {
     double widest = 0.0;                 // against fixtures, mm
     std::vector<double> stock_widths;    // over the mesh size
     size_t settled = 0;                  // stock pairs that are decided or narrower than 0.05 mm
-    size_t standing = 0;                 // points beside a cut, looked for in the columns
+    size_t cut_fixtures = 0; // blocks in which one is called clear by flutes that have cut it
+    size_t standing = 0;     // points beside a cut, looked for in the columns
     std::vector<std::string> failures;
 
     bool is_representative() const {
@@ -30,10 +31,10 @@ struct MachiningTally {
             "{} blocks ({} clear, {} undecided, {} violations, {} collisions), {} pairs: {} within "
             "a millimetre, {} overlap, {} may touch; {} witnesses. Fixtures: {} of {} intervals at "
             "most 1e-3 mm wide, widest {:.2g}. Stock: {} of {} at most 1.6 h, {} decided or below "
-            "0.05 mm.\n",
+            "0.05 mm. {} times clear of a fixture that was cut.\n",
             blocks, verdicts[0], verdicts[1], verdicts[2], verdicts[3], pairs, near, overlaps,
-            contacts, witnesses, sharp, fixture_pairs, widest, narrow, stock_widths.size(),
-            settled);
+            contacts, witnesses, sharp, fixture_pairs, widest, narrow, stock_widths.size(), settled,
+            cut_fixtures);
     }
 };
 
@@ -64,6 +65,7 @@ public:
         for (int i = 0; state_ && i < blocks; ++i) {
             const KnownBlock block = machinist_.next();
             const core::BlockResult result = take(block.events, block.is_cycle);
+            note_cut_fixtures(block.passages);
             judge(block.passages, result);
             remember(block.passages, result);
         }
@@ -108,7 +110,11 @@ private:
             removals.push_back(known_.world.removal(block, crashed, p));
         core::Verdict worst = core::Verdict::clear;
         for (const core::PairClearance& pair : result.pairs) worst = std::max(worst, pair.verdict);
-        if (result.checked && worst != result.verdict)
+        const auto is_change = [](const core::Finding& finding) {
+            return finding.rule == "tool-change-unsafe";
+        };
+        const bool changed = std::any_of(result.findings.begin(), result.findings.end(), is_change);
+        if (result.checked && (changed ? result.verdict < worst : result.verdict != worst))
             fail("the block's verdict is its pairs' worst", "");
         for (const core::PartKind part : {core::PartKind::flutes, core::PartKind::shank,
                                           core::PartKind::holder, core::PartKind::nose}) {
@@ -129,6 +135,8 @@ private:
         bool told = false;
         for (const core::PairClearance& known : result.pairs)
             if (known.pair == claim.pair) claim = known, told = true;
+        if (pair.cuts_fixture(known_.world) && cut_fixtures_[*pair.fixture])
+            return judge_cut_fixture(block, claim, pair, crashed);
         if (!told && known_.setup.detail == core::Detail::every_pair)
             fail("every pair is told of", describe(claim, {}));
         ClearanceSearch search(known_.world, block, pair, crashed, dice_.random);
@@ -147,6 +155,43 @@ private:
         judge_truth(claim, search.best());
         if (claim.found()) judge_witness(block, claim, pair);
         take_widths(claim, pair);
+    }
+
+    /// Of a fixture that flutes have cut, what they cut is no obstacle and not told of; what they
+    /// did not is no place to go.
+    void judge_cut_fixture(const std::vector<TruePassage>& block, const core::PairClearance& claim,
+                           const TruePair& pair, bool crashed) {
+        if (claim.verdict != core::Verdict::clear) return;
+        ClearanceSearch search(known_.world, block, pair, crashed, dice_.random);
+        search.offer_foremost();
+        search.improve(40, 1.5, -core::infinity);
+        ++tally_.cut_fixtures;
+        if (search.best().near.distance < -core::contact_depth(claim.allowance) - 1e-6)
+            fail("what still stands of a fixture is not overlapped",
+                 describe(claim, search.best()));
+    }
+
+    /// Notes which expendable fixtures flutes may have cut.
+    void note_cut_fixtures(const std::vector<TruePassage>& block) {
+        cut_fixtures_.resize(known_.world.fixtures.size());
+        for (const TruePassage& by : block) {
+            if (!by.chips) continue;
+            const core::ProfileElement& hull = by.tool->part(core::PartKind::flutes)->hull;
+            for (size_t i = 0; i < cut_fixtures_.size(); ++i) {
+                const TrueFixture& fixture = known_.world.fixtures[i];
+                if (!fixture.expendable || !by.fixtures_there[i]) continue;
+                const core::Vec3 middle(0, 0, 0.5 * (hull.z0 + hull.z1));
+                constexpr int steps = 16;
+                for (int step = 0; step <= steps && !cut_fixtures_[i]; ++step) {
+                    const core::AxisValues at = by.path.at(double(step) / steps);
+                    const core::Vec3 tip(at[0], at[1], at[2] - by.tool->length);
+                    const core::Vec3 p =
+                        mounted_place(known_.world.machine, fixture.mount, at, middle + tip);
+                    const double reach = std::hypot(hull.r0, 0.5 * (hull.z1 - hull.z0)) + 5.0;
+                    cut_fixtures_[i] = nearest_of(fixture.solid, p).distance <= reach;
+                }
+            }
+        }
     }
 
     core::Vec3 in_body(const core::Vec3& p_stock, const TruePair& pair) const {
@@ -277,6 +322,7 @@ private:
     MachiningTally& tally_;
     std::optional<core::SimulatorState> state_;
     std::vector<core::Vec3> cloud_; // of the stock, there for certain
+    std::vector<bool> cut_fixtures_;
     uint32_t block_ = 0;
 };
 

@@ -30,6 +30,11 @@ public:
     /// Takes a point if it is one of the body.
     void offer(const core::Vec3& p) {
         const Removal always{block_.size(), 0.0};
+        if (pair_.cuts_fixture(world_)) {
+            if (const auto until = world_.removal(block_, *pair_.fixture, p))
+                offer_known(p, *until);
+            return;
+        }
         if (pair_.fixture) return offer_known(p, always);
         const double limit = best_.near.distance;
         if (nearness(world_, block_, pair_, p, always, limit).distance >= limit) return;

@@ -103,6 +103,24 @@ struct TrueMachining {
         return {block.size(), 0.0};
     }
 
+    /// Whether flutes may have cut a point of a fixture, and from which share on.
+    std::optional<double> first_cut(const TruePassage& by, size_t fixture,
+                                    const core::Vec3& p) const {
+        if (!by.chips || !by.fixtures_there[fixture]) return std::nullopt;
+        return first_within(*by.tool->part(core::PartKind::flutes),
+                            seen(by, fixtures[fixture].mount, p), 1e-9, Doubt::counts);
+    }
+
+    /// Until when a point of an expendable fixture outlasts a block; none if it has gone before.
+    std::optional<Removal> removal(const std::vector<TruePassage>& block, size_t fixture,
+                                   const core::Vec3& p) const {
+        for (const TruePassage& by : history)
+            if (first_cut(by, fixture, p)) return std::nullopt;
+        for (size_t i = 0; i < block.size(); ++i)
+            if (const auto first = first_cut(block[i], fixture, p)) return Removal{i, *first};
+        return Removal{block.size(), 0.0};
+    }
+
     /// The same with what has certainly gone, by more than `slack`.
     Removal certain_removal(const std::vector<TruePassage>& block, double slack,
                             const core::Vec3& p) const {
@@ -135,6 +153,10 @@ struct TruePair {
         const bool chips = by.chips && part == core::PartKind::flutes;
         if (!fixture) return !chips;
         return by.fixtures_there[*fixture] && !(chips && world.fixtures[*fixture].expendable);
+    }
+    /// Whether the pair's flutes cut the fixture when they feed.
+    bool cuts_fixture(const TrueMachining& world) const {
+        return part == core::PartKind::flutes && fixture && world.fixtures[*fixture].expendable;
     }
     const TrueMount& mount(const TrueMachining& world) const {
         return fixture ? world.fixtures[*fixture].mount : world.stock_mount;
