@@ -182,7 +182,7 @@ double cut(CutModel& model, const CutterSweep& sweep) {
 }
 
 void note_search(CutModel& model, size_t box_tests) {
-    constexpr size_t tests_per_tile = 128; // that take as long as fitting a tile of each family
+    constexpr size_t tests_per_tile = 1024; // with fewer, fitting takes longer than it saves
     model.loose_tests += box_tests;
     const size_t stale = most_stale(model);
     if (stale > 0 && model.loose_tests > tests_per_tile * stale) fit_boxes(model);
