@@ -1,5 +1,6 @@
 #include "app/session/program_runner.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
@@ -35,6 +36,29 @@ core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     finding.message = as_sentence(warning.message);
     finding.cure = warning.cure;
     return finding;
+}
+
+/// Drops the pairs that no report tells of: a block keeps the one that decides or else is nearest,
+/// and those that do not keep their allowance. Findings are in the run already.
+void keep_what_tells(core::BlockResult& result) {
+    const auto nearer = [](const core::PairClearance& a, const core::PairClearance& b) {
+        return a.lower < b.lower;
+    };
+    size_t told = result.deciding.value_or(0);
+    if (!result.deciding)
+        told =
+            static_cast<size_t>(std::min_element(result.pairs.begin(), result.pairs.end(), nearer)
+                                - result.pairs.begin());
+    std::vector<core::PairClearance> kept;
+    for (size_t i = 0; i < result.pairs.size(); ++i) {
+        if (i != told && result.pairs[i].verdict == core::Verdict::clear) continue;
+        if (result.deciding == i) result.deciding = kept.size();
+        kept.push_back(result.pairs[i]);
+    }
+    kept.shrink_to_fit();
+    result.pairs = std::move(kept);
+    result.findings.clear();
+    result.findings.shrink_to_fit();
 }
 
 /// T0 empties the spindle, unless a tool has that number.
@@ -168,6 +192,7 @@ std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
     watch_units(units_, of_block);
     run_.verdict = std::max(run_.verdict, checked.result.verdict);
     run_.removed += checked.result.removed;
+    if (run_.setup.detail != core::Detail::every_pair) keep_what_tells(checked.result);
     run_.blocks.push_back(std::move(checked));
     std::vector<core::BlockTime> timed;
     core::add_block(clock_, of_block, timed);
