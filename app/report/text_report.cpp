@@ -57,8 +57,12 @@ std::string findings_text(const CheckRun& run) {
 
 std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
     if (!result.checked) return fmt::format("{:>15}", "not known");
-    if (!result.deciding)
-        return fmt::format("{:>15}", fmt::format("> {:.0f}", run.setup.search_limit));
+    if (!result.deciding) {
+        const double least = least_clearance(run.setup, result);
+        if (least >= run.setup.search_limit)
+            return fmt::format("{:>15}", fmt::format("> {:.0f}", least));
+        return fmt::format("{:>15}", fmt::format(">= {:.3f}", least));
+    }
     const core::PairClearance& pair = result.pairs[*result.deciding];
     if (!pair.found()) return fmt::format("{:>15}", fmt::format(">= {:.3f}", pair.lower));
     if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>15.3f}", pair.upper);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -68,13 +69,30 @@ void take_tool_zero(core::Event& event) {
 }
 
 /// The fixtures that are moved before a block.
-std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
-    std::vector<core::Event> events;
-    for (const core::FixtureMove& move : setup.fixture_moves) {
+/// Whether a code is carried out behind the motion of its block, on all controls: M0, M1 and M60
+/// stop the program there. Of others the builder decides.
+bool comes_after_motion(int code) { return code == 0 || code == 1 || code == 60; }
+
+/// What a block does to the fixtures, before and after its motions.
+struct FixtureEvents {
+    std::vector<core::Event> before, after;
+};
+
+FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockResult& block,
+                             std::set<size_t>& made) {
+    FixtureEvents events;
+    for (size_t i = 0; i < setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = setup.fixture_moves[i];
         const bool here = move.line && block.file.empty() && block.line == *move.line;
-        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
-        events.emplace_back(core::FixtureChange{move.from, false});
-        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
+        const bool coded = !here && move.code && has_m_code(block.text, *move.code);
+        if (!here && !coded) continue;
+        made.insert(i);
+        // Where nobody knows the order, a fixture is there while the block moves: where it goes
+        // from, and where it goes to.
+        (here ? events.before : events.after).emplace_back(core::FixtureChange{move.from, false});
+        if (!move.to) continue;
+        (coded && comes_after_motion(*move.code) ? events.after : events.before)
+            .emplace_back(core::FixtureChange{*move.to, true});
     }
     return events;
 }
@@ -101,6 +119,7 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
                                            "that was just switched on",
                                            number));
+    make_moves_before(number);
     if (restart.missing.empty()) return {};
     core::Finding finding;
     finding.rule = "restart-in-the-middle";
@@ -113,6 +132,24 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     finding.cure = "Enter that by hand first, or start at the tool change before.";
     if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
     return {};
+}
+
+void ProgramRunner::make_moves_before(uint32_t line) {
+    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+        bool made = move.line && *move.line < line;
+        for (uint32_t before = 1; move.code && !made && before < line; ++before) {
+            const auto text = program_.find_line(before);
+            made = text && *text && has_m_code(**text, *move.code);
+        }
+        if (!made) continue;
+        moves_made_.insert(i);
+        moves_at_start_.emplace_back(core::FixtureChange{move.from, false});
+        if (move.to) moves_at_start_.emplace_back(core::FixtureChange{*move.to, true});
+        run_.assumptions.push_back(
+            fmt::format("{} has been moved, as the lines before the start say",
+                        run_.setup.fixtures[move.from].name));
+    }
 }
 
 void ProgramRunner::stop(core::Error error) {
@@ -157,8 +194,11 @@ std::optional<core::Error> ProgramRunner::refusal(const gcode::BlockResult& bloc
 }
 
 std::vector<core::Event> ProgramRunner::events_of(const gcode::BlockResult& block) {
-    std::vector<core::Event> events = fixture_events(run_.setup, block);
+    const FixtureEvents fixtures = fixture_events(run_.setup, block, moves_made_);
+    std::vector<core::Event> events = std::exchange(moves_at_start_, {});
+    events.insert(events.end(), fixtures.before.begin(), fixtures.before.end());
     for (core::Event& event : gcode::lower(block, lowering_)) events.push_back(event);
+    events.insert(events.end(), fixtures.after.begin(), fixtures.after.end());
     for (core::Event& event : events) {
         if (run_.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
         if (speed_by_hand) take_any_speed(event);
@@ -218,10 +258,32 @@ void ProgramRunner::to_the_end(core::SimulatorState& state) {
     for (core::Finding& finding : core::end_of_run(run_.setup, state))
         run_.findings.push_back(std::move(finding));
     if (stock_is_stated) hold_against_stock(state);
+    if (!run_.stopped) tell_of_moves_not_made();
     std::vector<core::BlockTime> timed;
     core::stop_clock(clock_, timed);
     enter(timed);
     run_.cycle_time = clock_.time;
+}
+
+void ProgramRunner::tell_of_moves_not_made() {
+    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+        if (moves_made_.contains(i)) continue;
+        core::Finding finding;
+        finding.rule = "fixture-move";
+        finding.severity = core::severity_of(run_.setup, finding.rule);
+        // One set-up may serve programs with and without a code; a line is meant for this one.
+        if (!move.line) finding.severity = std::min(finding.severity, core::Severity::note);
+        if (finding.severity == core::Severity::off) continue;
+        finding.message =
+            fmt::format("{} is never moved: the program {}.", run_.setup.fixtures[move.from].name,
+                        move.line ? fmt::format("carries out no block of line {}", *move.line)
+                                  : fmt::format("has no M{}", *move.code));
+        finding.cure = move.line ? "Let the set-up name a line with a block that runs, or an "
+                                   "M code."
+                                 : "Write the M code that stops the program for the move.";
+        run_.findings.push_back(std::move(finding));
+    }
 }
 
 CheckProgress ProgramRunner::progress(const gcode::BlockResult& block) {

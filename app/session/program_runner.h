@@ -52,6 +52,10 @@ private:
     void enter(const std::vector<core::BlockTime>& timed);
     /// What the program as a whole does, against the size and the place of the stock.
     void hold_against_stock(const core::SimulatorState& state);
+    /// Fixture moves of the lines before a restart: they have been made.
+    void make_moves_before(uint32_t line);
+    /// Fixture moves that the set-up asks for and no block has made.
+    void tell_of_moves_not_made();
     CheckProgress progress(const gcode::BlockResult& block);
 
     const gcode::Program& program_;
@@ -67,6 +71,8 @@ private:
     OffsetWatch offsets_ = {};
     UnitsWatch units_ = {};
     LengthWatch lengths_ = {};
+    std::set<size_t> moves_made_;             // of the set-up's fixture moves
+    std::vector<core::Event> moves_at_start_; // of a restart
 };
 
 } // namespace app

@@ -17,6 +17,7 @@ struct ProfileElement {
 /// A body of revolution about Z, as the union of convex pieces.
 struct RevolvedProfile {
     std::vector<ProfileElement> elements;
+    double form_error = 0.0; // how far the true surface may be off the pieces, mm
 
     bool empty() const { return elements.empty(); }
 };

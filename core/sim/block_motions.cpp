@@ -48,7 +48,7 @@ void BlockRun::round_corners(const Motion& motion) {
     RoundedCorners& corners = state.corners;
     if (corners.by == 0.0) return;
     off_path = std::max(off_path, corners.by);
-    if (use(motion) == FluteUse::cutting) corners.of_cuts = std::max(corners.of_cuts, corners.by);
+    if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool);
     state.assumptions.insert(
         fmt::format("feeds may be up to {:g} mm off their programmed way while the control rounds "
                     "corners (G64): clearances say so",

@@ -139,16 +139,29 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
     return finding;
 }
 
+bool BlockRun::follows_cuts() const {
+    const RoundedCorners& corners = state.corners;
+    if (corners.by_several || (corners.tool && corners.tool != state.tool)) return false;
+    const bool rises = std::all_of(legs.begin(), legs.end(), [](const TimedLeg& timed) {
+        const auto& [from, to] = std::pair(timed.leg.places.front(), timed.leg.places.back());
+        for (size_t i = 0; i < axis_count; ++i)
+            if (i == 2 ? to[i] < from[i] : to[i] != from[i]) return false;
+        return timed.leg.places.size() <= 2;
+    });
+    return rises || (result.motion != BlockMotion::rapid && corners.by == corners.of_cuts);
+}
+
 void BlockRun::conclude() {
     std::sort(result.pairs.begin(), result.pairs.end(),
               [](const PairClearance& a, const PairClearance& b) {
                   return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
                          < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
+    const bool follows = follows_cuts();
     std::vector<double> on_the_way; // how near each pair is where the program goes
     for (PairClearance& pair : result.pairs) {
         on_the_way.push_back(pair.upper);
-        widen(pair, off_path, state.corners);
+        widen(pair, off_path, state.corners, follows);
     }
     if (const PairClearance* worst = deciding_pair(result.pairs)) {
         result.deciding = static_cast<size_t>(worst - result.pairs.data());
@@ -158,6 +171,14 @@ void BlockRun::conclude() {
         if (result.pairs[i].verdict != Verdict::clear || result.deciding == i)
             settle_time(*this, result.pairs[i], on_the_way[i]);
     result.verdict = std::max(result.verdict, at_change);
+    if (setup.detail == Detail::verdict && result.deciding
+        && result.pairs[*result.deciding].verdict == Verdict::clear) {
+        // Of the others only bounds are known: which pair decides is not.
+        double least = infinity;
+        for (const PairClearance& pair : result.pairs)
+            least = std::min(least, pair.lower - pair.allowance.distance);
+        if (least < result.pairs[*result.deciding].margin()) result.deciding.reset();
+    }
     if (result.motion != BlockMotion::none) {
         CheckMemory& memory = state.memory;
         memory.bounds.clear();

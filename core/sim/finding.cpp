@@ -13,7 +13,7 @@ namespace {
 
 /// Every rule a set-up may name, with its own severity. `program` stands for what the interpreter
 /// remarks about a block.
-constexpr std::array<std::pair<const char*, Severity>, 37> rules = {{
+constexpr std::array<std::pair<const char*, Severity>, 38> rules = {{
     {"collision", Severity::error},
     {"near-miss", Severity::error},
     {"undecided", Severity::error},
@@ -45,6 +45,7 @@ constexpr std::array<std::pair<const char*, Severity>, 37> rules = {{
     {"over-travel", Severity::error},
     {"rotary-with-tool-down", Severity::error},
     {"first-move", Severity::warning},
+    {"fixture-move", Severity::error},
     {"rest-material", Severity::note},
     {"gouge", Severity::error},
     {"loose-piece", Severity::warning},

@@ -178,6 +178,8 @@ bool LegCheck::is_in_own_cut(const Leg& leg, size_t fixture) const {
     if (way.turns || way.places.size() > 2) return false;
     const auto box = box_beside_stock(fixture);
     const Allowance contact = allowance_of(setup_, {PartKind::flutes});
+    if (memory_.off_path > contact_depth(contact))
+        return false; // corners may stand that were rounded
     return box
            && runs_in_own_cut(cuts->second, *box,
                               {.flutes = tool_.parts[0].profile,

@@ -202,7 +202,7 @@ Transform shifted_pose(const Machine& machine, const Mount& target, const Mount&
 RelativeLeg without_turning(const Machine& machine, const Mount& target, const Mover& mover,
                             const Leg& leg) {
     RelativeLeg relative;
-    relative.error = leg.path_error;
+    relative.error = leg.path_error + mover.form_error;
     for (const AxisValues& place : leg.places) {
         const Transform pose = machine.has_rotary()
                                    ? target_from_mover(machine, target, mover.mount, place)
@@ -309,7 +309,7 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     }
     const double reach = (reach_from_axes(machine, axes, middle, centre) + 0.5 * travel) / bound;
     const double curve = 0.25 * turn * (turn * reach + travel);
-    relative.error = leg.path_error + curve + 0.5 * turn * mover.reach;
+    relative.error = leg.path_error + mover.form_error + curve + 0.5 * turn * mover.reach;
     relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
     return relative;
 }

@@ -58,6 +58,7 @@ struct Mover {
     Mount mount;
     Vec3 centre = Vec3(0.0);
     double reach = 0.0;
+    double form_error = 0.0; // of its shape; adds to the errors of its legs
 };
 
 /// The leg as the target sees the mover pass.

@@ -9,10 +9,12 @@ MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolP
     const Aabb box = bounds(part.profile);
     const Vec3 centre(0.0, 0.0, box.center().z);
     const double reach = std::hypot(box.max.x, 0.5 * box.size().z);
-    return {
-        .kind = part.kind,
-        .profile = &part.profile,
-        .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})}, centre, reach}};
+    return {.kind = part.kind,
+            .profile = &part.profile,
+            .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})},
+                      centre,
+                      reach,
+                      part.profile.form_error}};
 }
 
 MovingBody moving_machine_body(const Setup& setup, size_t index) {

@@ -18,7 +18,7 @@ double off_way(const Pair& pair, double of_block, const RoundedCorners& corners)
     return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
 }
 
-void widen(PairClearance& pair, double of_block, const RoundedCorners& corners) {
+void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts) {
     const double off = off_way(pair.pair, of_block, corners);
     if (off == 0.0) return;
     pair.lower = std::max(0.0, pair.lower - off);
@@ -26,7 +26,8 @@ void widen(PairClearance& pair, double of_block, const RoundedCorners& corners) 
     pair.upper += off;
     if (pair.allowance.distance > resolution) {
         pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
-    } else if (pair.pair.fixture && pair.lower == 0.0 && off > contact_depth(pair.allowance)) {
+    } else if ((pair.pair.fixture || !follows_cuts) && pair.lower == 0.0
+               && off > contact_depth(pair.allowance)) {
         pair.verdict = std::max(pair.verdict, Verdict::undecided);
     }
 }

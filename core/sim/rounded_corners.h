@@ -12,8 +12,18 @@ namespace core {
 /// control joins, so all of a feed is taken to be as far off as its corners. Rapids are not
 /// rounded.
 struct RoundedCorners {
-    double by = 0.0;      // of feeds from now on; 0 under G61 and G61.1
-    double of_cuts = 0.0; // of those that have cut: the stock is known no better
+    double by = 0.0;                // of feeds from now on; 0 under G61 and G61.1
+    double of_cuts = 0.0;           // of those that have cut: the stock is known no better
+    std::optional<ToolNumber> tool; // that has cut so
+    bool by_several = false;        // tools
+
+    /// Takes a feed that cuts.
+    void note_cut(const std::optional<ToolNumber>& by_tool) {
+        if (by == 0.0) return;
+        by_several = by_several || (tool && tool != by_tool);
+        tool = by_tool;
+        of_cuts = std::max(of_cuts, by);
+    }
 };
 
 /// What is stated before the program says anything.
@@ -27,10 +37,11 @@ double off_way(const Pair& pair, double of_block, const RoundedCorners& corners)
 
 /// Takes off the lower bound of a pair, and adds to the upper one, how far its bodies may be off.
 ///
-/// Of a pair that may touch, the verdict about the stock stays: flutes and shank are off together,
-/// and so run where they would have run.
+/// Of a pair that may touch, the verdict about the stock stays where `follows_cuts` says that the
+/// same tool is off as its cuts were, or leaves them upwards: it is where it has cut. Else it stays
+/// if all that may stand of a corner is less than the contact depth.
 ///
 /// `of_block`: by how much feeds of the block may be off; 0 if there was none.
-void widen(PairClearance& pair, double of_block, const RoundedCorners& corners);
+void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts);
 
 } // namespace core

@@ -98,6 +98,19 @@ void bare_upper_face(const ToolDescription& tool, const RevolvedProfile& above,
     if (r > 0.0 && r < top.r1) flutes.elements.push_back({z, r, z + stub, r, 0.0});
 }
 
+/// Lets the flutes reach past their end by less than any length of theirs is known. A cut exactly
+/// as deep as they are long would leave a skin at the top of the outer model, thinner than rounding
+/// or the error of an arc, that a shank then seems to meet.
+void reach_past_end(RevolvedProfile& flutes) {
+    constexpr double past = 0.005; // mm
+    ProfileElement& last = flutes.elements.back();
+    if (last.margin != 0.0 || last.r1 == 0.0) return;
+    if (last.r0 == last.r1)
+        last.z1 += past;
+    else
+        flutes.elements.push_back(ProfileElement{last.z1, last.r1, last.z1 + past, last.r1, 0.0});
+}
+
 } // namespace
 
 const char* name_of(PartKind kind) {
@@ -131,6 +144,8 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
     shank.elements.insert(shank.elements.end(), steps.elements.begin(), steps.elements.end());
     if (cuts_undercuts(description.shape))
         bare_upper_face(description, shank.empty() ? holder : shank, head.flutes);
+    else
+        reach_past_end(head.flutes);
     tool.parts.push_back({PartKind::flutes, std::move(head.flutes)});
     if (!shank.empty()) tool.parts.push_back({PartKind::shank, std::move(shank)});
     if (!holder.empty()) tool.parts.push_back({PartKind::holder, std::move(holder)});

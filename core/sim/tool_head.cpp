@@ -31,6 +31,7 @@ struct Rounding {
 void add_cones(RevolvedProfile& profile, const Rounding& round, double from, double to) {
     const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / round.corner));
     const int cones = std::max(4, static_cast<int>(std::ceil((to - from) / step)));
+    profile.form_error = rounding_sag;
     ProfileElement below = round.at(from);
     for (int i = 1; i <= cones; ++i) {
         const bool upright = i == cones && to == right_angle;

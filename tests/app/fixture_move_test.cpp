@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/app/checked.h"
@@ -52,6 +53,36 @@ TEST(FixtureMove, OntoTheToolIsFoundWhereItIsPut) {
     const Checked checked = check(with_post("[[fixture.move]]\nline = 8\nat = [-60, 0, 0]\n"),
                                   program({"G0 X-20. Y50.", "Z10.", "M61", "Z60."}));
     EXPECT_EQ(checked.at_line(8).pair("flutes post").verdict, "collision");
+}
+
+TEST(FixtureMove, ByACodeThatStopsComesBehindTheMotionOfItsBlock) {
+    for (const std::string code : {"M0", "M1", "M60", "M61"}) {
+        const std::string move = "[[fixture.move]]\ncode = \"" + code + "\"\nremove = true\n";
+        const Checked checked =
+            check(with_post(move), program({"G0 X-20. Y50.", "Z10.", "X120. " + code, "Z60."}));
+        EXPECT_EQ(checked.at_line(8).verdict, "collision") << code;
+    }
+}
+
+TEST(FixtureMove, StandsInBothPlacesWhereTheOrderIsTheBuilders) {
+    const std::string away = "[[fixture.move]]\ncode = \"M61\"\nat = [0, 0, 100]\n";
+    const Checked checked =
+        check(with_post(away), program({"G0 X-20. Y50.", "Z10.", "X120. M61", "Z60."}));
+    EXPECT_EQ(checked.at_line(8).verdict, "collision");
+}
+
+TEST(FixtureMove, ThatNoBlockMakesIsAnError) {
+    // Line 8 is a comment; the program has seven more lines, and no M62.
+    const std::string text = program({"G0 X-20. Y50.", "Z10.", "(MOVE THE POST)", "Z60."});
+    for (const int line : {8, 99}) {
+        const Checked checked = check(
+            with_post(fmt::format("[[fixture.move]]\nline = {}\nremove = true\n", line)), text);
+        EXPECT_EQ(checked.status, 1);
+        EXPECT_EQ(checked.errors(), "fixture-move");
+    }
+    const Checked coded =
+        check(with_post("[[fixture.move]]\ncode = \"M62\"\nremove = true\n"), text);
+    EXPECT_EQ(coded.status, 0) << "one set-up may serve several programs";
 }
 
 } // namespace

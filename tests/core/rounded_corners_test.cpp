@@ -30,6 +30,7 @@ struct Corner {
     core::Setup setup;
     SimulatorState state;
     uint32_t block = 0;
+    Vec3 at = Vec3(20, 20, 10);
     PairClearance seen = {};
     std::vector<Verdict> verdicts = {};
 
@@ -44,6 +45,16 @@ struct Corner {
             merge(seen, pair);
             verdicts.push_back(pair.verdict);
         }
+    }
+    Verdict go(MotionKind kind, const Vec3& to) {
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        const Motion motion{.kind = kind,
+                            .from = {at.x, at.y, at.z + z},
+                            .to = {to.x, to.y, to.z + z},
+                            .feed = kind == MotionKind::feed ? 600.0 : 0.0};
+        at = to;
+        const std::vector<Event> events{motion};
+        return run_block(setup, {BlockIndex{block++}, false, events}, state).verdict;
     }
     void pass(MotionKind kind = MotionKind::feed) {
         const double z = setup.tools.at(ToolNumber{1}).length;
@@ -113,6 +124,23 @@ TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
     unstated.pass();
     EXPECT_NEAR(unstated.seen.lower, 2.1, 1e-6);
     EXPECT_EQ(unstated.state.assumptions.size(), 1U) << "what is taken for granted is listed";
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereACornerMayStandThatWasNotCut) {
+    // A square corner in a slot, cut 2 mm off at most, and a rapid down into it afterwards.
+    for (const double tolerance : {0.02, 2.0}) {
+        core::Setup setup = around_a_corner(20.0, true);
+        setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
+        Corner corner(std::move(setup));
+        corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}, within(tolerance)});
+        corner.go(MotionKind::feed, {20, 20, -5});
+        corner.go(MotionKind::feed, {60, 20, -5});
+        corner.go(MotionKind::feed, {60, 60, -5});
+        EXPECT_EQ(corner.go(MotionKind::rapid, {60, 60, 10}), Verdict::clear) << "as it came";
+        corner.go(MotionKind::rapid, {60, 20, 10});
+        EXPECT_EQ(corner.go(MotionKind::rapid, {60, 20, -4.9}),
+                  tolerance > 1.0 ? Verdict::undecided : Verdict::clear);
+    }
 }
 
 TEST(RoundedCorners, LeaveACrashACrash) {

@@ -220,6 +220,50 @@ TEST(Simulator, KeepsTheTimeOfAToolThatIsChangedLaterInTheBlock) {
     EXPECT_NEAR(holder.time, 7.0, 1e-6);
 }
 
+TEST(Simulator, KeepsABallOfConesBelowTheTruth) {
+    // Flutes that end on the upper half of the ball divide it, so that it is made of cones.
+    core::Setup setup = plain_setup();
+    ToolDescription ball;
+    ball.number = ToolNumber{1};
+    ball.shape = ToolShape::ball;
+    ball.diameter = 10;
+    ball.flute_length = 8;
+    setup.tools[ToolNumber{1}] = *assemble(ball);
+    Fixture edge;
+    edge.body = convex(Aabb{{200, -50, -100}, {300, 50, 0}});
+    setup.fixtures.push_back(edge);
+    for (double away = 0.05; away < 9.0; away += 0.37) {
+        Shift run(setup);
+        run.rapid({200 - away, 0, 1.0});
+        const BlockResult result = run.rapid({200 - away, 0, 1.0 + 1e-9});
+        const PairClearance* pair = pair_of(result, PartKind::flutes, 0);
+        ASSERT_TRUE(pair);
+        const double truth = std::hypot(away, 6.0) - 5.0;
+        EXPECT_LE(pair->lower, truth + 1e-9) << away;
+        EXPECT_GE(pair->upper, truth - 1e-9) << away;
+        EXPECT_LE(pair->upper - pair->lower, 1e-3) << away;
+    }
+}
+
+TEST(Simulator, LeavesNoSkinWhereItCutsAsDeepAsItsFlutesAreLong) {
+    core::Setup setup = plain_setup();
+    setup.tools.at(ToolNumber{1}) = [] {
+        ToolDescription tool;
+        tool.number = ToolNumber{1};
+        tool.diameter = 10;
+        tool.flute_length = 20;
+        tool.neck_diameter = 9;
+        tool.neck_length = 40;
+        return *assemble(tool);
+    }();
+    Shift run(setup);
+    run.rapid({-20, 50, -20});
+    EXPECT_EQ(run.feed({50, 50, -20}).verdict, Verdict::clear);
+    EXPECT_EQ(run.circle({50, 45, -20}, {50, 50, -20}).verdict, Verdict::clear);
+    EXPECT_EQ(run.rapid({50, 50, 10}).verdict, Verdict::clear);
+    EXPECT_EQ(run.rapid({50, 48, 10}).verdict, Verdict::clear);
+}
+
 TEST(Simulator, CannotJudgeAToolThatNobodyDescribed) {
     Shift run(plain_setup());
     EXPECT_EQ(rules(run.give({ToolChange{ToolNumber{9}}})), Rules({"tool-not-in-table"}));

@@ -275,7 +275,7 @@ TEST(ToolHead, LeavesTheOutlineAboveTheFlutesToTheShank) {
     }));
     ASSERT_TRUE(tool.has_value()) << tool.error().message;
     ASSERT_EQ(tool->parts.size(), 2U);
-    EXPECT_EQ(bounds(tool->parts[0].profile).max.z, 6.0);
+    EXPECT_EQ(bounds(tool->parts[0].profile).max.z, 6.005);
     EXPECT_EQ(bounds(tool->parts[1].profile).min.z, 6.0);
     EXPECT_EQ(tool->length, 20.0);
     EXPECT_EQ(tool->description.diameter, 8.0);
