@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/session/m_codes.h"
+#include "app/session/block_events.h"
 #include "core/sim/finding_text.h"
 #include "gcode/error_rules.h"
 #include "gcode/restart.h"
@@ -59,29 +59,6 @@ void keep_what_tells(core::BlockResult& result) {
     result.pairs = std::move(kept);
     result.findings.clear();
     result.findings.shrink_to_fit();
-}
-
-/// T0 empties the spindle, unless a tool has that number.
-void take_tool_zero(core::Event& event) {
-    auto* change = std::get_if<core::ToolChange>(&event);
-    if (change && !change->tool) change->tool = core::ToolNumber{0};
-}
-
-/// The fixtures that are moved before a block.
-std::vector<core::Event> fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
-    std::vector<core::Event> events;
-    for (const core::FixtureMove& move : setup.fixture_moves) {
-        const bool here = move.line && block.file.empty() && block.line == *move.line;
-        if (!here && !(move.code && has_m_code(block.text, *move.code))) continue;
-        events.emplace_back(core::FixtureChange{move.from, false});
-        if (move.to) events.emplace_back(core::FixtureChange{*move.to, true});
-    }
-    return events;
-}
-
-void take_any_speed(core::Event& event) {
-    auto* spindle = std::get_if<core::SpindleChange>(&event);
-    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
 }
 
 } // namespace
@@ -156,16 +133,6 @@ std::optional<core::Error> ProgramRunner::refusal(const gcode::BlockResult& bloc
                        std::string(block.file)};
 }
 
-std::vector<core::Event> ProgramRunner::events_of(const gcode::BlockResult& block) {
-    std::vector<core::Event> events = fixture_events(run_.setup, block);
-    for (core::Event& event : gcode::lower(block, lowering_)) events.push_back(event);
-    for (core::Event& event : events) {
-        if (run_.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
-        if (speed_by_hand) take_any_speed(event);
-    }
-    return events;
-}
-
 void ProgramRunner::remark_on(const gcode::BlockResult& block) {
     for (const gcode::Warning& warning : block.warnings) {
         // What the set-up states is stated, be it all zero.
@@ -179,12 +146,15 @@ void ProgramRunner::remark_on(const gcode::BlockResult& block) {
 
 std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
                                                 core::SimulatorState& state) {
-    const std::vector<core::Event> events = events_of(block);
+    const gcode::Lowering lowering_before = lowering_;
+    const std::vector<core::Event> events =
+        events_of(run_.setup, block, lowering_, speed_by_hand);
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
                          block.calls, {}};
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
     watch_length(lengths_, run_.setup, of_block, block.warnings, state);
+    follow_cure(block, {before_, lowering_before, state, offsets_});
     checked.result = core::run_block(run_.setup, of_block, state);
     remark_on(block);
     for (const core::Finding& finding : checked.result.findings) run_.findings.push_back(finding);
@@ -198,6 +168,23 @@ std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
     core::add_block(clock_, of_block, timed);
     enter(timed);
     return std::nullopt;
+}
+
+void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPlace& before) {
+    const bool is_first = lengths_.is_open && lengths_.doubts.back().first == block.block;
+    if (!lengths_.is_open || is_first) end_cure();
+    if (is_first) {
+        followed_ = lengths_.doubts.size() - 1;
+        cured_ = std::make_unique<CuredRun>(program_, environment_, run_.setup, speed_by_hand,
+                                            before, lengths_.doubts.back());
+    }
+    if (cured_) cured_->follow(block);
+}
+
+void ProgramRunner::end_cure() {
+    if (!cured_) return;
+    cured_->end(lengths_.doubts[followed_]);
+    cured_.reset();
 }
 
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
@@ -215,6 +202,7 @@ void ProgramRunner::hold_against_stock(const core::SimulatorState& state) {
 
 void ProgramRunner::to_the_end(core::SimulatorState& state) {
     run_blocks(state);
+    end_cure();
     for (core::Finding& finding : core::end_of_run(run_.setup, state))
         run_.findings.push_back(std::move(finding));
     if (stock_is_stated) hold_against_stock(state);
@@ -233,6 +221,7 @@ CheckProgress ProgramRunner::progress(const gcode::BlockResult& block) {
 
 void ProgramRunner::run_blocks(core::SimulatorState& state) {
     while (true) {
+        before_ = place_;
         const auto next = interpreter_.next(place_);
         if (!next) return stop(next.error());
         if (!*next) break;
