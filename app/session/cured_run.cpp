@@ -7,10 +7,15 @@ namespace app {
 CuredRun::CuredRun(const gcode::Program& program, const gcode::Environment& environment,
                    const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
                    const LengthDoubt& doubt)
-    : setup_(setup), speed_by_hand_(speed_by_hand), length_(doubt.length),
+    : setup_(setup),
+      speed_by_hand_(speed_by_hand),
+      length_(doubt.length),
       library_(program, gcode::dialect(environment.dialect), environment.search_path),
-      interpreter_(library_, environment), place_(before.at), lowering_(before.lowering),
-      state_(before.state), offsets_(before.offsets) {
+      interpreter_(library_, environment),
+      place_(before.at),
+      lowering_(before.lowering),
+      state_(before.state),
+      offsets_(before.offsets) {
     if (!doubt.number) return;
     gcode::LengthOffset& entry = place_.tables.write().lengths[*doubt.number];
     entry.length = length_;

@@ -147,8 +147,7 @@ void ProgramRunner::remark_on(const gcode::BlockResult& block) {
 std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
                                                 core::SimulatorState& state) {
     const gcode::Lowering lowering_before = lowering_;
-    const std::vector<core::Event> events =
-        events_of(run_.setup, block, lowering_, speed_by_hand);
+    const std::vector<core::Event> events = events_of(run_.setup, block, lowering_, speed_by_hand);
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
                          block.calls, {}};
