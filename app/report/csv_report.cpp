@@ -1,9 +1,8 @@
 #include "app/report/csv_report.h"
 
-#include <algorithm>
-#include <map>
-
 #include <fmt/format.h>
+
+#include "app/report/block_rules.h"
 
 namespace app {
 namespace {
@@ -26,24 +25,11 @@ std::string joined(const std::vector<uint32_t>& lines) {
     return text;
 }
 
-using FindingsOfBlocks = std::map<core::BlockIndex, std::vector<const core::Finding*>>;
-
-FindingsOfBlocks by_block(const CheckRun& run) {
-    FindingsOfBlocks findings;
-    for (const core::Finding& finding : run.findings)
-        if (finding.block) findings[*finding.block].push_back(&finding);
-    for (auto& [block, some] : findings)
-        std::stable_sort(some.begin(), some.end(),
-                         [](const auto* a, const auto* b) { return a->severity > b->severity; });
-    return findings;
-}
-
-std::string rules_of(const FindingsOfBlocks& findings, core::BlockIndex block) {
-    std::string rules;
-    if (const auto found = findings.find(block); found != findings.end())
-        for (const core::Finding* finding : found->second)
-            rules += (rules.empty() ? "" : " ") + finding->rule;
-    return rules;
+/// The rules of a block in one cell.
+std::string cell_of(const std::vector<std::string>& rules) {
+    std::string text;
+    for (const std::string& rule : rules) text += (text.empty() ? "" : " ") + rule;
+    return text;
 }
 
 /// From `lower` to `body_z`; all empty for a block that does not move.
@@ -68,7 +54,7 @@ std::string clearance_cells(const CheckRun& run, const core::BlockResult& result
 } // namespace
 
 std::string csv_report(const CheckRun& run) {
-    const FindingsOfBlocks findings = by_block(run);
+    auto rules = rules_of_blocks(run);
     std::string text = column_names;
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
@@ -79,7 +65,7 @@ std::string csv_report(const CheckRun& run) {
                         core::value_of(block.block), cell(block.file), block.line,
                         joined(block.calls), cell(block.text), core::name_of(result.motion), tool,
                         result.time, result.duration, result.removed, clearance_cells(run, result),
-                        core::name_of(result.verdict), rules_of(findings, block.block));
+                        core::name_of(result.verdict), cell_of(rules[block.block]));
     }
     return text;
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/report/block_rules.h"
 #include "app/version.h"
 
 namespace app {
@@ -40,7 +41,8 @@ void add_no_pair(Json& json, const CheckRun& run, const core::BlockResult& resul
     for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
 }
 
-Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
+Json block_json(const CheckRun& run, const CheckedBlock& block,
+                const std::vector<std::string>& rules, bool pairs) {
     const core::BlockResult& result = block.result;
     Json json;
     json["block"] = core::value_of(block.block);
@@ -60,6 +62,7 @@ Json block_json(const CheckRun& run, const CheckedBlock& block, bool pairs) {
             add_no_pair(json, run, result);
     }
     json["verdict"] = core::name_of(result.verdict);
+    json["rules"] = rules;
     if (!pairs) return json;
     json["pairs"] = Json::array();
     for (const core::PairClearance& pair : result.pairs) {
@@ -184,9 +187,10 @@ Json record(const char* name, Json values) {
 
 std::string json_report(const CheckRun& run, bool pairs) {
     Json json = heading_json(run);
+    auto rules = rules_of_blocks(run);
     json["blocks"] = Json::array();
     for (const CheckedBlock& block : run.blocks)
-        json["blocks"].push_back(block_json(run, block, pairs));
+        json["blocks"].push_back(block_json(run, block, rules[block.block], pairs));
     json["findings"] = Json::array();
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
@@ -196,8 +200,9 @@ std::string json_report(const CheckRun& run, bool pairs) {
 
 std::string json_lines_report(const CheckRun& run, bool pairs) {
     std::string lines = dumped(record("program", heading_json(run)), -1);
+    auto rules = rules_of_blocks(run);
     for (const CheckedBlock& block : run.blocks)
-        lines += dumped(record("block", block_json(run, block, pairs)), -1);
+        lines += dumped(record("block", block_json(run, block, rules[block.block], pairs)), -1);
     for (const core::Finding& finding : run.findings)
         lines += dumped(record("finding", finding_json(run, finding)), -1);
     Json ending = {{"record", "end"}, {"verdict", core::name_of(run.verdict)}};

@@ -18,7 +18,13 @@ std::string trimmed(std::string_view text) {
 
 std::string clipped(const std::string& text, size_t width) {
     if (text.size() <= width) return text;
-    return text.substr(0, width - 3) + "...";
+    // Never within a character of UTF-8, which has at most 3 bytes behind its first.
+    const auto goes_on = [&](size_t at) {
+        return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+    };
+    size_t end = width - 3;
+    for (int i = 0; i < 3 && end > 0 && goes_on(end); ++i) --end;
+    return text.substr(0, end) + "...";
 }
 
 std::string wrapped(const std::string& text, size_t indent, size_t hang) {

@@ -12,7 +12,7 @@ namespace app {
 /// Without white space at both ends and with no control characters.
 std::string trimmed(std::string_view text);
 
-/// At most `width` characters, `...` where something is missing.
+/// At most `width` bytes, `...` where something is missing; characters of UTF-8 stay whole.
 std::string clipped(const std::string& text, size_t width);
 
 /// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.

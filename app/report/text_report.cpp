@@ -126,10 +126,12 @@ std::string summary_text(const CheckRun& run) {
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = nearest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-        text += fmt::format("  tightest   line {}: {} / {}, {} mm, {:.3f} mm to keep\n",
-                            block->line, core::part_name(run.setup, pair.pair),
-                            core::body_name(run.setup, pair.pair),
-                            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+        const std::string heading = "  tightest   ";
+        const std::string tightest = fmt::format(
+            "line {}: {} / {}, {} mm, {:.3f} mm to keep", block->line,
+            core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
+            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+        text += heading + wrapped(tightest, heading.size()).substr(heading.size());
     }
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
     text += fmt::format("  removed    {:.1f} mm3\n", run.removed);

@@ -39,6 +39,7 @@ struct CheckRun {
     std::vector<std::string> assumptions;
     std::vector<CheckedBlock> blocks;
     std::vector<core::Finding> findings; // in the order of the blocks
+    std::vector<core::Finding> taken_in; // those that another finding tells of
     core::Verdict verdict = core::Verdict::clear;
     std::optional<core::Error> stopped; // why the program could not be run to its end
     core::Statistics statistics;

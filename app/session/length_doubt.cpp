@@ -39,13 +39,33 @@ struct Counted {
 };
 
 /// Whether a finding can come of a tool that stands too low.
-bool is_consequence(const core::Finding& finding) {
+bool may_come_of_length(const core::Finding& finding) {
     if (is_cause(finding.rule) || finding.rule == "spindle-off") return false;
     if (finding.rule == "tool-change-unsafe") return false;
-    // Of the axes it is Z alone that goes elsewhere.
-    if (finding.rule == "over-travel") return finding.message.rfind("Z ", 0) == 0;
-    return !finding.pair[0].empty() || finding.rule == "air-cut"
+    return finding.rule == "over-travel" || !finding.pair[0].empty() || finding.rule == "air-cut"
            || finding.rule == "offset-implausible";
+}
+
+/// The letter of the axis that a finding about a limit begins with.
+char axis_of(const core::Finding& finding) { return finding.message.substr(0, 1)[0]; }
+
+/// Whether a finding about the program as it is and one about it with the right length are about
+/// the same thing, be it milder.
+bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
+    if (!found.pair[0].empty()) return found.block == left.block && found.pair == left.pair;
+    if (found.rule != left.rule) return false;
+    if (found.rule == "over-travel")
+        return found.block == left.block && axis_of(found) == axis_of(left);
+    return true; // of a rule that looks at many blocks
+}
+
+/// Whether a finding is gone with the right length, as far as that was tried.
+bool is_consequence(const LengthDoubt& doubt, const core::Finding& finding) {
+    if (!finding.block || *finding.block < doubt.first || *finding.block > doubt.last) return false;
+    if (!doubt.cured_to || *finding.block > *doubt.cured_to) return false;
+    return may_come_of_length(finding)
+           && std::none_of(doubt.left.begin(), doubt.left.end(),
+                           [&](const auto& left) { return are_about_the_same(finding, left); });
 }
 
 /// "the stock", "clamp-1 and the stock", "clamp-1, clamp-2 and the stock".
@@ -142,7 +162,13 @@ void watch_length(LengthWatch& watch, const core::Setup& setup, const core::Bloc
     if (too_low <= wear) return;
     state.watch.length_in_doubt = true;
     if (!is_told) return;
-    watch.doubts.push_back({block.block, block.block, too_low});
+    watch.doubts.push_back({.first = block.block,
+                            .last = block.block,
+                            .too_low = too_low,
+                            .length = tool->second.length,
+                            .number = counted.offset.number,
+                            .cured_to = {},
+                            .left = {}});
     watch.is_open = true;
 }
 
@@ -151,8 +177,7 @@ void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) 
         const auto cause = cause_of(run, doubt);
         if (!cause) continue;
         const auto comes_of_it = [&](const core::Finding& finding) {
-            return finding.block && *finding.block >= doubt.first && *finding.block <= doubt.last
-                   && is_consequence(finding);
+            return is_consequence(doubt, finding);
         };
         Consequences all;
         for (const core::Finding& finding : run.findings)
@@ -163,6 +188,8 @@ void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) 
                 return comes_of_it(other) && other.severity == all.worst
                        && (!all.collides || collides_in(run, other));
             });
+        std::copy_if(run.findings.begin(), run.findings.end(), std::back_inserter(run.taken_in),
+                     comes_of_it);
         std::erase_if(run.findings, comes_of_it);
         tell_together(run, *cause, all, doubt.too_low, std::move(first));
     }

@@ -104,7 +104,10 @@ void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::In
         OffsetUse& use = watch[index];
         use.is_judged = use.is_judged && way->upright;
         if (motion->kind == core::MotionKind::rapid) {
-            use.rapids_through = use.rapids_through || way->low() < stock.max.z - slack;
+            // Out of a cut that goes through, a rapid may leave upward.
+            const bool leaves = way->from.z < way->to.z;
+            use.rapids_through =
+                use.rapids_through || (!leaves && way->low() < stock.max.z - slack);
             continue;
         }
         if (!core::turns_to_cut(state.spindle, tool->second) || !at.modal.position[2]) continue;

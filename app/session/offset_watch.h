@@ -15,7 +15,7 @@ struct OffsetUse {
     double lowest = core::infinity, highest = -core::infinity; // of these feeds, from the datum
     double stock_bottom = 0.0, stock_top = 0.0;                // likewise
     double under = core::infinity; // by how much these below are at least below the stock
-    bool rapids_through = false;   // it crosses the stock's height on rapids
+    bool rapids_through = false;   // rapids go across at the stock's height or down to it
     bool is_judged = true;         // false: the tool leaned
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/session/block_events.h"
 #include "app/session/m_codes.h"
 #include "core/sim/finding_text.h"
 #include "gcode/error_rules.h"
@@ -60,46 +61,6 @@ void keep_what_tells(core::BlockResult& result) {
     result.pairs = std::move(kept);
     result.findings.clear();
     result.findings.shrink_to_fit();
-}
-
-/// T0 empties the spindle, unless a tool has that number.
-void take_tool_zero(core::Event& event) {
-    auto* change = std::get_if<core::ToolChange>(&event);
-    if (change && !change->tool) change->tool = core::ToolNumber{0};
-}
-
-/// The fixtures that are moved before a block.
-/// Whether a code is carried out behind the motion of its block, on all controls: M0, M1 and M60
-/// stop the program there. Of others the builder decides.
-bool comes_after_motion(int code) { return code == 0 || code == 1 || code == 60; }
-
-/// What a block does to the fixtures, before and after its motions.
-struct FixtureEvents {
-    std::vector<core::Event> before, after;
-};
-
-FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockResult& block,
-                             std::set<size_t>& made) {
-    FixtureEvents events;
-    for (size_t i = 0; i < setup.fixture_moves.size(); ++i) {
-        const core::FixtureMove& move = setup.fixture_moves[i];
-        const bool here = move.line && block.file.empty() && block.line == *move.line;
-        const bool coded = !here && move.code && has_m_code(block.text, *move.code);
-        if (!here && !coded) continue;
-        made.insert(i);
-        // Where nobody knows the order, a fixture is there while the block moves: where it goes
-        // from, and where it goes to.
-        (here ? events.before : events.after).emplace_back(core::FixtureChange{move.from, false});
-        if (!move.to) continue;
-        (coded && comes_after_motion(*move.code) ? events.after : events.before)
-            .emplace_back(core::FixtureChange{*move.to, true});
-    }
-    return events;
-}
-
-void take_any_speed(core::Event& event) {
-    auto* spindle = std::get_if<core::SpindleChange>(&event);
-    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
 }
 
 } // namespace
@@ -193,19 +154,6 @@ std::optional<core::Error> ProgramRunner::refusal(const gcode::BlockResult& bloc
                        std::string(block.file)};
 }
 
-std::vector<core::Event> ProgramRunner::events_of(const gcode::BlockResult& block) {
-    const FixtureEvents fixtures = fixture_events(run_.setup, block, moves_made_);
-    std::vector<core::Event> events = std::exchange(moves_at_start_, {});
-    events.insert(events.end(), fixtures.before.begin(), fixtures.before.end());
-    for (core::Event& event : gcode::lower(block, lowering_)) events.push_back(event);
-    events.insert(events.end(), fixtures.after.begin(), fixtures.after.end());
-    for (core::Event& event : events) {
-        if (run_.setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
-        if (speed_by_hand) take_any_speed(event);
-    }
-    return events;
-}
-
 void ProgramRunner::remark_on(const gcode::BlockResult& block) {
     for (const gcode::Warning& warning : block.warnings) {
         // What the set-up states is stated, be it all zero.
@@ -219,12 +167,17 @@ void ProgramRunner::remark_on(const gcode::BlockResult& block) {
 
 std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
                                                 core::SimulatorState& state) {
-    const std::vector<core::Event> events = events_of(block);
+    const gcode::Lowering lowering_before = lowering_;
+    std::vector<core::Event> events = std::exchange(moves_at_start_, {});
+    for (core::Event& event : events_of(run_.setup, block, lowering_, speed_by_hand))
+        events.push_back(event);
+    for (const size_t move : fixture_moves_of(run_.setup, block)) moves_made_.insert(move);
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
                          block.calls, {}};
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
     watch_length(lengths_, run_.setup, of_block, block.warnings, state);
+    follow_cure(block, {before_, lowering_before, state, offsets_});
     checked.result = core::run_block(run_.setup, of_block, state);
     remark_on(block);
     for (const core::Finding& finding : checked.result.findings) run_.findings.push_back(finding);
@@ -238,6 +191,23 @@ std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
     core::add_block(clock_, of_block, timed);
     enter(timed);
     return std::nullopt;
+}
+
+void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPlace& before) {
+    const bool is_first = lengths_.is_open && lengths_.doubts.back().first == block.block;
+    if (!lengths_.is_open || is_first) end_cure();
+    if (is_first) {
+        followed_ = lengths_.doubts.size() - 1;
+        cured_ = std::make_unique<CuredRun>(program_, environment_, run_.setup, speed_by_hand,
+                                            before, lengths_.doubts.back());
+    }
+    if (cured_) cured_->follow(block);
+}
+
+void ProgramRunner::end_cure() {
+    if (!cured_) return;
+    cured_->end(lengths_.doubts[followed_]);
+    cured_.reset();
 }
 
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
@@ -255,6 +225,7 @@ void ProgramRunner::hold_against_stock(const core::SimulatorState& state) {
 
 void ProgramRunner::to_the_end(core::SimulatorState& state) {
     run_blocks(state);
+    end_cure();
     for (core::Finding& finding : core::end_of_run(run_.setup, state))
         run_.findings.push_back(std::move(finding));
     if (stock_is_stated) hold_against_stock(state);
@@ -295,6 +266,7 @@ CheckProgress ProgramRunner::progress(const gcode::BlockResult& block) {
 
 void ProgramRunner::run_blocks(core::SimulatorState& state) {
     while (true) {
+        before_ = place_;
         const auto next = interpreter_.next(place_);
         if (!next) return stop(next.error());
         if (!*next) break;

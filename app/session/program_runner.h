@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/check_run.h"
+#include "app/session/cured_run.h"
 #include "app/session/length_doubt.h"
 #include "app/session/offset_watch.h"
 #include "app/session/units_watch.h"
@@ -43,7 +44,9 @@ private:
     void run_blocks(core::SimulatorState& state);
     /// Runs a block, or says why it cannot be.
     std::optional<core::Error> block(const gcode::BlockResult& block, core::SimulatorState& state);
-    std::vector<core::Event> events_of(const gcode::BlockResult& block);
+    /// Runs the block of a length doubt with the right length, beside the program.
+    void follow_cure(const gcode::BlockResult& block, const ProgramPlace& before);
+    void end_cure();
     std::optional<core::Error> refusal(const gcode::BlockResult& block) const;
     /// A control stops with an alarm where this error is: a block of its own, and a finding if a
     /// rule has a name for it.
@@ -65,6 +68,7 @@ private:
                                    environment_.search_path};
     gcode::Interpreter interpreter_{library_, environment_};
     gcode::InterpreterState place_ = gcode::initial_state(environment_);
+    gcode::InterpreterState before_ = place_; // before the block
     gcode::Lowering lowering_ = gcode::initial_lowering(environment_);
     core::BlockClock clock_ = core::start_clock(run_.setup.machine);
     uint32_t last_line_ = 0; // of the main program
@@ -73,6 +77,8 @@ private:
     LengthWatch lengths_ = {};
     std::set<size_t> moves_made_;             // of the set-up's fixture moves
     std::vector<core::Event> moves_at_start_; // of a restart
+    std::unique_ptr<CuredRun> cured_ = {};
+    size_t followed_ = 0; // the doubt that it is about
 };
 
 } // namespace app

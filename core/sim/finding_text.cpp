@@ -42,6 +42,28 @@ std::string cure_of_rapid(MoveWithin within) {
     return "Raise the retract height, or feed through the material.";
 }
 
+/// What widens the interval of a pair that is not decided, and what would narrow it.
+std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                          const RoundedCorners& corners) {
+    const bool rapid = move.motion == BlockMotion::rapid;
+    const double off = off_way(pair.pair, rapid ? 0.0 : corners.by, corners);
+    // Of an interval that ends at 0 nobody knows how far it would have gone on.
+    if (off > 0.0 && 4.0 * off >= pair.upper - pair.lower)
+        return fmt::format("The control may round corners by {:g} mm (G64): a smaller tolerance, "
+                           "or G61, decides it; if not, give the block more room.",
+                           off);
+    if (move.turns)
+        return "Turn the rotary axes farther away or in shorter blocks, or give the block more "
+               "room.";
+    if (pair.pair.fixture) return "Give the block more room.";
+    const double tolerance = setup.stock.tolerance;
+    if (tolerance <= 0.0)
+        return "A smaller mesh size decides it; if not, give the block more room.";
+    return fmt::format("The raw stock may be {:g} mm larger than stated: measure it and lower "
+                       "`tolerance` of [stock]{}, or give the block more room.",
+                       tolerance, tolerance < setup.mesh_size ? " and the mesh size" : "");
+}
+
 std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body,
                     MoveWithin within) {
     const bool fixture = pair.pair.fixture.has_value();
@@ -53,8 +75,6 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
         return fmt::format("Straight the way is free: move the axes one after another round {}, or "
                            "feed fast instead of the rapid.",
                            body);
-    if (rule == "undecided")
-        return "A smaller mesh size decides it; if not, give the block more room.";
     const double missing = pair.allowance.distance - pair.upper;
     const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
@@ -193,7 +213,8 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
     finding.rule = rule_of(pair, move, spindle_runs);
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
-    finding.cure = cure_of(pair, finding.rule, body, move.within);
+    finding.cure = finding.rule == "undecided" ? cure_of_doubt(setup, pair, move, state.corners)
+                                               : cure_of(pair, finding.rule, body, move.within);
     finding.pair = {part, body_name(setup, pair.pair)};
     finding.shortfall = shortfall_of(pair);
     if (!finding.cure.empty())
