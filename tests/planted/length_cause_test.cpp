@@ -72,7 +72,7 @@ TEST(WrongLength, LeavesTheTopOfZ) {
 }
 
 TEST(WrongLength, TakesInTheLowerEndOfZByWhatIsMissing) {
-    // Z54 is -420 + 95 or 85, 8 mm over or 2 mm under the limit: Z-167 ends at -492 or -502.
+    // Z-167 ends 8 mm above the limit with the right length, 2 mm below it with 10 mm less.
     const auto beside = [](const std::string& z) { return "G0 Z" + z + "\n"; };
     const SetupWriter setup = table_with(85);
     const Checked little = check(setup, with_length(1, 3, beside("-167.")));
