@@ -14,7 +14,7 @@ struct ToolHead {
 };
 
 /// How far a rounding that had to be made of cones stands off the round, mm.
-constexpr double rounding_sag = 0.0004;
+constexpr double rounding_sag = 0.0025;
 
 /// The head of a tool from its sizes: a surface of revolution, exact but for roundings that the end
 /// of the flutes divides, which are cones.
