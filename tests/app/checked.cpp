@@ -74,6 +74,13 @@ BlockLine Checked::at_line(int line) const {
     return {};
 }
 
+FindingLine Checked::finding(const std::string& rule) const {
+    for (const FindingLine& finding : findings)
+        if (finding.rule == rule) return finding;
+    ADD_FAILURE() << "no " << rule << " among: " << errors();
+    return {};
+}
+
 std::string Checked::of_severity(const std::string& severity) const {
     std::string text;
     for (const FindingLine& finding : findings) {

@@ -46,6 +46,9 @@ struct Checked {
     /// The block of a line; fails the test and gives an empty one when there is none.
     BlockLine at_line(int line) const;
 
+    /// The first finding of a rule; fails the test and gives an empty one when there is none.
+    FindingLine finding(const std::string& rule) const;
+
     /// "near-miss 7, over-travel 9": every error with its line, in order.
     std::string errors() const;
     std::string of_severity(const std::string& severity) const;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -69,6 +71,28 @@ TEST(FixtureMove, StandsInBothPlacesWhereTheOrderIsTheBuilders) {
     const Checked checked =
         check(with_post(away), program({"G0 X-20. Y50.", "Z10.", "X120. M61", "Z60."}));
     EXPECT_EQ(checked.at_line(8).verdict, "collision");
+}
+
+TEST(FixtureMove, OfALineBeforeARestartHasBeenMade) {
+    // Lines 6 to 8 are before the start; the post goes out of the way, or stays in it.
+    const std::string text =
+        program({"G0 X-20. Y50.", "(A LINE)", "M61", "N10 T1 M6", "G90 G54 G0 X-20. Y50. S6000 M3",
+                 "G43 H1 Z10.", "X120.", "Z60."});
+    for (const std::string when : {"line = 8", "code = \"M61\""}) {
+        const std::string move = "[[fixture.move]]\n" + when + "\n";
+        const Checked away =
+            check(with_post(move + "remove = true\n"), text, {"--start-line", "N10"});
+        EXPECT_EQ(away.at_line(12).verdict, "clear") << when;
+        EXPECT_NE(std::find(away.assumptions.begin(), away.assumptions.end(),
+                            "post has been moved, as the lines before the start say"),
+                  away.assumptions.end());
+        const Checked beside =
+            check(with_post(move + "at = [0, 0, 5]\n"), text, {"--start-line", "N10"});
+        EXPECT_EQ(beside.at_line(12).verdict, "collision") << when;
+    }
+    const Checked later = check(with_post("[[fixture.move]]\nline = 12\nat = [0, 20, 0]\n"), text,
+                                {"--start-line", "N10"});
+    EXPECT_NE(later.at_line(12).verdict, "collision");
 }
 
 TEST(FixtureMove, ThatNoBlockMakesIsAnError) {

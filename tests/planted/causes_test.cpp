@@ -12,13 +12,6 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-FindingLine finding_of(const Checked& checked, const std::string& rule) {
-    for (const FindingLine& finding : checked.findings)
-        if (finding.rule == rule) return finding;
-    ADD_FAILURE() << "no " << rule << " among: " << checked.errors();
-    return {};
-}
-
 std::string rules_in(const Checked& checked) {
     std::string rules;
     for (const FindingLine& finding : checked.findings) rules += finding.rule + " ";
@@ -40,7 +33,7 @@ TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     const Checked checked = check(SetupWriter(), passes(""));
     EXPECT_EQ(checked.errors(), "missing-length-offset 5");
     EXPECT_EQ(checked.of_severity("warning"), "");
-    const FindingLine told = finding_of(checked, "missing-length-offset");
+    const FindingLine told = checked.finding("missing-length-offset");
     EXPECT_THAT(told.message, HasSubstr("95.000 mm lower than meant and runs into the stock"));
     EXPECT_THAT(told.message, HasSubstr("from line 5 to line 17"));
     EXPECT_THAT(told.cure, HasSubstr("G43 H1"));
@@ -56,7 +49,7 @@ TEST(MissingLength, EndsWhereTheLengthIsCalled) {
     const Checked checked = check(setup, passes("", "G43 H1 Z60.\n"));
     EXPECT_THAT(checked.errors(), HasSubstr("missing-length-offset 5, "));
     EXPECT_THAT(checked.errors(), HasSubstr("17"));
-    EXPECT_THAT(finding_of(checked, "missing-length-offset").message, HasSubstr("to line 9"));
+    EXPECT_THAT(checked.finding("missing-length-offset").message, HasSubstr("to line 9"));
 }
 
 TEST(MissingLength, IsNotCuredByMoreStickOut) {
@@ -88,7 +81,7 @@ TEST(LengthOfAnotherTool, IsOneWarningAndOneError) {
     const Checked deep = check(setup, passes("G43 H2"));
     EXPECT_EQ(deep.of_severity("warning"), "offset-not-tool 5");
     EXPECT_EQ(deep.errors(), "collision 8");
-    const FindingLine told = finding_of(deep, "collision");
+    const FindingLine told = deep.finding("collision");
     EXPECT_THAT(told.message, HasSubstr("see offset-not-tool in line 5"));
     EXPECT_THAT(told.message, HasSubstr("55.000 mm lower"));
     const SetupWriter alike = SetupWriter().lengths("[[length_offset]]\nnumber = 2\nlength = 95\n");
@@ -159,7 +152,7 @@ TEST(RestartInTheMiddle, NamesTheMotionCodeThatItsFirstBlockNeeds) {
     const std::string slot =
         program({"G0 X-20. Y50.", "Z-5.", "G1 X50. F800.", "X120.", "G0 Z60."});
     const FindingLine told =
-        finding_of(check(SetupWriter(), slot, {"--start-line", "9"}), "restart-in-the-middle");
+        check(SetupWriter(), slot, {"--start-line", "9"}).finding("restart-in-the-middle");
     EXPECT_EQ(told.line, 9);
     EXPECT_EQ(told.severity, "warning");
     EXPECT_THAT(told.message, HasSubstr("G1, F800"));

@@ -23,13 +23,6 @@ double number_behind(const std::string& text, const std::string& words) {
     return number;
 }
 
-FindingLine finding_of(const Checked& checked, const std::string& rule) {
-    for (const FindingLine& finding : checked.findings)
-        if (finding.rule == rule) return finding;
-    ADD_FAILURE() << "no " << rule << " among: " << checked.errors();
-    return {};
-}
-
 /// Three passes along one slot; the holder, 20 in radius, hangs over both walls.
 Checked deep_slot(double stick_out) {
     const SetupWriter setup = SetupWriter().lengths("").tool(
@@ -43,7 +36,7 @@ Checked deep_slot(double stick_out) {
 
 TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryAllowance) {
     // 1 mm must be kept above the walls: 24 deep needs 25, 28 deep needs 29.
-    const FindingLine told = finding_of(deep_slot(24.0), "stick-out-short");
+    const FindingLine told = deep_slot(24.0).finding("stick-out-short");
     EXPECT_EQ(told.line, 12);
     const double enough = number_behind(told.cure, "A stick-out of ");
     EXPECT_NEAR(enough, 29.0, 0.11);
@@ -61,7 +54,7 @@ Checked slot_at_once(double flutes) {
 }
 
 TEST(Cure, OfFlutesThatAreTooShortIsTheDepth) {
-    const FindingLine told = finding_of(slot_at_once(18.0), "over-engagement");
+    const FindingLine told = slot_at_once(18.0).finding("over-engagement");
     EXPECT_EQ(told.severity, "warning");
     const double enough = number_behind(told.cure, "Flutes of ");
     EXPECT_NEAR(enough, 24.0, 0.2);
@@ -78,7 +71,7 @@ Checked two_pockets(double retract) {
 }
 
 TEST(Cure, OfALowRetractClearsWhatStandsBetween) {
-    const FindingLine told = finding_of(two_pockets(4.0), "low-retract");
+    const FindingLine told = two_pockets(4.0).finding("low-retract");
     EXPECT_EQ(told.line, 11);
     const double higher = number_behind(told.cure, "Retract ");
     EXPECT_NEAR(higher, 6.0, 0.11); // 8 and the 2 that must be kept, less 4

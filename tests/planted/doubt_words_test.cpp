@@ -13,12 +13,7 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-FindingLine undecided_in(const Checked& checked) {
-    for (const FindingLine& finding : checked.findings)
-        if (finding.rule == "undecided") return finding;
-    ADD_FAILURE() << "nothing is undecided: " << checked.errors();
-    return {};
-}
+FindingLine undecided_in(const Checked& checked) { return checked.finding("undecided"); }
 
 TEST(CureOfDoubt, NamesTheCornersThatTheControlRounds) {
     const SetupWriter rounded =

@@ -14,19 +14,12 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-FindingLine finding_of(const Checked& checked, const std::string& rule) {
-    for (const FindingLine& finding : checked.findings)
-        if (finding.rule == rule) return finding;
-    ADD_FAILURE() << "no " << rule << " among: " << checked.errors();
-    return {};
-}
-
 // --- rapids within a block of several motions ---
 
 TEST(RapidOnTheWayHome, IsARapidInTheStock) {
     const Checked checked =
         check(SetupWriter(), program({"G0 X-20. Y50.", "Z2.", "G28 X120. Z-5.", "G0 Z0."}));
-    const FindingLine told = finding_of(checked, "rapid-in-stock");
+    const FindingLine told = checked.finding("rapid-in-stock");
     EXPECT_EQ(told.line, 8);
     EXPECT_THAT(told.message, HasSubstr("on the way to the reference point (G28, G30)"));
     EXPECT_THAT(told.cure, HasSubstr("G91 G28 Z0"));
@@ -39,7 +32,7 @@ TEST(RapidOfACycle, IsARapidInTheStock) {
     std::vector<std::string> lines = pocket;
     lines.insert(lines.end(), {"G98 G81 X80. Y50. Z-12. R-8. F200.", "G80", "G0 Z60."});
     const Checked checked = check(SetupWriter(), program(lines));
-    const FindingLine told = finding_of(checked, "rapid-in-stock");
+    const FindingLine told = checked.finding("rapid-in-stock");
     EXPECT_EQ(told.line, 9);
     EXPECT_THAT(told.message, HasSubstr("on a rapid of this cycle"));
     EXPECT_THAT(told.cure, HasSubstr("the cycle"));
@@ -61,7 +54,7 @@ TEST(RapidOfACycle, PastAClampIsNamedAsARapid) {
     const Checked checked =
         check(setup, program({"G0 X-20. Y97.8", "Z2.5", "G98 G81 X90. Y97.8 Z-3. R2.5 F200.", "G80",
                               "G0 Z60."}));
-    const FindingLine told = finding_of(checked, "rapid-near-clamp");
+    const FindingLine told = checked.finding("rapid-near-clamp");
     EXPECT_EQ(told.line, 8);
     EXPECT_THAT(told.message, HasSubstr("On a rapid of this cycle, the flutes pass clamp-1"));
 }
@@ -86,7 +79,7 @@ TEST(UnsafeToolChange, IsTheVerdictOfItsBlock) {
     EXPECT_EQ(inside.errors(), "tool-change-unsafe 8, rapid-in-stock 9");
     EXPECT_EQ(inside.at_line(8).verdict, "collision");
     EXPECT_EQ(inside.verdict, "collision");
-    EXPECT_THAT(finding_of(inside, "tool-change-unsafe").message, HasSubstr("stand in the stock"));
+    EXPECT_THAT(inside.finding("tool-change-unsafe").message, HasSubstr("stand in the stock"));
     const Checked free = changed_at("50.");
     EXPECT_EQ(free.errors(), "");
     EXPECT_EQ(free.at_line(8).verdict, "clear");
@@ -107,7 +100,7 @@ TEST(FluteLength, IsToldAsItIsWritten) {
         "neck_length = 20\nstick_out = 45\nholder = [[40, 40, 50]]\n");
     const Checked checked =
         check(setup, program({"G0 X-20. Y0.", "Z-14.", "G1 X120. F300.", "G0 Z60."}));
-    const FindingLine told = finding_of(checked, "over-engagement");
+    const FindingLine told = checked.finding("over-engagement");
     EXPECT_THAT(told.message, HasSubstr("5.0 mm"));
     EXPECT_THAT(told.message, Not(HasSubstr("5.2")));
 }
