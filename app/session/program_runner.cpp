@@ -105,8 +105,6 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         }
         if (!made) continue;
         moves_made_.insert(i);
-        moves_at_start_.emplace_back(core::FixtureChange{move.from, false});
-        if (move.to) moves_at_start_.emplace_back(core::FixtureChange{*move.to, true});
         run_.assumptions.push_back(
             fmt::format("{} has been moved, as the lines before the start say",
                         run_.setup.fixtures[move.from].name));
@@ -168,9 +166,7 @@ void ProgramRunner::remark_on(const gcode::BlockResult& block) {
 std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
                                                 core::SimulatorState& state) {
     const gcode::Lowering lowering_before = lowering_;
-    std::vector<core::Event> events = std::exchange(moves_at_start_, {});
-    for (core::Event& event : events_of(run_.setup, block, lowering_, speed_by_hand))
-        events.push_back(event);
+    const std::vector<core::Event> events = events_of(run_.setup, block, lowering_, speed_by_hand);
     for (const size_t move : fixture_moves_of(run_.setup, block)) moves_made_.insert(move);
     if (auto refused = refusal(block)) return refused;
     CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
@@ -224,6 +220,11 @@ void ProgramRunner::hold_against_stock(const core::SimulatorState& state) {
 }
 
 void ProgramRunner::to_the_end(core::SimulatorState& state) {
+    for (const size_t made : moves_made_) {
+        const core::FixtureMove& move = run_.setup.fixture_moves[made];
+        state.fixtures_there[move.from] = false;
+        if (move.to) state.fixtures_there[*move.to] = true;
+    }
     run_blocks(state);
     end_cure();
     for (core::Finding& finding : core::end_of_run(run_.setup, state))

@@ -75,8 +75,8 @@ private:
     OffsetWatch offsets_ = {};
     UnitsWatch units_ = {};
     LengthWatch lengths_ = {};
-    std::set<size_t> moves_made_;             // of the set-up's fixture moves
-    std::vector<core::Event> moves_at_start_; // of a restart
+    std::set<size_t>
+        moves_made_; // of the set-up's fixture moves; before the first block a restart's
     std::unique_ptr<CuredRun> cured_ = {};
     size_t followed_ = 0; // the doubt that it is about
 };
