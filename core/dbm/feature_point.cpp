@@ -1,5 +1,6 @@
 #include "core/dbm/feature_point.h"
 
+#include <algorithm>
 #include <array>
 
 namespace core {
@@ -39,6 +40,10 @@ Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
     Vec3 middle(0.0);
     for (const TangentPlane& point : points) middle += point.place;
     middle /= static_cast<double>(points.size());
+    const bool flat = std::all_of(points.begin(), points.end(), [&](const TangentPlane& point) {
+        return point.normal == points.front().normal;
+    });
+    if (flat) return glm::clamp(middle, room.min, room.max); // it is in their mean plane
     Matrix a{}, frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Vec3 right(0.0);
     for (const TangentPlane& point : points) {

@@ -3,24 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dbm/contour.h"
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/feature_point.h"
-#include "core/dbm/surface_point.h"
-#include "core/geom/triangle_distance.h"
 
 namespace core {
 namespace {
 
 constexpr int32_t nowhere = -1;
-
-/// How far beyond an edge an end is still taken for the edge's own, mm.
-constexpr double slack = 1e-6;
-
-/// Where a line passes the surface between two nodes.
-struct CrossedEdge {
-    TangentPlane plane;
-    std::optional<uint32_t> sweep;
-};
 
 /// Nodes with the same z: where the lines of the three families meet. Node (i, j) stands where the
 /// lines i - 1 and j - 1 do; those round the outside have no lines and are outside.
@@ -63,7 +53,6 @@ private:
     }
 
     NodeLayer nodes(int k);
-    std::optional<uint32_t> sweep_at(const LineEnd& end) const;
     CellLayer cells(const NodeLayer& below, const NodeLayer& above, int k);
     int32_t cross(int axis, const std::array<int, 3>& node, bool from_inside,
                   std::vector<CrossedEdge>& points);
@@ -87,21 +76,6 @@ private:
     size_t taken_ = 0;                       // boundary points that became part of the surface
 };
 
-/// Which of the nodes along a line lie in its matter, from node 0 on.
-template <typename Line, typename Mark>
-void mark_inside(const ScanGrid& grid, int axis, const Line& line, const Mark& mark) {
-    const double first = grid.coordinate(axis, 0);
-    for (const Interval& matter : line) {
-        const double from = std::ceil((matter.lower - first) / grid.spacing) - 1.0;
-        const int last = grid.count(axis) - 1;
-        for (int i = std::clamp(static_cast<int>(from), 0, last + 1); i <= last; ++i) {
-            const double place = grid.coordinate(axis, i);
-            if (place > matter.upper) break;
-            if (place >= matter.lower) mark(i);
-        }
-    }
-}
-
 /// A node is inside where most of its three lines say so: they may differ by rounding.
 NodeLayer Contouring::nodes(int k) {
     NodeLayer layer;
@@ -109,10 +83,16 @@ NodeLayer Contouring::nodes(int k) {
     for (auto& edges : layer.edges) edges.assign(size_, nowhere);
     const int row = k - 1;
     if (row < 0 || row >= grid_.count(2)) return layer;
+    const auto mark_inside = [&](int axis, const LineView& line, const auto& mark) {
+        for (const Interval& matter : line) {
+            const IndexRange range = places_within(grid_, axis, matter);
+            for (int i = range.first; i <= range.last; ++i) mark(i);
+        }
+    };
     for (int j = 0; j < grid_.count(1); ++j)
-        mark_inside(grid_, 0, line(0, j, row), [&](int i) { ++layer.inside[at(i + 1, j + 1)]; });
+        mark_inside(0, line(0, j, row), [&](int i) { ++layer.inside[at(i + 1, j + 1)]; });
     for (int i = 0; i < grid_.count(0); ++i)
-        mark_inside(grid_, 1, line(1, row, i), [&](int j) { ++layer.inside[at(i + 1, j + 1)]; });
+        mark_inside(1, line(1, row, i), [&](int j) { ++layer.inside[at(i + 1, j + 1)]; });
     const double z = grid_.coordinate(2, row);
     for (int j = 0; j < grid_.count(1); ++j)
         for (int i = 0; i < grid_.count(0); ++i)
@@ -129,45 +109,13 @@ NodeLayer Contouring::nodes(int k) {
     return layer;
 }
 
-/// The point at which the line along `axis` leaves or enters the matter between a node and the
-/// next.
+/// The number of the point at which the line along `axis` leaves or enters the matter.
 int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_inside,
                           std::vector<CrossedEdge>& points) {
-    const int u = node[static_cast<size_t>(u_axis(axis))] - 1;
-    const int v = node[static_cast<size_t>(v_axis(axis))] - 1;
-    const int step = node[static_cast<size_t>(axis)] - 1;
-    const double low = grid_.coordinate(axis, step), high = grid_.coordinate(axis, step + 1);
-    const auto& matter = line(axis, u, v);
-    LineEnd end{axis, u, v, 0, from_inside};
-    double along = 0.5 * (low + high), best = slack;
-    bool found = false;
-    for (size_t i = 0; i < matter.size(); ++i) {
-        const double here = from_inside ? matter[i].upper : matter[i].lower;
-        const double beyond = std::max({low - here, here - high, 0.0});
-        if (beyond > best || (found && beyond == best)) continue;
-        best = beyond;
-        along = here;
-        end.interval = i;
-        found = true;
-    }
-    CrossedEdge edge;
-    if (found) {
-        edge = {{Vec3(0.0), surface_point(model_, end).normal}, sweep_at(end)};
-        ++taken_;
-    } else {
-        edge.plane.normal[axis] = from_inside ? 1.0 : -1.0;
-    }
-    edge.plane.place = point_on_line(grid_, axis, u, v, std::clamp(along, low, high));
-    points.push_back(edge);
+    const Crossing crossing = crossing_at(model_.lines, axis, node, from_inside);
+    if (crossing.found) ++taken_;
+    points.push_back(crossed_edge(model_, crossing));
     return static_cast<int32_t>(points.size()) - 1;
-}
-
-/// The number of the cut that made an end; empty for raw stock.
-std::optional<uint32_t> Contouring::sweep_at(const LineEnd& end) const {
-    const EndMarks marks =
-        model_.lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
-    const uint32_t mark = end.upper ? marks.upper : marks.lower;
-    return mark > 0 ? std::optional(mark - 1) : std::nullopt;
 }
 
 CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int k) {
@@ -211,14 +159,7 @@ void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const N
     layer.first_vertex[at(i, j)] = static_cast<int32_t>(result_.mesh.vertices.size());
     const DualCell& pieces = dual_cell(static_cast<uint8_t>(inside));
     const EdgePoints edge_points = points_of(layer, below, above, i, j);
-    // Where a sharp edge leaves its cell through a side that lines pass on both flanks, only the
-    // cell knows of it: vertices may stand in the cell beyond.
-    const auto corner = [&](int by) {
-        const Vec3 node(grid_.coordinate(0, i - 1 + by), grid_.coordinate(1, j - 1 + by),
-                        grid_.coordinate(2, k - 1 + by));
-        return glm::clamp(node, bounds_.min, bounds_.max);
-    };
-    const Aabb room{corner(-1), corner(2)};
+    const Aabb room = vertex_room(grid_, bounds_, {i, j, k});
     for (uint8_t piece = 0; piece < pieces.count; ++piece) {
         std::array<TangentPlane, 12> met;
         size_t count = 0;
@@ -260,25 +201,17 @@ void Contouring::add_upright_quads(const CellLayer& layer) {
                          *p, (layer.inside[at(i, j)] & 1U) != 0);
 }
 
-double distance_to(const Vec3& p, const Triangle& t) {
-    return glm::distance(p, nearest_point(t, p));
-}
-
 /// Two triangles, cut along the diagonal that leaves them nearer to the point on the line.
 void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards) {
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
     const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
     const Vec3& point = edge.plane.place;
-    double away[2];
-    for (size_t k = 0; k < 2; ++k)
-        away[k] = std::min(distance_to(point, {place(k), place(k + 1), place(k + 2)}),
-                           distance_to(point, {place(k), place(k + 2), place((k + 3) % 4)}));
-    const size_t k = away[1] < away[0] - 1e-9 ? 1 : 0;
+    const auto [k, away] = better_diagonal({place(0), place(1), place(2), place(3)}, point);
     result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
     result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
     result_.samples.push_back({point, edge.sweep});
-    from_own_triangles_.push_back(away[k]);
+    from_own_triangles_.push_back(away);
 }
 
 /// The quads at each vertex, one after the other.
@@ -318,7 +251,7 @@ void Contouring::measure_error() {
                 for (uint32_t i = near.first[corner]; i < near.first[corner + 1]; ++i)
                     for (const uint32_t other : {2 * near.quads[i], 2 * near.quads[i] + 1})
                         away = std::min(
-                            away, distance_to(result_.samples[k].place, mesh.triangle(other)));
+                            away, distance_to(mesh.triangle(other), result_.samples[k].place));
         result_.error = std::max(result_.error, away);
     }
 }

@@ -40,29 +40,24 @@ Vec3 across_motion(const ProfileElement& e, const Vec3& p, const Vec3& normal, c
 /// The same for the piece while it moves: how far outside at the moment when that is least. `p` and
 /// `by` are in the tool's frame, from where the tip stands at first.
 Facing facing_sweep(const ProfileElement& e, const Vec3& p, const Vec3& by) {
-    constexpr double golden = 0.6180339887498949;
+    // How far outside is convex in time, and its normal says which way it falls.
     const auto at = [&](double t) { return facing(e, p - t * by); };
-    double low = 0.0, high = 1.0;
-    double a = 1.0 - golden, b = golden;
-    double fa = at(a).outside, fb = at(b).outside;
-    for (int i = 0; i < 60; ++i) {
-        if (fa > fb) {
-            low = a;
-            a = b;
-            fa = fb;
-            fb = at(b = low + golden * (high - low)).outside;
-        } else {
-            high = b;
-            b = a;
-            fb = fa;
-            fa = at(a = high - golden * (high - low)).outside;
+    const auto rises = [&](const Facing& f) { return -glm::dot(f.normal, by); };
+    if (const Facing first = at(0.0); rises(first) >= 0.0) return first;
+    if (const Facing last = at(1.0); rises(last) <= 0.0) return last;
+    double low = 0.0, high = 1.0, middle = 0.5;
+    if (e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0) { // a ball
+        middle = glm::dot(p - Vec3(0.0, 0.0, e.z0), by) / glm::dot(by, by);
+    } else {
+        for (int i = 0; i < 40; ++i) {
+            middle = 0.5 * (low + high);
+            const double slope = rises(at(middle));
+            if (slope == 0.0) break;
+            (slope < 0.0 ? low : high) = middle;
         }
     }
-    const double middle = 0.5 * (low + high);
     Facing best = at(middle);
     best.normal = across_motion(e, p - middle * by, best.normal, by);
-    for (const Facing& end : {at(0.0), at(1.0)})
-        if (end.outside < best.outside) best = end;
     return best;
 }
 
@@ -78,6 +73,17 @@ Vec3 normal_of_cut(const CutterSweep& sweep, const Vec3& point) {
             if (here.outside < deepest.outside) deepest = here;
         }
     return -(sweep.orientation * deepest.normal);
+}
+
+/// The normal of the face that a line passes where its end is at `point`. On a rim that may come
+/// out as the face beside it, along which the line runs: a little off that one, the other is
+/// nearer.
+Vec3 normal_at_end(const CutterSweep& sweep, const Vec3& point, const Vec3& outward) {
+    constexpr double off = 1e-4, along = 1e-6;
+    const Vec3 normal = normal_of_cut(sweep, point);
+    if (glm::dot(normal, outward) >= along) return normal;
+    const Vec3 beside = normal_of_cut(sweep, point + off * normal);
+    return glm::dot(beside, outward) >= along ? beside : normal;
 }
 
 Vec3 normal_of_cylinder(const SolidCylinder& c, const Vec3& point, int axis, const Vec3& outward) {
@@ -127,7 +133,7 @@ SurfacePoint surface_point(const CutModel& model, const LineEnd& end) {
     outward[end.axis] = end.upper ? 1.0 : -1.0;
     if (mark == 0) return {point, normal_of_raw(model.solid, point, end.axis, outward), {}};
     const CutterSweep sweep = model.log[mark - 1].sweep;
-    return {point, normal_of_cut(sweep, point), sweep.block};
+    return {point, normal_at_end(sweep, point, outward), sweep.block};
 }
 
 std::vector<SurfacePoint> surface_points(const CutModel& model, int axis) {

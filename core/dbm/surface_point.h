@@ -22,7 +22,7 @@ struct LineEnd {
 ///
 /// Result: the normal is that of the surface which the end lies on: of the swept volume of the move
 ///         that cut there, or of the raw stock. On an edge it is that of one of the faces.
-/// Cost:   a search of some 60 steps along the move for each convex piece of the cutter.
+/// Cost:   a search of at most 40 steps along the move for each convex piece of the cutter.
 SurfacePoint surface_point(const CutModel& model, const LineEnd& end);
 
 /// The surface at all ends of one family, in order: row by row, upwards along the line.

@@ -49,6 +49,12 @@ Allowance allowance_of(const Setup& setup, const Pair& pair) {
     return {0.0, default_contact};
 }
 
+double search_limit_of(const Setup& setup) {
+    double largest = setup.allowance.value_or(0.0);
+    for (const AllowanceRule& rule : setup.allowances) largest = std::max(largest, rule.distance);
+    return std::max(setup.search_limit, largest + 1.0);
+}
+
 bool names_a_kind(std::string_view name) {
     constexpr std::array<std::string_view, 7> kinds = {"flutes", "shank",   "holder", "nose",
                                                        "stock",  "fixture", "machine"};

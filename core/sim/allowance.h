@@ -17,6 +17,10 @@ struct Allowance {
 /// What a pair must keep, by the set-up's rules or else by default.
 Allowance allowance_of(const Setup& setup, const Pair& pair);
 
+/// How far away bodies are to be looked for: as far as the set-up says, and beyond its largest
+/// allowance.
+double search_limit_of(const Setup& setup);
+
 /// Whether a name stands for a kind of bodies in allowances: flutes, shank, holder, nose, stock,
 /// fixture, machine.
 bool names_a_kind(std::string_view name);

@@ -1,0 +1,206 @@
+#include "render/body_mesh.h"
+
+#include <numbers>
+
+#include "core/geom/box_mesh.h"
+#include "render/profile_outline.h"
+
+namespace render {
+namespace {
+
+using core::Vec3;
+
+constexpr double pi = std::numbers::pi;
+
+/// Chords of a circle that stay within `sag` of it; a multiple of 4, so that quarters are exact.
+int chords_of(double radius, double sag) {
+    const double angle = std::acos(std::clamp(1.0 - sag / std::max(radius, sag), -1.0, 1.0));
+    const int quarter = static_cast<int>(std::ceil(0.25 * pi / std::max(angle, 1e-3)));
+    return 4 * std::clamp(quarter, 6, 32);
+}
+
+/// Rings of vertices about Z, and triangles between rings.
+struct Rings {
+    core::Mesh mesh;
+    int chords;
+
+    /// The first vertex of a ring; a ring without radius is one vertex.
+    uint32_t add(const OutlinePoint& at) {
+        const auto first = static_cast<uint32_t>(mesh.vertices.size());
+        const int count = at.r > 0.0 ? chords : 1;
+        for (int i = 0; i < count; ++i) {
+            const double angle = 2.0 * pi * i / chords;
+            mesh.vertices.emplace_back(at.r * std::cos(angle), at.r * std::sin(angle), at.z);
+        }
+        return first;
+    }
+    /// `lower` and `upper`: along the outline, from the tip up.
+    void join(uint32_t lower, bool lower_is_point, uint32_t upper, bool upper_is_point) {
+        for (int i = 0; i < chords; ++i) {
+            const auto a = static_cast<uint32_t>(i), b = static_cast<uint32_t>((i + 1) % chords);
+            if (!lower_is_point)
+                mesh.triangles.push_back(
+                    {lower + a, lower + b, upper_is_point ? upper : upper + b});
+            if (!upper_is_point)
+                mesh.triangles.push_back(
+                    {lower_is_point ? lower : lower + a, upper + b, upper + a});
+        }
+    }
+};
+
+core::Mesh revolved(const std::vector<OutlinePoint>& outline, double sag) {
+    double widest = 0.0;
+    for (const OutlinePoint& p : outline) widest = std::max(widest, p.r);
+    Rings rings{{}, chords_of(widest, sag)};
+    uint32_t last = 0;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const uint32_t here = rings.add(outline[i]);
+        if (i > 0) rings.join(last, outline[i - 1].r <= 0.0, here, outline[i].r <= 0.0);
+        last = here;
+    }
+    return std::move(rings.mesh);
+}
+
+/// Directions spread over a ball, in rings about Z.
+core::Mesh directions(int divisions) {
+    std::vector<OutlinePoint> outline;
+    for (int i = 0; i <= divisions; ++i) {
+        const double angle = pi * i / divisions;
+        const bool pole = i == 0 || i == divisions;
+        outline.push_back({pole ? 0.0 : std::sin(angle), -std::cos(angle)});
+    }
+    return revolved(outline, 0.003);
+}
+
+/// The surface of a shape as its farthest points in directions all round.
+TriangleMesh supported(const core::ConvexShape& shape, double margin) {
+    const core::Mesh ball = directions(24);
+    TriangleMesh made;
+    for (const Vec3& direction : ball.vertices) {
+        const Vec3 p = core::support(shape, direction).point + margin * direction;
+        made.vertices.push_back({glm::vec3(p), packed_normal(direction)});
+        made.bounds.extend(p);
+    }
+    made.triangles = ball.triangles;
+    return made;
+}
+
+/// The corners of the face that lies in the plane of three points, in order; empty if other points
+/// stand beyond it.
+std::vector<uint32_t> face_through(const std::vector<Vec3>& points, const Vec3& at,
+                                   const Vec3& normal, double near) {
+    std::vector<uint32_t> on;
+    for (uint32_t i = 0; i < points.size(); ++i) {
+        const double off = glm::dot(points[i] - at, normal);
+        if (off > near) return {};
+        if (off >= -near) on.push_back(i);
+    }
+    Vec3 middle(0.0);
+    for (const uint32_t i : on) middle += points[i] / static_cast<double>(on.size());
+    const Vec3 x = glm::normalize(points[on[0]] - middle), y = glm::cross(normal, x);
+    const auto angle = [&](uint32_t i) {
+        return std::atan2(glm::dot(points[i] - middle, y), glm::dot(points[i] - middle, x));
+    };
+    std::sort(on.begin(), on.end(), [&](uint32_t a, uint32_t b) { return angle(a) < angle(b); });
+    return on;
+}
+
+/// The hull of a few points, by trying every plane through three of them.
+core::Mesh hull_of(const std::vector<Vec3>& points) {
+    core::Mesh mesh;
+    mesh.vertices = points;
+    core::Aabb box;
+    for (const Vec3& p : points) box.extend(p);
+    const double near = 1e-9 * std::max(1.0, glm::length(box.size()));
+    std::vector<Vec3> found;
+    for (size_t a = 0; a < points.size(); ++a)
+        for (size_t b = 0; b < points.size(); ++b)
+            for (size_t c = b + 1; c < points.size(); ++c) {
+                if (b <= a) continue;
+                Vec3 normal = glm::cross(points[b] - points[a], points[c] - points[a]);
+                if (glm::length(normal) <= near) continue;
+                normal = glm::normalize(normal);
+                for (const Vec3& side : {normal, -normal}) {
+                    if (std::any_of(found.begin(), found.end(),
+                                    [&](const Vec3& f) { return glm::length(f - side) < 1e-9; }))
+                        continue;
+                    const std::vector<uint32_t> face = face_through(points, points[a], side, near);
+                    if (face.size() < 3) continue;
+                    found.push_back(side);
+                    for (size_t i = 2; i < face.size(); ++i)
+                        mesh.triangles.push_back({face[0], face[i - 1], face[i]});
+                }
+            }
+    return mesh;
+}
+
+TriangleMesh cylinder_mesh(double radius, double z0, double z1, double sag) {
+    return mesh_of(core::RevolvedProfile{{{z0, radius, z1, radius, 0.0}}}, sag);
+}
+
+/// Turns Z to an axis of the frame.
+core::Mat3 z_to(int axis) {
+    core::Mat3 turned(0.0);
+    turned[2][axis] = 1.0;
+    turned[0][core::Vec3::length_type((axis + 1) % 3)] = 1.0;
+    turned[1][core::Vec3::length_type((axis + 2) % 3)] = 1.0;
+    return turned;
+}
+
+} // namespace
+
+TriangleMesh mesh_of(const core::RevolvedProfile& profile, double sag) {
+    return shaded(revolved(outline_of(profile, sag), sag));
+}
+
+TriangleMesh mesh_of(const core::ConvexShape& shape, double sag) {
+    TriangleMesh made;
+    const Vec3 at = shape.places[0].at;
+    if (shape.core == core::ConvexShape::Core::cone) {
+        core::ProfileElement cone = shape.cone;
+        cone.margin = std::max(cone.margin, shape.margin);
+        append(made, mesh_of(core::RevolvedProfile{{cone}}, sag), {shape.orientation, at});
+        return made;
+    }
+    const std::vector<Vec3> points(shape.points.begin(), shape.points.begin() + shape.point_count);
+    core::ConvexShape still = shape;
+    still.place_count = 1;
+    still.places[0] = {};
+    append(made,
+           shape.margin > 0.0 || points.size() < 4 ? supported(still, shape.margin)
+                                                   : shaded(hull_of(points)),
+           core::translation(at));
+    return made;
+}
+
+TriangleMesh mesh_of(const core::ExactBody& body, double sag) {
+    if (const auto* shape = std::get_if<core::ConvexShape>(&body)) return mesh_of(*shape, sag);
+    return shaded(*std::get<core::SolidMesh>(body).mesh);
+}
+
+TriangleMesh mesh_of(const core::Primitive& primitive, double sag) {
+    if (const auto* sphere = std::get_if<core::Sphere>(&primitive))
+        return ball_mesh(sphere->radius, 32);
+    if (const auto* box = std::get_if<core::Box>(&primitive))
+        return shaded(core::mesh_of(core::Aabb{-0.5 * box->size, 0.5 * box->size}));
+    const auto& cylinder = std::get<core::Cylinder>(primitive);
+    return cylinder_mesh(cylinder.radius, -0.5 * cylinder.height, 0.5 * cylinder.height, sag);
+}
+
+TriangleMesh mesh_of(const core::Solid& solid, double sag) {
+    if (const auto* box = std::get_if<core::SolidBox>(&solid.shape))
+        return shaded(core::mesh_of(box->box));
+    if (const auto* mesh = std::get_if<core::SolidMesh>(&solid.shape)) return shaded(*mesh->mesh);
+    const auto& c = std::get<core::SolidCylinder>(solid.shape);
+    TriangleMesh made;
+    append(made, cylinder_mesh(c.radius, 0.0, c.height, sag), {z_to(c.axis), c.base});
+    return made;
+}
+
+TriangleMesh ball_mesh(double radius, int divisions) {
+    core::Mesh ball = directions(divisions);
+    for (Vec3& p : ball.vertices) p *= radius;
+    return shaded(ball, pi);
+}
+
+} // namespace render

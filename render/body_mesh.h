@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/distance/body_distance.h"
+#include "core/geom/primitive.h"
+#include "core/geom/profile.h"
+#include "render/triangle_mesh.h"
+
+namespace render {
+
+/// How far a drawn round may be off the true one, mm.
+constexpr double round_sag = 0.02;
+
+/// The surface of a body of revolution: its pieces as one, so that none shows within another.
+TriangleMesh mesh_of(const core::RevolvedProfile& profile, double sag = round_sag);
+
+/// The surface of a convex shape where it stands first.
+TriangleMesh mesh_of(const core::ConvexShape& shape, double sag = round_sag);
+
+TriangleMesh mesh_of(const core::ExactBody& body, double sag = round_sag);
+TriangleMesh mesh_of(const core::Primitive& primitive, double sag = round_sag);
+
+/// A stock before it is cut.
+TriangleMesh mesh_of(const core::Solid& solid, double sag = round_sag);
+
+/// A ball about the origin.
+TriangleMesh ball_mesh(double radius, int divisions = 16);
+
+} // namespace render

@@ -1,0 +1,270 @@
+#include "render/body_pass.h"
+
+#include <algorithm>
+
+#include <epoxy/gl.h>
+
+#include "render/body_mesh.h"
+#include "render/shaders.h"
+
+namespace render {
+namespace {
+
+/// The way up in the view's frame.
+glm::vec3 sky_of(const ViewFrame& frame) {
+    return glm::vec3(frame.view_from_scene * glm::dvec4(0.0, 0.0, 1.0, 0.0));
+}
+
+double shine_of(const Body* body) {
+    if (body == nullptr) return 0.10;
+    switch (body->role) {
+    case BodyRole::flutes:
+    case BodyRole::shank:
+    case BodyRole::holder:
+    case BodyRole::nose:
+        return 0.32;
+    default:
+        return 0.07;
+    }
+}
+
+bool is_of_tool(BodyRole role) {
+    return role == BodyRole::flutes || role == BodyRole::shank || role == BodyRole::holder
+           || role == BodyRole::nose;
+}
+
+/// Counts, for each pixel, how often the sight enters the body beyond the plane less how often it
+/// leaves it: what stays is where the plane lies within.
+void begin_counting() {
+    glEnable(GL_STENCIL_TEST);
+    glClear(GL_STENCIL_BUFFER_BIT);
+    glStencilFunc(GL_ALWAYS, 0, 0xFF);
+    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDepthMask(GL_FALSE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_CLIP_DISTANCE0);
+}
+
+void end_counting() {
+    glDisable(GL_CLIP_DISTANCE0);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glStencilFunc(GL_NOTEQUAL, 0, 0xFF);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+}
+
+bool sees_face(const Camera& camera, const SectionPlane& section) {
+    if (camera.projection == Projection::orthographic)
+        return glm::dot(section.normal, axes(camera).backward) > 0.0;
+    return glm::dot(section.normal, eye(camera)) > section.offset;
+}
+
+} // namespace
+
+core::Result<BodyPass> BodyPass::make() {
+    BodyPass pass;
+    FEELER_TRY(pass.faces_, ShaderProgram::make(shaders::mesh_vertex, shaders::mesh_fragment));
+    FEELER_TRY(pass.edges_, ShaderProgram::make(shaders::edge_vertex, shaders::edge_fragment));
+    FEELER_TRY(pass.caps_, ShaderProgram::make(shaders::cap_vertex, shaders::cap_fragment));
+    pass.no_attributes_ = GlVertexArray::make();
+    pass.ball_ = std::make_shared<const TriangleMesh>(ball_mesh(1.0, 12));
+    return pass;
+}
+
+BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_ghost) const {
+    const Theme theme = frame.options.theme;
+    Item made{&body, body.stock_from_body,        bounds(body), color(theme, color_role(body.role)),
+              {},    is_ghost ? 0.28 : body.alpha};
+    if (is_ghost) made.color = mixed(made.color, color(theme, Role::accent), 0.6);
+    if (body.highlighted) made.color = mixed(made.color, state_color(theme, body.mark), 0.22);
+    made.second = made.color;
+    const auto& section = frame.scene.section;
+    made.cut = section && (frame.scene.section_cuts_tool || !is_of_tool(body.role));
+    made.closed = body.mesh->closed;
+    return made;
+}
+
+BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
+    const Theme theme = frame.options.theme;
+    Item made;
+    for (const auto& brick : frame.scene.stock) made.box.extend(brick->mesh.bounds);
+    made.color = color(theme, Role::stock_raw);
+    made.second = color(theme, Role::stock_cut);
+    made.cut = frame.scene.section.has_value();
+    return made;
+}
+
+template <typename Act>
+void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& act) {
+    if (item.body != nullptr) return act(meshes_.of(item.body->mesh));
+    for (const auto& brick : frame.scene.stock) act(meshes_.of(SharedMesh(brick, &brick->mesh)));
+}
+
+void BodyPass::set_material(const ViewFrame& frame, const Item& item, bool glass) const {
+    const bool dark = frame.options.theme == Theme::dark;
+    faces_.use();
+    set_view(faces_, frame, item.pose);
+    faces_.set("sky", sky_of(frame));
+    faces_.set("eye_axis", frame.camera.projection == Projection::orthographic
+                               ? glm::vec3(0.0F, 0.0F, 1.0F)
+                               : glm::vec3(0.0F));
+    faces_.set("rim", dark ? Color{206, 218, 236, 70} : Color{64, 78, 98, 90});
+    faces_.set("glass", glass ? 1.0F : 0.0F);
+    const bool hollows = frame.hollows != 0 && !glass;
+    faces_.set("to_hollows", hollows ? 1.0F / glm::vec2(frame.viewport.width, frame.viewport.height)
+                                     : glm::vec2(0.0F));
+    faces_.set_sampler("hollows", 0);
+    if (hollows) glBindTexture(GL_TEXTURE_2D, frame.hollows);
+    faces_.set("alpha", static_cast<float>(item.alpha));
+    faces_.set("shine", static_cast<float>(shine_of(item.body)));
+    faces_.set_rgb("colors[0]", item.color);
+    faces_.set_rgb("colors[1]", item.second);
+}
+
+void BodyPass::draw_faces(const ViewFrame& frame, const Item& item) {
+    set_material(frame, item, false);
+    set_section(faces_, item.cut ? frame.scene.section : std::nullopt, item.pose);
+    (item.cut ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+    (item.cut || !item.closed ? glDisable : glEnable)(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); });
+}
+
+void BodyPass::draw_edges(const ViewFrame& frame, const Item& item) {
+    const bool marked = item.body != nullptr && item.body->highlighted;
+    Color ink = color(frame.options.theme, Role::edge);
+    if (item.body == nullptr) ink.a = static_cast<uint8_t>(ink.a / 2);
+    if (marked) ink = state_color(frame.options.theme, item.body->mark);
+    if (item.alpha < 1.0) ink.a = static_cast<uint8_t>(ink.a * 0.55);
+    edges_.use();
+    set_view(edges_, frame, item.pose);
+    set_section(edges_, item.cut ? frame.scene.section : std::nullopt, item.pose);
+    (item.cut ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+    edges_.set("nearer", nearer(frame.camera, 2e-4));
+    edges_.set("ink", ink);
+    glLineWidth(static_cast<float>(frame.options.scale * (marked ? 2.0 : 1.0)));
+    for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_lines(); });
+}
+
+/// The face that the plane makes in a body, hatched.
+void BodyPass::draw_cap(const ViewFrame& frame, const Item& item) {
+    const SectionPlane& section = *frame.scene.section;
+    if (!item.closed || !is_cut(section, item.box) || !sees_face(frame.camera, section)) return;
+    begin_counting();
+    set_material(frame, item, false);
+    set_section(faces_, section, item.pose);
+    for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); });
+    end_counting();
+    const double reach = 0.51 * glm::length(item.box.size());
+    const Vec3 middle =
+        item.box.center()
+        - (glm::dot(section.normal, item.box.center()) - section.offset) * section.normal;
+    const Vec3 other = std::abs(section.normal.z) > 0.7 ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
+    const Vec3 side = glm::normalize(glm::cross(section.normal, other));
+    caps_.use();
+    caps_.set("clip_from_scene", frame.clip_from_view * frame.view_from_scene);
+    caps_.set("middle", glm::vec3(middle));
+    caps_.set("sides[0]", glm::vec3(reach * side));
+    caps_.set("sides[1]", glm::vec3(reach * glm::cross(section.normal, side)));
+    caps_.set_rgb("base", mixed(item.color, {0, 0, 0, 255}, 0.12));
+    caps_.set("hatch", with_alpha(color(frame.options.theme, Role::edge), 0.42));
+    caps_.set("spacing", static_cast<float>(11.0 * frame.options.scale));
+    glBindVertexArray(no_attributes_.id());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_STENCIL_TEST);
+}
+
+std::vector<BodyPass::Item> BodyPass::opaque_items(const ViewFrame& frame) const {
+    std::vector<Item> items;
+    for (const Body& body : frame.scene.bodies)
+        if (body.visible && body.mesh && body.alpha >= 1.0)
+            items.push_back(item(frame, body, false));
+    if (frame.scene.stock_visible && !frame.scene.stock.empty()) items.push_back(stock_item(frame));
+    return items;
+}
+
+void BodyPass::draw_depths(const ViewFrame& frame) {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    edges_.use();
+    edges_.set("nearer", glm::vec2(1.0F, 0.0F));
+    for (const Item& item : opaque_items(frame)) {
+        set_view(edges_, frame, item.pose);
+        set_section(edges_, item.cut ? frame.scene.section : std::nullopt, item.pose);
+        (item.cut ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+        (item.cut || !item.closed ? glDisable : glEnable)(GL_CULL_FACE);
+        glCullFace(GL_BACK);
+        for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); });
+    }
+    glDisable(GL_CLIP_DISTANCE0);
+    glDisable(GL_CULL_FACE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void BodyPass::draw_opaque(const ViewFrame& frame) {
+    const std::vector<Item> items = opaque_items(frame);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 1.0F);
+    for (const Item& item : items) draw_faces(frame, item);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    for (const Item& item : items)
+        if (item.cut) draw_cap(frame, item);
+    glEnable(GL_BLEND);
+    glDepthMask(GL_FALSE);
+    if (frame.options.edges)
+        for (const Item& item : items) draw_edges(frame, item);
+    glDisable(GL_CLIP_DISTANCE0);
+    glDepthMask(GL_TRUE);
+}
+
+void BodyPass::draw_glass(const ViewFrame& frame) {
+    std::vector<Item> items;
+    for (const Body& body : frame.scene.bodies)
+        if (body.visible && body.mesh && body.alpha < 1.0)
+            items.push_back(item(frame, body, false));
+    for (const Body& body : frame.scene.ghost)
+        if (body.visible && body.mesh) items.push_back(item(frame, body, true));
+    const Vec3 from = eye(frame.camera);
+    std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
+        return glm::distance(a.box.center(), from) > glm::distance(b.box.center(), from);
+    });
+    glEnable(GL_BLEND);
+    glEnable(GL_CULL_FACE);
+    glDepthMask(GL_FALSE);
+    for (const Item& item : items) {
+        set_material(frame, item, true);
+        set_section(faces_, item.cut ? frame.scene.section : std::nullopt, item.pose);
+        (item.cut ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+        for (const GLenum hidden : {GL_FRONT, GL_BACK}) {
+            glCullFace(hidden);
+            faces_.set("alpha", static_cast<float>(item.alpha * (hidden == GL_FRONT ? 0.45 : 1.0)));
+            for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); });
+        }
+        if (frame.options.edges) draw_edges(frame, item);
+    }
+    glDisable(GL_CLIP_DISTANCE0);
+    glDepthMask(GL_TRUE);
+}
+
+void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, Color color) {
+    const double radius = pixels * pixel_size(frame.camera, frame.viewport, at);
+    if (!(radius > 0.0)) return; // behind the eye
+    Item made;
+    made.color = made.second = color;
+    set_material(frame, made, false);
+    faces_.set("view_from_body",
+               frame.view_from_scene
+                   * Mat4(glm::dvec4(radius, 0, 0, 0), glm::dvec4(0, radius, 0, 0),
+                          glm::dvec4(0, 0, radius, 0), glm::dvec4(at, 1.0)));
+    set_section(faces_, std::nullopt);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    meshes_.of(ball_).draw_faces();
+}
+
+} // namespace render

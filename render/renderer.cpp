@@ -1,0 +1,132 @@
+#include "render/renderer.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "render/body_pass.h"
+#include "render/hollow_pass.h"
+#include "render/line_pass.h"
+#include "render/shaders.h"
+
+namespace render {
+namespace {
+
+/// What all passes start from, whatever somebody else has left.
+void set_state() {
+    glActiveTexture(GL_TEXTURE0);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_STENCIL_TEST);
+    glDisable(GL_BLEND);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glFrontFace(GL_CCW);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+}
+
+} // namespace
+
+struct Renderer::Parts {
+    ShaderProgram background;
+    BodyPass bodies;
+    LinePass lines;
+    HollowPass hollows;
+    GlVertexArray no_attributes;
+
+    void draw_background(Theme theme) const;
+    void draw_witness(const ViewFrame& frame);
+    void draw_measured(const ViewFrame& frame);
+};
+
+void Renderer::Parts::draw_background(Theme theme) const {
+    background.use();
+    background.set_rgb("top", color(theme, Role::view_top));
+    background.set_rgb("bottom", color(theme, Role::view_bottom));
+    glBindVertexArray(no_attributes.id());
+    glDepthMask(GL_FALSE);
+    glDisable(GL_DEPTH_TEST);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+}
+
+void Renderer::Parts::draw_witness(const ViewFrame& frame) {
+    if (!frame.scene.witness) return;
+    const Witness& witness = *frame.scene.witness;
+    const Color ink = state_color(frame.options.theme, witness.state);
+    lines.draw_over(frame, {witness.a, witness.b}, ink, 3.0);
+    for (const Vec3& end : {witness.a, witness.b})
+        bodies.draw_mark(frame, end, 4.8 * frame.options.scale, ink);
+}
+
+void Renderer::Parts::draw_measured(const ViewFrame& frame) {
+    const Color ink = color(frame.options.theme, Role::accent);
+    lines.draw_over(frame, frame.scene.measured, ink, 2.0);
+    for (const Vec3& point : frame.scene.measured)
+        bodies.draw_mark(frame, point, 4.5 * frame.options.scale, ink);
+}
+
+Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+core::Result<Renderer> Renderer::make() {
+    if (epoxy_gl_version() < 33)
+        return core::fail(core::ErrorCode::unsupported,
+                          fmt::format("OpenGL 3.3 is needed, this is {}.{}: a newer graphics "
+                                      "driver or Mesa's libgl1-mesa-dri has it",
+                                      epoxy_gl_version() / 10, epoxy_gl_version() % 10));
+    auto parts = std::make_unique<Parts>();
+    FEELER_TRY(parts->background,
+               ShaderProgram::make(shaders::background_vertex, shaders::background_fragment));
+    FEELER_TRY(parts->bodies, BodyPass::make());
+    FEELER_TRY(parts->lines, LinePass::make());
+    FEELER_TRY(parts->hollows, HollowPass::make());
+    parts->no_attributes = GlVertexArray::make();
+    return Renderer(std::move(parts));
+}
+
+void Renderer::draw(const Scene& scene, const Camera& camera, const DrawOptions& options,
+                    Canvas& canvas) {
+    const Viewport viewport = canvas.size();
+    ViewFrame frame{scene,
+                    camera,
+                    options,
+                    viewport,
+                    view_from_scene(camera),
+                    clip_from_view(camera, viewport, bounds(scene))};
+    set_state();
+    if (options.hollows) frame.hollows = parts_->hollows.draw(frame, parts_->bodies);
+    canvas.begin();
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    parts_->draw_background(options.theme);
+    parts_->bodies.draw_opaque(frame);
+    parts_->lines.draw_path(frame);
+    parts_->bodies.draw_glass(frame);
+    glDisable(GL_DEPTH_TEST);
+    parts_->draw_measured(frame);
+    parts_->draw_witness(frame);
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glBindVertexArray(0);
+    glUseProgram(0);
+    parts_->bodies.end_picture();
+    canvas.finish();
+}
+
+core::Result<Image> still_picture(Renderer& renderer, const Scene& scene, const Camera& camera,
+                                  const DrawOptions& options, const Viewport& size) {
+    FEELER_TRY(Canvas canvas, Canvas::make({2 * size.width, 2 * size.height}, 4));
+    DrawOptions twice = options;
+    twice.scale *= 2.0;
+    twice.hollows = true;
+    renderer.draw(scene, camera, twice, canvas);
+    return halved(canvas.pixels());
+}
+
+} // namespace render

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/base/vec.h"
+#include "render/palette.h"
+
+namespace render {
+
+/// A corner of the tip's path, with what is known of the piece that ends here. 20 bytes.
+struct PathPoint {
+    glm::vec3 place = glm::vec3(0.0F); // frame of the stock
+    uint32_t block = 0;
+    ClearanceState state = ClearanceState::none;
+    bool rapid = false;
+    bool begins = false; // no piece ends here: the path begins anew
+    uint8_t spare = 0;
+
+    bool operator==(const PathPoint&) const = default;
+};
+
+/// The path of a whole program, with boxes round stretches of it, so that few pieces are looked at
+/// when one of them is pointed to.
+struct ToolPath {
+    static constexpr size_t stretch = 64; // pieces to a box
+    static constexpr size_t group = 32;   // boxes to a box of the second level
+
+    std::vector<PathPoint> points;
+    std::vector<core::Aabb> boxes;  // of the pieces that end at points stretch * i ...
+    std::vector<core::Aabb> groups; // of so many boxes
+    core::Aabb bounds;
+};
+
+using SharedPath = std::shared_ptr<const ToolPath>;
+
+/// Makes the boxes.
+ToolPath tool_path(std::vector<PathPoint> points);
+
+/// The points of a block: first and one past the last; both 0 when it has none. Blocks must not
+/// decrease along the path.
+std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block);
+
+/// The box of a block's pieces; empty when it has none.
+core::Aabb bounds_of_block(const ToolPath& path, uint32_t block);
+
+} // namespace render

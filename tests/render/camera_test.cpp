@@ -1,0 +1,183 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "render/camera.h"
+
+namespace render {
+namespace {
+
+const Viewport wide{1280, 800}, narrow{300, 900};
+const Aabb box{{-40, -90, -10}, {60, 20, 35}};
+
+Camera random_camera(std::mt19937& random) {
+    const auto share = [&] { return std::uniform_real_distribution<>(-1.0, 1.0)(random); };
+    Camera camera;
+    camera.target = {100 * share(), 100 * share(), 50 * share()};
+    camera.distance = 250.0 + 200.0 * share();
+    camera.yaw = 3.1 * share();
+    camera.pitch = 1.5 * share();
+    camera.projection = share() > 0.0 ? Projection::perspective : Projection::orthographic;
+    return camera;
+}
+
+std::vector<Vec3> corners(const Aabb& of) {
+    std::vector<Vec3> all;
+    for (int c = 0; c < 8; ++c)
+        all.emplace_back((c & 1) != 0 ? of.max.x : of.min.x, (c & 2) != 0 ? of.max.y : of.min.y,
+                         (c & 4) != 0 ? of.max.z : of.min.z);
+    return all;
+}
+
+TEST(Camera, FramesTheWholeBox) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 200; ++i)
+        for (const Viewport& viewport : {wide, narrow}) {
+            const Camera camera = framing(random_camera(random), viewport, box, 0.05);
+            double nearest = 1.0;
+            for (const Vec3& corner : corners(box)) {
+                const auto seen = project(camera, viewport, corner);
+                ASSERT_TRUE(seen);
+                const Vec2 share = seen->place / Vec2(viewport.width, viewport.height);
+                EXPECT_GE(std::min(share.x, share.y), 0.05 - 1e-9);
+                EXPECT_LE(std::max(share.x, share.y), 0.95 + 1e-9);
+                nearest = std::min(
+                    {nearest, share.x - 0.05, share.y - 0.05, 0.95 - share.x, 0.95 - share.y});
+            }
+            EXPECT_LT(nearest, 1e-6); // and no farther away than need be
+        }
+}
+
+TEST(Camera, FramesTheSameDirections) {
+    Camera camera;
+    camera.yaw = 0.3;
+    const Camera framed = framing(camera, wide, box);
+    EXPECT_EQ(framed.yaw, camera.yaw);
+    EXPECT_EQ(framed.pitch, camera.pitch);
+    EXPECT_EQ(framing(camera, wide, Aabb()), camera);
+}
+
+TEST(Camera, SeesAPointWhereItsRayGoes) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<> x(0, wide.width), y(0, wide.height), deep(100, 700);
+    for (int i = 0; i < 500; ++i) {
+        const Camera camera = random_camera(random);
+        const Vec2 place(x(random), y(random));
+        const Ray ray = ray_through(camera, wide, place);
+        EXPECT_NEAR(glm::length(ray.direction), 1.0, 1e-12);
+        const auto seen = project(camera, wide, ray.origin + deep(random) * ray.direction);
+        ASSERT_TRUE(seen);
+        EXPECT_LT(glm::distance(seen->place, place), 1e-6);
+    }
+}
+
+TEST(Camera, ProjectsAsOpenGlDoes) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 200; ++i) {
+        const Camera camera = framing(random_camera(random), wide, box);
+        const Mat4 clip = clip_from_view(camera, wide, box) * view_from_scene(camera);
+        for (const Vec3& corner : corners(box)) {
+            const glm::dvec4 at = clip * glm::dvec4(corner, 1.0);
+            const Vec3 device = Vec3(at) / at.w;
+            EXPECT_LE(std::abs(device.z), 1.0); // between the near and the far plane
+            const auto seen = project(camera, wide, corner);
+            EXPECT_NEAR(seen->place.x, (0.5 + 0.5 * device.x) * wide.width, 1e-6);
+            EXPECT_NEAR(seen->place.y, (0.5 - 0.5 * device.y) * wide.height, 1e-6);
+        }
+    }
+}
+
+TEST(Camera, ZoomsToTheCursor) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<> x(0, wide.width), y(0, wide.height), by(0.3, 3.0);
+    for (int i = 0; i < 300; ++i) {
+        const Camera camera = random_camera(random);
+        const Vec2 cursor(x(random), y(random));
+        const Ray ray = ray_through(camera, wide, cursor);
+        const Vec3 at = point_under(camera, wide, cursor, camera.target + Vec3(3, 4, 5));
+        EXPECT_LT(glm::length(glm::cross(at - ray.origin, ray.direction)), 1e-6);
+        for (const auto& fixed : {std::optional(at), std::optional<Vec3>()}) {
+            const Camera nearer = zoomed(camera, wide, cursor, by(random), fixed);
+            const Vec3 point = fixed.value_or(point_under(camera, wide, cursor, camera.target));
+            EXPECT_LT(glm::distance(project(nearer, wide, point)->place, cursor), 1e-6);
+            EXPECT_NE(nearer.distance, camera.distance);
+        }
+    }
+}
+
+TEST(Camera, PanMovesWhatIsUnderTheCursorWithIt) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<> x(0, wide.width), y(0, wide.height);
+    for (int i = 0; i < 300; ++i) {
+        const Camera camera = random_camera(random);
+        const Vec2 from(x(random), y(random)), to(x(random), y(random));
+        const Vec3 level = camera.target + Vec3(5, -7, 3);
+        const Vec3 held = point_under(camera, wide, from, level);
+        const Camera moved = panned(camera, wide, from, to, level);
+        EXPECT_LT(glm::distance(project(moved, wide, held)->place, to), 1e-6);
+        EXPECT_EQ(moved.distance, camera.distance);
+    }
+}
+
+TEST(Camera, OrbitKeepsItsPivot) {
+    std::mt19937 random(6);
+    for (int i = 0; i < 300; ++i) {
+        const Camera camera = random_camera(random);
+        const Vec3 pivot = camera.target + Vec3(20, -10, 8);
+        const Camera turned = orbited(camera, wide, {120, -35}, pivot);
+        EXPECT_NE(turned.yaw, camera.yaw);
+        const auto was = project(camera, wide, pivot), is = project(turned, wide, pivot);
+        EXPECT_LT(glm::distance(was->place, is->place), 1e-6);
+        EXPECT_NEAR(was->depth, is->depth, 1e-9);
+        EXPECT_EQ(orbited(camera, wide, {10, 10}).target, camera.target);
+    }
+}
+
+TEST(Camera, NeverStandsOnItsHead) {
+    Camera camera;
+    for (int i = 0; i < 50; ++i) {
+        camera = orbited(camera, wide, {3, 90});
+        EXPECT_GE(axes(camera).up.z, -1e-12);
+    }
+    EXPECT_NEAR(axes(camera).backward.z, 1.0, 1e-12);
+}
+
+TEST(Camera, StandardViewsShowTheirSides) {
+    const auto seen = [](StandardView view) { return axes(seen_from(Camera(), view)); };
+    const auto is = [](const Vec3& a, const Vec3& b) { return glm::distance(a, b) < 1e-9; };
+    EXPECT_TRUE(is(seen(StandardView::top).backward, {0, 0, 1}));
+    EXPECT_TRUE(is(seen(StandardView::top).right, {1, 0, 0}));
+    EXPECT_TRUE(is(seen(StandardView::top).up, {0, 1, 0}));
+    EXPECT_TRUE(is(seen(StandardView::front).backward, {0, -1, 0}));
+    EXPECT_TRUE(is(seen(StandardView::front).right, {1, 0, 0}));
+    EXPECT_TRUE(is(seen(StandardView::right).backward, {1, 0, 0}));
+    EXPECT_TRUE(is(seen(StandardView::back).backward, {0, 1, 0}));
+    EXPECT_TRUE(is(seen(StandardView::left).backward, {-1, 0, 0}));
+    EXPECT_TRUE(is(seen(StandardView::bottom).backward, {0, 0, -1}));
+    EXPECT_TRUE(is(seen(StandardView::bottom).right, {1, 0, 0}));
+    const Vec3 iso = seen(StandardView::iso).backward;
+    EXPECT_TRUE(is(iso, glm::normalize(Vec3(1, -1, 1))));
+}
+
+TEST(Camera, KeepsItsScaleWithoutPerspective) {
+    Camera camera;
+    const double with = pixel_size(camera, wide, camera.target);
+    camera.projection = Projection::orthographic;
+    EXPECT_NEAR(pixel_size(camera, wide, camera.target), with, 1e-12);
+    EXPECT_NEAR(pixel_size(camera, wide, camera.target + Vec3(50, 50, 50)), with, 1e-12);
+}
+
+TEST(Camera, GoesTheShortWayRound) {
+    Camera a, b;
+    a.yaw = 3.0;
+    b.yaw = -3.0;
+    b.distance = 100.0;
+    EXPECT_EQ(between(a, b, 0.0), a);
+    EXPECT_EQ(between(a, b, 1.0), b);
+    const Camera half = between(a, b, 0.5);
+    EXPECT_NEAR(std::abs(half.yaw), 3.14159265, 1e-6);
+    EXPECT_NEAR(half.distance, 200.0, 1e-9);
+}
+
+} // namespace
+} // namespace render

@@ -1,0 +1,223 @@
+#include <cstdlib>
+#include <filesystem>
+
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include "render/offscreen.h"
+#include "render/renderer.h"
+#include "tests/render/sample_scene.h"
+#include "tests/support/scoped_folder.h"
+
+namespace render {
+namespace {
+
+const Viewport size{480, 300};
+
+/// A context and a renderer for all tests of this file.
+class Picture : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        auto made = Offscreen::make();
+        ASSERT_TRUE(made) << made.error().message;
+        context = std::make_unique<Offscreen>(std::move(*made));
+        auto drawer = Renderer::make();
+        ASSERT_TRUE(drawer) << drawer.error().message;
+        renderer = std::make_unique<Renderer>(std::move(*drawer));
+        scene = std::make_unique<Scene>(sample_scene());
+    }
+    static void TearDownTestSuite() {
+        renderer.reset();
+        context.reset();
+        scene.reset();
+    }
+
+    static Image drawn(const Scene& what, const Camera& camera, const DrawOptions& options = {}) {
+        auto canvas = Canvas::make(size);
+        EXPECT_TRUE(canvas) << canvas.error().message;
+        renderer->draw(what, camera, options, *canvas);
+        EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+        return canvas->pixels();
+    }
+
+    /// Compares with the picture of that name; what was drawn stays in the temporary folder.
+    static void expect_golden(const std::string& name, const Scene& what, const Camera& camera,
+                              const DrawOptions& options = {}) {
+        const auto image = still_picture(*renderer, what, camera, options, size);
+        ASSERT_TRUE(image) << image.error().message;
+        EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+        const std::filesystem::path path =
+            std::filesystem::path(FEELER_SOURCE_DIR) / "tests/golden/render" / (name + ".png");
+        const std::filesystem::path drawn_path =
+            std::filesystem::path(testing::TempDir()) / ("feeler-" + name + ".png");
+        ASSERT_TRUE(write_png(*image, drawn_path));
+        const auto expected = read_png(path);
+        ASSERT_TRUE(expected) << expected.error().message << "; drawn: " << drawn_path;
+        const ImageDifference found = difference(*image, *expected, 24);
+        EXPECT_TRUE(found.same_size);
+        EXPECT_LT(found.mean, 1.0) << "drawn: " << drawn_path;
+        EXPECT_LT(found.different, 0.01) << "drawn: " << drawn_path;
+    }
+
+    static Camera work_camera() {
+        Camera camera;
+        camera.yaw = -0.55;
+        camera.pitch = 0.5;
+        camera = framing(camera, size, work_bounds(*scene));
+        camera.target = {0, -5, 0};
+        camera.distance *= 0.62;
+        return camera;
+    }
+
+    static std::unique_ptr<Offscreen> context;
+    static std::unique_ptr<Renderer> renderer;
+    static std::unique_ptr<Scene> scene;
+};
+
+std::unique_ptr<Offscreen> Picture::context;
+std::unique_ptr<Renderer> Picture::renderer;
+std::unique_ptr<Scene> Picture::scene;
+
+/// Pixels whose colour is nearly this one.
+size_t count_near(const Image& image, Color wanted, int tolerance) {
+    size_t count = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const uint8_t* p = image.pixel(x, y);
+            count += std::abs(p[0] - wanted.r) <= tolerance
+                     && std::abs(p[1] - wanted.g) <= tolerance
+                     && std::abs(p[2] - wanted.b) <= tolerance;
+        }
+    return count;
+}
+
+TEST_F(Picture, ShowsTheWholeSetupInTheDark) { expect_golden("setup-dark", *scene, work_camera()); }
+
+TEST_F(Picture, ShowsTheWholeSetupInTheLight) {
+    expect_golden("setup-light", *scene, work_camera(), {.theme = Theme::light});
+}
+
+TEST_F(Picture, ShowsTheFacesOfASection) {
+    Scene cut = *scene;
+    cut.section = SectionPlane{{0, -1, 0}, 4.0};
+    cut.path_visible = false;
+    Camera camera = work_camera();
+    camera.yaw = -1.1;
+    expect_golden("section", cut, camera);
+}
+
+TEST_F(Picture, ShowsTheWitnessThroughWhatHidesIt) {
+    Camera camera = work_camera();
+    camera.yaw = 0.5;
+    camera.pitch = 0.1; // the clamp is in front
+    camera.distance = 200.0;
+    expect_golden("witness", *scene, camera);
+    Scene without = *scene;
+    without.witness.reset();
+    without.path_visible = false;
+    Scene with = without;
+    with.witness = scene->witness;
+    const Color ink = color(Theme::dark, Role::violation);
+    EXPECT_EQ(count_near(drawn(without, camera), ink, 24), 0u);
+    EXPECT_GT(count_near(drawn(with, camera), ink, 24), 20u);
+}
+
+TEST_F(Picture, HasTheBackgroundOfThePaletteAndNothingSeenThrough) {
+    const Image image = drawn(Scene(), Camera());
+    const Color top = color(Theme::dark, Role::view_top);
+    EXPECT_NEAR(image.pixel(200, 0)[0], top.r, 2);
+    EXPECT_NEAR(image.pixel(200, 0)[2], top.b, 2);
+    const Color bottom = color(Theme::dark, Role::view_bottom);
+    EXPECT_NEAR(image.pixel(200, size.height - 1)[1], bottom.g, 2);
+    const Image full = drawn(*scene, work_camera());
+    for (size_t i = 3; i < full.rgba.size(); i += 4) ASSERT_EQ(full.rgba[i], 255);
+}
+
+TEST_F(Picture, IsTheSameWhenDrawnAgain) {
+    const Image first = drawn(*scene, work_camera());
+    drawn(Scene(), Camera());
+    EXPECT_EQ(drawn(*scene, work_camera()).rgba, first.rgba);
+}
+
+TEST_F(Picture, MakesTheCurrentBlockBright) {
+    Scene plain;
+    plain.path = scene->path;
+    plain.fade_later_blocks = false;
+    Camera camera = framing(Camera(), size, scene->path->bounds);
+    const size_t before = count_near(drawn(plain, camera), {255, 255, 255}, 40);
+    plain.current_block = 2;
+    EXPECT_GT(count_near(drawn(plain, camera), {255, 255, 255}, 40), before + 30);
+}
+
+TEST_F(Picture, FadesWhatComesLater) {
+    Scene plain;
+    plain.path = scene->path;
+    const Camera camera = framing(Camera(), size, scene->path->bounds);
+    const Color amber = color(Theme::dark, Role::near);
+    plain.current_block = 0;
+    const size_t faded = count_near(drawn(plain, camera), amber, 30);
+    plain.current_block.reset();
+    EXPECT_GT(count_near(drawn(plain, camera), amber, 30), faded + 100);
+}
+
+TEST_F(Picture, DrawsAPathOfManyPieces) {
+    // More than one texture holds; the last piece is as much there as the first.
+    std::vector<PathPoint> points;
+    for (uint32_t i = 0; i < 150'000; ++i)
+        points.push_back({.place = {static_cast<float>(i) * 1e-3F, 0, 0},
+                          .block = i,
+                          .state = ClearanceState::violation});
+    Scene plain;
+    plain.path = std::make_shared<const ToolPath>(tool_path(points));
+    Camera camera = seen_from(Camera(), StandardView::top);
+    camera.target = {75, 0, 0};
+    camera.distance = 400;
+    const Image image = drawn(plain, camera);
+    const Color ink = color(Theme::dark, Role::violation);
+    for (const double x : {1.0, 70.0, 100.0, 149.0}) {
+        const Vec2 at = project(camera, size, {x, 0, 0})->place;
+        const uint8_t* p = image.pixel(static_cast<int>(at.x), static_cast<int>(at.y));
+        EXPECT_NEAR(p[0], ink.r, 30) << x;
+    }
+}
+
+TEST_F(Picture, IsSmootherWithSamples) {
+    auto canvas = Canvas::make(size, 4);
+    ASSERT_TRUE(canvas);
+    EXPECT_EQ(canvas->samples(), 4);
+    renderer->draw(*scene, work_camera(), {}, *canvas);
+    const ImageDifference found = difference(canvas->pixels(), drawn(*scene, work_camera()));
+    EXPECT_GT(found.different, 0.002);
+    EXPECT_LT(found.mean, 3.0);
+}
+
+TEST(PictureFile, IsReadAsItWasWritten) {
+    const test_support::ScopedFolder folder;
+    Image image{3, 2, {}};
+    for (uint8_t i = 0; i < 24; ++i) image.rgba.push_back(static_cast<uint8_t>(10 * i));
+    const std::filesystem::path path = folder.write("a.png", "");
+    ASSERT_TRUE(write_png(image, path));
+    EXPECT_EQ(read_png(path)->rgba, image.rgba);
+    EXPECT_FALSE(read_png(path.parent_path() / "none.png"));
+    EXPECT_FALSE(write_png(image, path.parent_path() / "no" / "folder.png"));
+}
+
+TEST(ImageDifference, CountsPixelsBeyondTheTolerance) {
+    Image a{2, 2, std::vector<uint8_t>(16, 100)}, b = a;
+    EXPECT_EQ(difference(a, b).different, 0.0);
+    b.rgba[5] = 120;
+    b.rgba[9] = 105;
+    EXPECT_EQ(difference(a, b, 12).different, 0.25);
+    EXPECT_NEAR(difference(a, b, 12).mean, 25.0 / 16.0, 1e-12);
+    b.width = 1;
+    EXPECT_FALSE(difference(a, b).same_size);
+}
+
+TEST(Image, HalvesByTheMean) {
+    const Image whole{2, 2, {0, 0, 0, 255, 100, 0, 0, 255, 0, 40, 0, 255, 0, 0, 4, 255}};
+    const Image half = halved(whole);
+    EXPECT_EQ(half.rgba, (std::vector<uint8_t>{25, 10, 1, 255}));
+}
+
+} // namespace
+} // namespace render

@@ -1,0 +1,303 @@
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "render/body_mesh.h"
+#include "render/motion_path.h"
+#include "render/path_levels.h"
+#include "render/profile_outline.h"
+#include "render/setup_scene.h"
+#include "tests/render/sample_scene.h"
+
+namespace render {
+namespace {
+
+using core::Vec3;
+
+double volume(const TriangleMesh& mesh) {
+    double six = 0.0;
+    for (const TriangleMesh::Corners& t : mesh.triangles) {
+        const auto at = [&](size_t i) { return Vec3(mesh.vertices[t[i]].place); };
+        six += glm::dot(at(0), glm::cross(at(1), at(2)));
+    }
+    return six / 6.0;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+    using Place = std::array<float, 3>;
+    std::map<std::pair<Place, Place>, int> passes;
+    for (const TriangleMesh::Corners& t : mesh.triangles)
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t i) {
+                const glm::vec3& p = mesh.vertices[t[i % 3]].place;
+                return Place{p.x, p.y, p.z};
+            };
+            const Place a = at(k), b = at(k + 1);
+            passes[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return std::all_of(passes.begin(), passes.end(), [](const auto& p) { return p.second == 0; });
+}
+
+constexpr double pi = 3.14159265358979;
+
+TEST(BodyMesh, IsClosedAndHasTheVolumeOfTheBody) {
+    const auto check = [](const TriangleMesh& mesh, double expected) {
+        EXPECT_TRUE(mesh.closed);
+        EXPECT_TRUE(is_closed(mesh));
+        EXPECT_NEAR(volume(mesh) / expected, 1.0, 0.012);
+    };
+    check(mesh_of(core::Primitive(core::Box{{10, 20, 30}})), 6000.0);
+    check(mesh_of(core::Primitive(core::Sphere{12})), 4.0 / 3.0 * pi * 1728);
+    check(mesh_of(core::Primitive(core::Cylinder{5, 40})), pi * 25 * 40);
+    check(mesh_of(core::ExactBody(core::convex(core::Aabb{{0, 0, 0}, {1, 2, 3}}))), 6.0);
+    check(mesh_of(core::Solid{core::SolidCylinder{{1, 2, 3}, 10, 50, 0}, 0.0}), pi * 100 * 50);
+    check(mesh_of(core::convex_sphere(7.0)), 4.0 / 3.0 * pi * 343);
+}
+
+TEST(BodyMesh, StandsWhereTheBodyStands) {
+    const core::ConvexShape cone =
+        core::posed(core::convex(core::ProfileElement{0.0, 6.0, 20.0, 2.0, 0.0}),
+                    {core::rotation_xyz_deg({90, 0, 0}), {5, 6, 7}});
+    const TriangleMesh mesh = mesh_of(cone);
+    const core::Aabb expected = core::bounds(cone);
+    EXPECT_LT(glm::distance(mesh.bounds.min, expected.min), 0.1);
+    EXPECT_LT(glm::distance(mesh.bounds.max, expected.max), 0.1);
+}
+
+TEST(ProfileMesh, ShowsNoPieceWithinAnother) {
+    // The flutes of a T-slot cutter reach into the neck.
+    const core::RevolvedProfile profile{{{0, 10, 5, 10, 0}, {4.8, 4, 30, 4, 0}}};
+    const std::vector<OutlinePoint> outline = outline_of(profile, 0.02);
+    const std::vector<OutlinePoint> expected = {{0, 0}, {10, 0}, {10, 5}, {4, 5}, {4, 30}, {0, 30}};
+    ASSERT_EQ(outline.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_NEAR(outline[i].r, expected[i].r, 1e-9) << i;
+        EXPECT_NEAR(outline[i].z, expected[i].z, 1e-9) << i;
+    }
+    EXPECT_NEAR(volume(mesh_of(profile)) / (pi * (100 * 5 + 16 * 25)), 1.0, 0.005);
+}
+
+TEST(ProfileMesh, FindsWhereFlanksCross) {
+    const core::RevolvedProfile cross{{{0, 10, 10, 0, 0}, {0, 0, 10, 10, 0}}};
+    double narrowest = 100.0;
+    for (const OutlinePoint& p : outline_of(cross, 0.02))
+        if (p.r > 0.0) narrowest = std::min(narrowest, p.r);
+    EXPECT_NEAR(narrowest, 5.0, 1e-9);
+}
+
+TEST(ProfileMesh, IsSmoothRoundAndCrispAtRims) {
+    const TriangleMesh ball_end =
+        mesh_of(core::RevolvedProfile{{{8, 0, 8, 0, 8}, {8, 8, 30, 8, 0}}});
+    EXPECT_TRUE(is_closed(ball_end));
+    size_t on_ball = 0;
+    for (const MeshVertex& v : ball_end.vertices) {
+        const Vec3 p(v.place), n = unpacked_normal(v);
+        if (p.z > 7.0) continue;
+        EXPECT_GT(glm::dot(n, glm::normalize(p - Vec3(0, 0, 8))), 0.985);
+        ++on_ball;
+    }
+    EXPECT_GT(on_ball, 100u);
+    for (const auto& [a, b] : ball_end.edges) EXPECT_NEAR(a.z, 30.0F, 1e-5F); // the top rim alone
+    EXPECT_GT(ball_end.edges.size(), 20u);
+}
+
+TEST(ShadedMesh, HasANormalForEachFaceOfABox) {
+    const TriangleMesh mesh = mesh_of(core::Primitive(core::Box{{1, 1, 1}}));
+    EXPECT_EQ(mesh.vertices.size(), 24u);
+    EXPECT_EQ(mesh.edges.size(), 12u);
+    EXPECT_EQ(sizeof(MeshVertex), 16u);
+}
+
+TEST(SetupScene, PlacesTheToolWhereTheAxesStand) {
+    const core::Setup setup = sample_setup();
+    const core::ToolAssembly tool = sample_tool();
+    const core::AxisValues values{12.0, -7.0, 100.0};
+    const std::vector<Body> bodies = tool_bodies(setup, tool, tool_meshes(tool), values);
+    ASSERT_EQ(bodies.size(), 3u);
+    EXPECT_EQ(bodies[0].role, BodyRole::flutes);
+    EXPECT_EQ(bodies[2].role, BodyRole::holder);
+    EXPECT_LT(bodies[2].alpha, 1.0);
+    const Vec3 tip = tip_in_stock(setup, tool.length, values);
+    EXPECT_LT(glm::distance(tip, Vec3(12.0, -7.0, 100.0 - tool.length)), 1e-9);
+    EXPECT_NEAR(bounds(bodies[0]).min.z, tip.z, 1e-4);
+    EXPECT_NEAR(bounds(bodies[0]).center().x, 12.0, 1e-4);
+}
+
+TEST(SetupScene, IsSeenFromAStockThatTurns) {
+    core::Setup setup = sample_setup();
+    core::MachineAxis& a = setup.machine.axes[3];
+    a.present = true;
+    a.direction = {1, 0, 0};
+    a.side = core::Side::table;
+    setup.machine.table = core::link_of(3);
+    setup.stock_mount = {core::link_of(3), core::translation({0, 0, -50})};
+    for (core::Fixture& fixture : setup.fixtures) fixture.mount = setup.stock_mount;
+    core::AxisValues values{};
+    const std::vector<Body> at_rest = setup_bodies(setup, setup_meshes(setup), values);
+    const Vec3 tip = tip_in_stock(setup, 80.0, values);
+    values[3] = 90.0;
+    const std::vector<Body> turned = setup_bodies(setup, setup_meshes(setup), values);
+    for (size_t i = 0; i < turned.size(); ++i) // on the table, as the stock is
+        EXPECT_LT(glm::distance(bounds(turned[i]).max, bounds(at_rest[i]).max), 1e-9);
+    const Vec3 after = tip_in_stock(setup, 80.0, values);
+    EXPECT_LT(glm::distance(tip, Vec3(0, 0, -30)), 1e-9);
+    EXPECT_NEAR(glm::length(after - Vec3(0, 0, 50)), 80.0, 1e-9); // about the axis
+    EXPECT_NEAR(after.z, 50.0, 1e-9);
+}
+
+TEST(SetupScene, LeavesOutFixturesThatAreNotThere) {
+    core::Setup setup = sample_setup();
+    setup.fixtures[1].is_there = false;
+    const SetupMeshes meshes = setup_meshes(setup);
+    EXPECT_EQ(setup_bodies(setup, meshes, {}).size(), setup.fixtures.size() - 1);
+    std::vector<bool> there(setup.fixtures.size(), false);
+    there[4] = true;
+    const std::vector<Body> bodies = setup_bodies(setup, meshes, {}, there);
+    ASSERT_EQ(bodies.size(), 1u);
+    EXPECT_EQ(bodies[0].name, "clamp-1");
+    EXPECT_EQ(bodies[0].role, BodyRole::clamp);
+}
+
+TEST(ToolPath, FindsThePointsOfABlock) {
+    std::vector<PathPoint> points;
+    for (uint32_t i = 0; i < 500; ++i)
+        points.push_back({.place = {static_cast<float>(i), 0, 0}, .block = i / 3});
+    points[0].begins = true;
+    const ToolPath path = tool_path(points);
+    EXPECT_EQ(points_of_block(path, 7), (std::pair<size_t, size_t>(21, 24)));
+    EXPECT_EQ(points_of_block(path, 4711), (std::pair<size_t, size_t>(0, 0)));
+    EXPECT_NEAR(bounds_of_block(path, 7).min.x, 20.0, 1e-6); // from the end of the block before
+    EXPECT_NEAR(bounds_of_block(path, 7).max.x, 23.0, 1e-6);
+    EXPECT_NEAR(path.bounds.max.x, 499.0, 1e-6);
+}
+
+core::Leg leg(const core::AxisValues& from, const core::AxisValues& to) {
+    return {.places = {from, to}};
+}
+
+TEST(MotionPath, FollowsTheLegsOfADogLeg) {
+    const core::Setup setup = sample_setup();
+    std::vector<PathPoint> points;
+    const core::Path path{{leg({0, 0, 100}, {10, 10, 100}), leg({10, 10, 100}, {30, 10, 100})}};
+    append_motion(points, setup, 80.0, path, {.block = 3, .rapid = true});
+    append_motion(points, setup, 80.0, {{leg({30, 10, 100}, {30, 10, 90})}}, {.block = 4});
+    ASSERT_EQ(points.size(), 4u);
+    EXPECT_TRUE(points[0].begins);
+    EXPECT_EQ(points[1].place, glm::vec3(10, 10, 20));
+    EXPECT_TRUE(points[2].rapid && !points[2].begins);
+    EXPECT_EQ(points[3].place, glm::vec3(30, 10, 10));
+    EXPECT_EQ(points[3].block, 4u);
+    append_motion(points, setup, 70.0, {{leg({30, 10, 90}, {31, 10, 90})}}, {.block = 5});
+    EXPECT_TRUE(points[4].begins); // a tool of another length
+}
+
+TEST(MotionPath, BendsWhereTheTableTurns) {
+    core::Setup setup = sample_setup();
+    core::MachineAxis& c = setup.machine.axes[5];
+    c.present = true;
+    c.direction = {0, 0, 1};
+    c.side = core::Side::table;
+    setup.machine.table = core::link_of(5);
+    setup.stock_mount.link = core::link_of(5);
+    std::vector<PathPoint> points;
+    core::AxisValues from{40, 0, 50}, to = from;
+    to[5] = 90.0;
+    append_motion(points, setup, 50.0, {{leg(from, to)}}, {});
+    EXPECT_GE(points.size(), 30u);
+    for (const PathPoint& p : points) EXPECT_NEAR(glm::length(p.place), 40.0, 1e-4);
+    EXPECT_NEAR(std::abs(points.back().place.y), 40.0, 1e-4);
+}
+
+TEST(MotionPath, LeavesOutAWayThatNobodyKnows) {
+    const core::Setup setup = sample_setup();
+    std::vector<PathPoint> points;
+    core::Leg unknown{.places = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}},
+                      .straight = false,
+                      .start_known = false,
+                      .certain = {{10, 10, 0}}};
+    append_motion(points, setup, 0.0, {{unknown}}, {});
+    ASSERT_EQ(points.size(), 1u);
+    EXPECT_TRUE(points[0].begins);
+}
+
+/// A raster over hills, with pieces in violation and a gap.
+std::vector<PathPoint> raster() {
+    std::vector<PathPoint> points;
+    for (uint32_t i = 0; i < 20'000; ++i) {
+        const float x = static_cast<float>(i % 200) * 0.25F, y = static_cast<float>(i / 200) * 0.4F;
+        points.push_back({.place = {x, y, 3.0F * std::sin(x * 0.3F) * std::cos(y * 0.2F)},
+                          .block = i,
+                          .state = i % 700 < 9 ? ClearanceState::violation : ClearanceState::clear,
+                          .rapid = i % 200 == 0,
+                          .begins = i == 0 || i == 5000});
+    }
+    return points;
+}
+
+TEST(SimplifiedPath, StaysWithinItsToleranceAndKeepsStates) {
+    const std::vector<PathPoint> points = raster();
+    for (const double tolerance : {0.01, 0.1}) {
+        const std::vector<PathPoint> kept = simplified(points, tolerance);
+        EXPECT_LT(kept.size(), points.size() / (tolerance > 0.05 ? 6 : 2));
+        size_t next = 0; // blocks tell which point is which
+        double farthest = 0.0;
+        for (size_t i = 1; i < kept.size(); ++i) {
+            const Vec3 a(kept[i - 1].place), b(kept[i].place), by = b - a;
+            for (; next <= kept[i].block; ++next) {
+                const PathPoint& p = points[next];
+                if (next > kept[i - 1].block) {
+                    EXPECT_EQ(p.state, kept[i].state);
+                    EXPECT_EQ(p.rapid, kept[i].rapid);
+                    EXPECT_EQ(p.begins, kept[i].begins);
+                }
+                const double t =
+                    std::clamp(glm::dot(Vec3(p.place) - a, by) / glm::dot(by, by), 0.0, 1.0);
+                farthest = std::max(farthest, glm::distance(Vec3(p.place), a + t * by));
+            }
+        }
+        EXPECT_EQ(next, points.size());
+        EXPECT_LE(farthest, tolerance * 1.001);
+        EXPECT_GT(farthest, 0.5 * tolerance); // no more points than need be
+    }
+}
+
+TEST(VisiblePath, LeavesOutNothingThatIsSeen) {
+    const ToolPath path = tool_path(raster());
+    const Viewport viewport{800, 500};
+    Camera camera;
+    camera.target = {10, 10, 0};
+    camera.distance = 25;
+    const auto ranges = visible_ranges(path, clip_from_view(camera, viewport, path.bounds)
+                                                 * view_from_scene(camera));
+    size_t drawn = 0, seen = 0;
+    for (const PathRange& range : ranges) drawn += range.last - range.first;
+    for (size_t i = 1; i < path.points.size(); ++i) {
+        const auto at = project(camera, viewport, Vec3(path.points[i].place));
+        if (!at || at->place.x < 0 || at->place.y < 0 || at->place.x > viewport.width
+            || at->place.y > viewport.height || at->depth < 1.0)
+            continue;
+        ++seen;
+        EXPECT_TRUE(std::any_of(ranges.begin(), ranges.end(), [&](const PathRange& range) {
+            return range.first <= i && i < range.last;
+        })) << i;
+    }
+    EXPECT_GT(seen, 200u);
+    EXPECT_LT(drawn, path.points.size() * 3 / 4);
+}
+
+TEST(Scene, BoundsHoldAllThatIsVisible) {
+    Scene scene = sample_scene(2.0);
+    const core::Aabb all = bounds(scene);
+    EXPECT_NEAR(all.min.z, -100.0, 1e-4);
+    EXPECT_GT(all.max.z, 140.0); // the holder
+    const core::Aabb work = work_bounds(scene);
+    EXPECT_LT(work.max.z, 30.0);
+    EXPECT_NEAR(work.min.z, -66.0, 1e-4); // without the machine's table
+    for (Body& body : scene.bodies) body.visible = false;
+    scene.path_visible = false;
+    scene.witness.reset();
+    EXPECT_NEAR(bounds(scene).min.z, -30.0, 1e-3);
+}
+
+} // namespace
+} // namespace render
