@@ -1,6 +1,8 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,6 +12,15 @@
 
 namespace {
 
+/// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.
+std::vector<const char*> arguments_of(int argc, char** argv) {
+    std::vector<const char*> arguments(argv, argv + argc);
+    const bool debugs = argc > 1 && std::string_view(argv[1]) == "debug";
+    for (const char*& argument : arguments)
+        if (debugs && std::string_view(argument) == "-ex") argument = "--eval-command";
+    return arguments;
+}
+
 int run(int argc, char** argv) {
     CLI::App cli("Feeler tells how close every block of an NC program comes to a crash.", "feeler");
     cli.set_version_flag("--version", fmt::format("feeler {}", app::version));
@@ -18,10 +29,12 @@ int run(int argc, char** argv) {
     app::add_check(cli, exit_code);
     app::add_setup(cli, exit_code);
     app::add_trace(cli, exit_code);
+    app::add_debug(cli, exit_code);
     app::add_distance(cli, exit_code);
     app::add_bench(cli, exit_code);
     try {
-        cli.parse(argc, argv);
+        const std::vector<const char*> arguments = arguments_of(argc, argv);
+        cli.parse(argc, arguments.data());
     } catch (const CLI::ParseError& error) {
         // Help and version are no errors; every misuse is the same to a script.
         return cli.exit(error) == 0 ? 0 : static_cast<int>(app::ExitCode::failed);

@@ -15,6 +15,7 @@ enum class ExitCode : int {
 void add_check(CLI::App& cli, ExitCode& exit_code);
 void add_setup(CLI::App& cli, ExitCode& exit_code);
 void add_trace(CLI::App& cli, ExitCode& exit_code);
+void add_debug(CLI::App& cli, ExitCode& exit_code);
 void add_distance(CLI::App& cli, ExitCode& exit_code);
 void add_bench(CLI::App& cli, ExitCode& exit_code);
 

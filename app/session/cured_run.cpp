@@ -4,14 +4,13 @@
 
 namespace app {
 
-CuredRun::CuredRun(const gcode::Program& program, const gcode::Environment& environment,
+CuredRun::CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
                    const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
                    const LengthDoubt& doubt)
     : setup_(setup),
       speed_by_hand_(speed_by_hand),
       length_(doubt.length),
-      library_(program, gcode::dialect(environment.dialect), environment.search_path),
-      interpreter_(library_, environment),
+      interpreter_(library, environment),
       place_(before.at),
       lowering_(before.lowering),
       state_(before.state),
@@ -31,7 +30,8 @@ void CuredRun::put_length_on() {
     place_.modal.position = gcode::program_from_machine(offsets, there);
 }
 
-void CuredRun::follow(const gcode::BlockResult& real) {
+void CuredRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
+    is_lost_ = is_lost_ || &setup != &setup_;
     if (is_lost_) return;
     put_length_on();
     const auto next = interpreter_.next(place_);

@@ -12,6 +12,7 @@ struct ProgramPlace {
     const gcode::Lowering& lowering;
     const core::SimulatorState& state;
     const OffsetWatch& offsets;
+    const LengthWatch& lengths;
 };
 
 /// The blocks of a length doubt as they would go if the control counted with the length that the
@@ -20,14 +21,15 @@ struct ProgramPlace {
 /// Cost: that of the check itself, for these blocks.
 class CuredRun {
 public:
-    /// Begins before the first block of the doubt. Program, environment and set-up must outlive it.
-    CuredRun(const gcode::Program& program, const gcode::Environment& environment,
+    /// Begins before the first block of the doubt. Library, environment and set-up must outlive it;
+    /// the library is that of the run.
+    CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
              const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
              const LengthDoubt& doubt);
 
-    /// Runs the block that the program ran. Does nothing any more once the cured program has taken
-    /// another way.
-    void follow(const gcode::BlockResult& real);
+    /// Runs the block that the program ran under a set-up. Does nothing any more once the cured
+    /// program has taken another way, or the set-up is another one.
+    void follow(const gcode::BlockResult& real, const core::Setup& setup);
 
     /// Writes what was found into the doubt.
     void end(LengthDoubt& doubt);
@@ -38,7 +40,6 @@ private:
     const core::Setup& setup_;
     bool speed_by_hand_;
     double length_;
-    gcode::ProgramLibrary library_;
     gcode::Interpreter interpreter_;
     gcode::InterpreterState place_;
     gcode::Lowering lowering_;

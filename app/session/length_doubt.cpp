@@ -172,6 +172,15 @@ void watch_length(LengthWatch& watch, const core::Setup& setup, const core::Bloc
     watch.is_open = true;
 }
 
+void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
+                          core::SimulatorState& state) {
+    const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
+    if (tool == setup.tools.end()) return;
+    const bool is_short = tool->second.length - state.length_offset.length > wear;
+    watch.is_open = watch.is_open && is_short;
+    state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
+}
+
 void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) {
     for (const LengthDoubt& doubt : doubts) {
         const auto cause = cause_of(run, doubt);

@@ -29,6 +29,11 @@ struct LengthWatch {
 void watch_length(LengthWatch& watch, const core::Setup& setup, const core::BlockEvents& block,
                   std::span<const gcode::Warning> warnings, core::SimulatorState& state);
 
+/// Takes into account that the tool's length, or the one that the control counts with, was changed
+/// between two blocks.
+void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
+                          core::SimulatorState& state);
+
 /// Makes one finding of all that comes of a wrong length: what the tool runs into or passes too
 /// near from there on, until another length or tool is called, and keeps away from with the length
 /// that it has. What is found of the same bodies with that length, too, stays by itself. The

@@ -1,13 +1,12 @@
 #include "app/session/program_runner.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cassert>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/session/block_events.h"
 #include "app/session/m_codes.h"
 #include "core/sim/finding_text.h"
 #include "gcode/error_rules.h"
@@ -15,30 +14,6 @@
 
 namespace app {
 namespace {
-
-/// As a sentence: with a capital, but for names, and a full stop.
-std::string as_sentence(std::string text) {
-    const auto is_small = [&](size_t i) {
-        return i < text.size()
-               && (std::islower(static_cast<unsigned char>(text[i])) || text[i] == ' ');
-    };
-    if (is_small(0) && is_small(1))
-        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (!text.empty() && text.back() != '.') text += '.';
-    return text;
-}
-
-core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
-    core::Finding finding;
-    finding.rule = warning.rule;
-    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
-    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
-    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
-        finding.severity = set->second;
-    finding.message = as_sentence(warning.message);
-    finding.cure = warning.cure;
-    return finding;
-}
 
 /// Drops the pairs that no report tells of: a block keeps the one that decides or else is nearest,
 /// and those that do not keep their allowance. Findings are in the run already.
@@ -63,20 +38,42 @@ void keep_what_tells(core::BlockResult& result) {
     result.findings.shrink_to_fit();
 }
 
+/// What follows from what a control stops at with an alarm; empty for what no rule has a name for.
+std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& error) {
+    core::Finding finding;
+    finding.rule = gcode::rule_of(error);
+    if (finding.rule.empty()) return std::nullopt;
+    finding.severity = core::severity_of(setup, finding.rule);
+    if (finding.severity == core::Severity::off) return std::nullopt;
+    finding.message = error.message + ". The control stops here with an alarm.";
+    finding.cure = finding.rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
+                                             : "Look at the end, the centre and the plane of this "
+                                               "arc.";
+    return finding;
+}
+
 } // namespace
 
-core::Error named(core::Error error, const std::string& file) {
-    if (error.file.empty()) error.file = file;
-    return error;
+ProgramRunner::ProgramRunner(PreparedCheck& check)
+    : run_(check.run),
+      runner_(*check.program, check.file.environment, run_.setup),
+      stock_is_stated_(check.stock_is_stated),
+      place_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
+    runner_.speed_by_hand = check.file.speed_by_hand;
+    runner_.offsets_stated = check.file.offsets_set;
+    runner_.before_block = [this](const gcode::BlockResult& block, const ProgramPlace& before) {
+        follow_cure(block, before);
+    };
 }
 
 core::Result<void> ProgramRunner::start_at(const std::string& line) {
-    const gcode::Dialect& dialect = gcode::dialect(environment_.dialect);
-    FEELER_TRY(const uint32_t number, gcode::line_meant(program_, dialect, line));
+    const gcode::Dialect& dialect = gcode::dialect(runner_.environment().dialect);
+    FEELER_TRY(const uint32_t number, gcode::line_meant(runner_.program(), dialect, line));
     FEELER_TRY(const gcode::Restart restart,
-               gcode::restart_at(library_, environment_, number, run_.setup.tool_at_start));
-    place_ = restart.state;
-    lowering_ = gcode::initial_lowering(place_);
+               gcode::restart_at(*runner_.library(), runner_.environment(), number,
+                                 run_.setup.tool_at_start));
+    place_.control = restart.state;
+    place_.lowering = gcode::initial_lowering(place_.control);
     run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
                                            "that was just switched on",
                                            number));
@@ -100,11 +97,13 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
         bool made = move.line && *move.line < line;
         for (uint32_t before = 1; move.code && !made && before < line; ++before) {
-            const auto text = program_.find_line(before);
+            const auto text = runner_.program().find_line(before);
             made = text && *text && has_m_code(**text, *move.code);
         }
         if (!made) continue;
-        moves_made_.insert(i);
+        place_.moves_made.insert(i);
+        place_.machine.fixtures_there[move.from] = false;
+        if (move.to) place_.machine.fixtures_there[*move.to] = true;
         run_.assumptions.push_back(
             fmt::format("{} has been moved, as the lines before the start say",
                         run_.setup.fixtures[move.from].name));
@@ -112,135 +111,72 @@ void ProgramRunner::make_moves_before(uint32_t line) {
 }
 
 void ProgramRunner::stop(core::Error error) {
-    run_.stopped = named(std::move(error), program_.file);
-    const std::string rule(gcode::rule_of(*run_.stopped));
-    const core::Severity severity = core::severity_of(run_.setup, rule);
-    if (rule.empty() || severity == core::Severity::off) return;
-    const bool in_main = run_.stopped->file == program_.file;
-    const auto text = program_.find_line(run_.stopped->where.line);
     const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
-    run_.blocks.push_back({block,
-                           run_.stopped->where.line,
-                           in_main && text && *text ? std::string(**text) : std::string(),
-                           in_main ? std::string() : run_.stopped->file,
-                           {},
-                           {}});
-    core::Finding finding;
-    finding.rule = rule;
-    finding.severity = severity;
-    finding.block = block;
-    finding.message = run_.stopped->message + ". The control stops here with an alarm.";
-    finding.cure = rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
-                                     : "Look at the end, the centre and the plane of this arc.";
-    run_.findings.push_back(finding);
-}
-
-std::optional<core::Error> ProgramRunner::refusal(const gcode::BlockResult& block) const {
-    if (lowering_.moved_tilted)
-        return core::Error{core::ErrorCode::unsupported,
-                           {.line = block.line, .column = 1},
-                           "this block moves in a tilted plane or with a tool that is turned, "
-                           "and the machine of the set-up has no rotary axes that could: add "
-                           "them as [[axis]]",
-                           std::string(block.file)};
-    if (!lowering_.other_axis) return std::nullopt;
-    return core::Error{core::ErrorCode::unsupported,
-                       {.line = block.line, .column = 1},
-                       fmt::format("this block moves axis {}, which the machine of the set-up "
-                                   "does not have: add an [[axis]] of that name to its machine",
-                                   gcode::axis_letters[*lowering_.other_axis]),
-                       std::string(block.file)};
-}
-
-void ProgramRunner::remark_on(const gcode::BlockResult& block) {
-    for (const gcode::Warning& warning : block.warnings) {
-        // What the set-up states is stated, be it all zero.
-        const auto active = static_cast<int>(place_.modal.offsets.active);
-        if (warning.rule == "work-offset-unset" && offsets_stated.contains(active)) continue;
-        core::Finding finding = remark(run_.setup, warning);
-        finding.block = block.block;
-        if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    if (auto finding = alarm(runner_.setup(), error)) {
+        const bool in_main = error.file == runner_.program().file;
+        const auto text = runner_.program().find_line(error.where.line);
+        run_.blocks.push_back({block,
+                               error.where.line,
+                               in_main && text && *text ? std::string(**text) : std::string(),
+                               in_main ? std::string() : error.file,
+                               {},
+                               {}});
+        finding->block = block;
+        run_.findings.push_back(*std::move(finding));
     }
-}
-
-std::optional<core::Error> ProgramRunner::block(const gcode::BlockResult& block,
-                                                core::SimulatorState& state) {
-    const gcode::Lowering lowering_before = lowering_;
-    const std::vector<core::Event> events = events_of(run_.setup, block, lowering_, speed_by_hand);
-    for (const size_t move : fixture_moves_of(run_.setup, block)) moves_made_.insert(move);
-    if (auto refused = refusal(block)) return refused;
-    CheckedBlock checked{block.block, block.line, std::string(block.text), std::string(block.file),
-                         block.calls, {}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
-    watch_length(lengths_, run_.setup, of_block, block.warnings, state);
-    follow_cure(block, {before_, lowering_before, state, offsets_});
-    checked.result = core::run_block(run_.setup, of_block, state);
-    remark_on(block);
-    for (const core::Finding& finding : checked.result.findings) run_.findings.push_back(finding);
-    watch_offsets(offsets_, run_.setup, place_, of_block, state);
-    watch_units(units_, of_block);
-    run_.verdict = std::max(run_.verdict, checked.result.verdict);
-    run_.removed += checked.result.removed;
-    if (run_.setup.detail != core::Detail::every_pair) keep_what_tells(checked.result);
-    run_.blocks.push_back(std::move(checked));
-    std::vector<core::BlockTime> timed;
-    core::add_block(clock_, of_block, timed);
-    enter(timed);
-    return std::nullopt;
+    run_.stopped = std::move(error);
 }
 
 void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPlace& before) {
-    const bool is_first = lengths_.is_open && lengths_.doubts.back().first == block.block;
-    if (!lengths_.is_open || is_first) end_cure();
+    const LengthWatch& lengths = before.lengths;
+    const bool is_first = lengths.is_open && lengths.doubts.back().first == block.block;
+    if (!lengths.is_open || is_first) end_cure();
     if (is_first) {
-        followed_ = lengths_.doubts.size() - 1;
-        cured_ = std::make_unique<CuredRun>(program_, environment_, run_.setup, speed_by_hand,
-                                            before, lengths_.doubts.back());
+        followed_ = lengths.doubts.back();
+        cured_ =
+            std::make_unique<CuredRun>(*runner_.library(), runner_.environment(), runner_.setup(),
+                                       runner_.speed_by_hand, before, lengths.doubts.back());
     }
-    if (cured_) cured_->follow(block);
+    if (cured_) cured_->follow(block, runner_.setup());
 }
 
 void ProgramRunner::end_cure() {
     if (!cured_) return;
-    cured_->end(lengths_.doubts[followed_]);
+    cured_->end(followed_);
+    cures_.push_back(std::move(followed_));
     cured_.reset();
+}
+
+std::vector<LengthDoubt> ProgramRunner::length_doubts() const {
+    std::vector<LengthDoubt> doubts = place_.lengths.doubts;
+    for (LengthDoubt& doubt : doubts)
+        for (const LengthDoubt& cure : cures_) {
+            if (cure.first != doubt.first) continue;
+            doubt.cured_to = cure.cured_to;
+            doubt.left = cure.left;
+        }
+    return doubts;
 }
 
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     for (const core::BlockTime& time : timed)
-        core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+        if (core::value_of(time.block) >= first_to_time_)
+            core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
 }
 
-void ProgramRunner::hold_against_stock(const core::SimulatorState& state) {
-    for (core::Finding& finding : implausible_offsets(offsets_, run_.setup))
+void ProgramRunner::hold_against_stock() {
+    for (core::Finding& finding : implausible_offsets(place_.offsets, runner_.setup()))
         run_.findings.push_back(std::move(finding));
     if (auto jump =
-            units_off_the_stock(units_, run_.setup, state.stock.outer_box, place_.modal.unit_said))
+            units_off_the_stock(place_.units, runner_.setup(), place_.machine.stock.outer_box,
+                                place_.control.modal.unit_said))
         run_.findings.push_back(*std::move(jump));
-}
-
-void ProgramRunner::to_the_end(core::SimulatorState& state) {
-    for (const size_t made : moves_made_) {
-        const core::FixtureMove& move = run_.setup.fixture_moves[made];
-        state.fixtures_there[move.from] = false;
-        if (move.to) state.fixtures_there[*move.to] = true;
-    }
-    run_blocks(state);
-    end_cure();
-    for (core::Finding& finding : core::end_of_run(run_.setup, state))
-        run_.findings.push_back(std::move(finding));
-    if (stock_is_stated) hold_against_stock(state);
-    if (!run_.stopped) tell_of_moves_not_made();
-    std::vector<core::BlockTime> timed;
-    core::stop_clock(clock_, timed);
-    enter(timed);
-    run_.cycle_time = clock_.time;
 }
 
 void ProgramRunner::tell_of_moves_not_made() {
     for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
-        if (moves_made_.contains(i)) continue;
+        if (place_.moves_made.contains(i)) continue;
         core::Finding finding;
         finding.rule = "fixture-move";
         finding.severity = core::severity_of(run_.setup, finding.rule);
@@ -258,35 +194,78 @@ void ProgramRunner::tell_of_moves_not_made() {
     }
 }
 
-CheckProgress ProgramRunner::progress(const gcode::BlockResult& block) {
-    if (block.file.empty()) last_line_ = block.line;
+bool ProgramRunner::advance() {
+    auto step = runner_.step(place_);
+    if (!step || !*step) {
+        if (!step) stop(std::move(step).error());
+        end();
+        return false;
+    }
+    CheckedBlock& checked = (**step).checked;
+    run_.verdict = std::max(run_.verdict, checked.result.verdict);
+    run_.removed += checked.result.removed;
+    for (core::Finding& finding : (**step).findings) run_.findings.push_back(std::move(finding));
+    if (runner_.setup().detail != core::Detail::every_pair) keep_what_tells(checked.result);
+    if (checked.file.empty()) last_line_ = checked.line;
+    run_.blocks.push_back(std::move(checked));
+    enter((**step).timed);
+    return true;
+}
+
+CheckProgress ProgramRunner::progress() const {
     return {run_.blocks.size(),
-            static_cast<double>(last_line_) / static_cast<double>(program_.line_count()),
+            static_cast<double>(last_line_) / static_cast<double>(runner_.program().line_count()),
             run_.findings.size()};
 }
 
-void ProgramRunner::run_blocks(core::SimulatorState& state) {
-    while (true) {
-        before_ = place_;
-        const auto next = interpreter_.next(place_);
-        if (!next) return stop(next.error());
-        if (!*next) break;
-        if (const auto refused = block(**next, state)) {
-            run_.stopped = named(*refused, program_.file);
-            return;
-        }
-        if (after_block && !after_block(progress(**next))) {
-            run_.stopped = named({core::ErrorCode::io,
-                                  {.line = (*next)->line, .column = 1},
-                                  "the check was stopped after this block: the rest of the "
-                                  "program is not checked",
-                                  std::string((*next)->file)},
-                                 program_.file);
-            return;
-        }
+void ProgramRunner::go_back(const RunPlace& place, size_t blocks, size_t findings) {
+    assert(!place.lengths.is_open);
+    place_ = place;
+    first_to_time_ = blocks;
+    cured_.reset();
+    std::erase_if(cures_,
+                  [&](const LengthDoubt& cure) { return core::value_of(cure.first) >= blocks; });
+    run_.blocks.resize(blocks);
+    run_.findings.resize(findings);
+    run_.stopped.reset();
+    run_.verdict = core::Verdict::clear;
+    run_.removed = 0.0;
+    last_line_ = 0;
+    for (const CheckedBlock& block : run_.blocks) {
+        run_.verdict = std::max(run_.verdict, block.result.verdict);
+        run_.removed += block.result.removed;
+        if (block.file.empty()) last_line_ = block.line;
     }
-    if (const auto warning = gcode::ending_warning(environment_, place_))
-        run_.findings.push_back(remark(run_.setup, *warning));
+}
+
+void ProgramRunner::end() {
+    const gcode::Environment& environment = runner_.environment();
+    if (!run_.stopped)
+        if (const auto warning = gcode::ending_warning(environment, place_.control))
+            run_.findings.push_back(remark(runner_.setup(), *warning));
+    end_cure();
+    for (core::Finding& finding : core::end_of_run(runner_.setup(), place_.machine))
+        run_.findings.push_back(std::move(finding));
+    if (stock_is_stated_) hold_against_stock();
+    if (!run_.stopped) tell_of_moves_not_made();
+    std::vector<core::BlockTime> timed;
+    core::stop_clock(place_.clock, timed);
+    enter(timed);
+    run_.cycle_time = place_.clock.time;
+}
+
+void ProgramRunner::to_the_end() {
+    while (advance()) {
+        if (!after_block || after_block(progress())) continue;
+        const CheckedBlock& last = run_.blocks.back();
+        run_.stopped = named({core::ErrorCode::io,
+                              {.line = last.line, .column = 1},
+                              "the check was stopped after this block: the rest of the program is "
+                              "not checked",
+                              last.file},
+                             runner_.program().file);
+        return end();
+    }
 }
 
 } // namespace app

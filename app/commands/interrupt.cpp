@@ -1,0 +1,20 @@
+#include "app/commands/interrupt.h"
+
+#include <csignal>
+
+namespace app {
+namespace {
+
+volatile std::sig_atomic_t noted = 0;
+
+extern "C" void note(int) { noted = 1; }
+
+} // namespace
+
+void note_interrupts() { std::signal(SIGINT, note); }
+
+bool was_interrupted() { return noted != 0; }
+
+void forget_interrupt() { noted = 0; }
+
+} // namespace app

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+
+#include "app/session/check_run.h"
+#include "app/session/cured_run.h"
+#include "app/session/run_place.h"
+
+namespace app {
+
+/// The error with the name of a file, unless it has one.
+core::Error named(core::Error error, const std::string& file);
+
+/// The finding that a warning of the interpreter makes, under the severities of the set-up.
+core::Finding remark(const core::Setup& setup, const gcode::Warning& warning);
+
+/// What carrying out one block gave.
+struct BlockStep {
+    CheckedBlock checked;
+    std::vector<core::Finding> findings;
+    std::vector<core::BlockTime> timed; // blocks whose place in time has become known
+};
+
+/// Carries out the blocks of a program one at a time. It keeps nothing of a run: all of that is in
+/// the place. Refers to what it was given.
+class BlockRunner {
+public:
+    /// Places refer to subprograms by the order in which a library has read them: whoever takes a
+    /// place from one runner to another lets both have the same library.
+    BlockRunner(const gcode::Program& program, const gcode::Environment& environment,
+                const core::Setup& setup, std::shared_ptr<gcode::ProgramLibrary> library = nullptr)
+        : program_(program),
+          environment_(environment),
+          setup_(&setup),
+          library_(library
+                       ? std::move(library)
+                       : std::make_shared<gcode::ProgramLibrary>(
+                           program, gcode::dialect(environment.dialect), environment.search_path)) {
+    }
+
+    bool speed_by_hand = false;   // whatever the program says of it
+    std::set<int> offsets_stated; // work offsets that the set-up states, 0 is G54
+    // Told of a block before it is run, when the control has read it and nothing has moved.
+    std::function<void(const gcode::BlockResult&, const ProgramPlace&)> before_block;
+
+    const gcode::Program& program() const { return program_; }
+    const gcode::Environment& environment() const { return environment_; }
+    const std::shared_ptr<gcode::ProgramLibrary>& library() const { return library_; }
+    const core::Setup& setup() const { return *setup_; }
+    /// From the next block on. The set-up must outlive the runner.
+    void use(const core::Setup& setup) { setup_ = &setup; }
+
+    /// Carries out the next block; empty at the end of the program.
+    ///
+    /// Result: the same, to the last bit, from the same place.
+    /// Errors: what the control would stop at, and blocks that the machine cannot carry out. The
+    ///         place has not changed then.
+    core::Result<std::optional<BlockStep>> step(RunPlace& place);
+
+private:
+    std::optional<core::Error> refusal(const gcode::BlockResult& block,
+                                       const gcode::Lowering& lowering) const;
+    /// What the interpreter remarks of a block.
+    void remark_on(const gcode::BlockResult& block, const RunPlace& place,
+                   std::vector<core::Finding>& findings) const;
+
+    const gcode::Program& program_;
+    const gcode::Environment& environment_;
+    const core::Setup* setup_;
+    std::shared_ptr<gcode::ProgramLibrary> library_;
+    gcode::Interpreter interpreter_{*library_, environment_};
+    gcode::InterpreterState before_ = gcode::initial_state(environment_); // spares allocating
+};
+
+} // namespace app

@@ -1,0 +1,129 @@
+#include "app/session/prepared_check.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "app/session/block_runner.h"
+#include "app/session/digest.h"
+#include "app/session/inferred_setup.h"
+#include "app/session/timing_notes.h"
+#include "core/sim/allowance.h"
+
+namespace app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The dialect that was stated, else what the program looks like.
+core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
+                                              CheckRun& run) {
+    gcode::DialectId chosen{};
+    if (setup.dialect) {
+        chosen = *setup.dialect;
+    } else {
+        const gcode::Recognition seen = gcode::recognise(program);
+        chosen = seen.dialect;
+        run.assumptions.push_back(
+            fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
+    }
+    if (gcode::dialect(chosen).supported) return chosen;
+    return core::fail(core::ErrorCode::unsupported,
+                      fmt::format("the dialect {} is not supported by this version",
+                                  gcode::dialect(chosen).name));
+}
+
+/// What every check of this version takes for granted.
+void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
+    run.assumptions.push_back(
+        fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
+                    core::chord_error(setup.mesh_size)));
+    for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
+    run.assumptions.push_back(fmt::format(
+        "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
+    if (setup.stock.tolerance == 0.0)
+        run.assumptions.push_back("the raw stock is exactly as large as the set-up says");
+    run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
+                                  ? "rapids run straight"
+                                  : "rapids run as dog-legs, each axis at its own speed");
+}
+
+void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
+    if (program_calls_tools || setup.tool_at_start || setup.tools.size() != 1) return;
+    setup.tool_at_start = setup.tools.begin()->first;
+    run.assumptions.push_back(fmt::format("the program calls no tool: tool {} is in the spindle",
+                                          core::value_of(*setup.tool_at_start)));
+}
+
+/// Whether any block up to the end or the first error changes the tool.
+bool calls_tools(const gcode::Program& program, const gcode::Environment& environment) {
+    gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
+                                  environment.search_path);
+    gcode::Interpreter interpreter(library, environment);
+    gcode::InterpreterState state = gcode::initial_state(environment);
+    while (true) {
+        const auto block = interpreter.next(state);
+        if (!block || !*block) return false;
+        for (const gcode::CanonicalCommand& command : (*block)->commands)
+            if (std::holds_alternative<gcode::ChangeTool>(command)) return true;
+    }
+}
+
+/// The raw stock, and the machine beside it.
+core::Result<void> put_in_place(const CheckJob& job, PreparedCheck& check) {
+    const Clock::time_point modelling = Clock::now();
+    CheckRun& run = check.run;
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    if (job.before_model && run.memory <= run.setup.memory_limit) job.before_model(run.memory);
+    auto state = core::start_of_run(run.setup, check.file.environment.start);
+    if (!state) return tl::unexpected(named(state.error(), job.setup));
+    check.machine = *std::move(state);
+    core::SpindleChange& spindle = check.machine.spindle;
+    spindle.direction = run.setup.spindle_at_start;
+    if (spindle.direction != core::SpindleDirection::stopped) spindle.speed = 1.0;
+    run.times.model = seconds_since(modelling);
+    return {};
+}
+
+} // namespace
+
+core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
+    const Clock::time_point begin = Clock::now();
+    PreparedCheck check;
+    CheckRun& run = check.run;
+    run.program_file = job.program;
+    auto program = gcode::read_program(job.program);
+    if (!program) return tl::unexpected(named(program.error(), job.program));
+    check.program = std::make_unique<const gcode::Program>(*std::move(program));
+    run.sha256 = sha256_of_file(job.program);
+    FEELER_TRY(check.file,
+               job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
+    SetupFile& file = check.file;
+    const auto dialect = choose_dialect(file, *check.program, run);
+    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    run.dialect = file.environment.dialect = *dialect;
+    check.stock_is_stated = !file.needs_stock && !file.is_inferred;
+    if (const auto whole = complete_setup(file, *check.program); !whole)
+        return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
+    run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
+                           file.assumptions.end());
+    run.setup = std::move(file.setup);
+    if (job.allowance) run.setup.allowance = job.allowance;
+    run.setup.detail = job.detail;
+    if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
+    run.setup.search_limit = core::search_limit_of(run.setup);
+    take_tool_at_start(run.setup, run, calls_tools(*check.program, file.environment));
+    add_standing_assumptions(run.setup, run);
+    run.times.read = seconds_since(begin);
+    if (const auto placed = put_in_place(job, check); !placed)
+        return tl::unexpected(placed.error());
+    return check;
+}
+
+} // namespace app

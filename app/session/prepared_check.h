@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "app/session/check_run.h"
+
+namespace app {
+
+/// A program and its set-up, read, completed and put in place, before the first block. The program
+/// must stay where it is while it is run.
+struct PreparedCheck {
+    std::unique_ptr<const gcode::Program> program;
+    SetupFile file;               // its setup is in `run`
+    CheckRun run;                 // without blocks
+    core::SimulatorState machine; // before the first block
+    bool stock_is_stated = true;  // false: it was made from the program's own cuts
+};
+
+/// Errors: as run_check.
+core::Result<PreparedCheck> prepare_check(const CheckJob& job);
+
+} // namespace app

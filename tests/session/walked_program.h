@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/session/debug_session.h"
+#include "app/setup/setup_file.h"
+#include "tests/support/scoped_folder.h"
+#include "tests/support/setup_writer.h"
+
+namespace session_test {
+
+/// A program and its set-up as files, for as long as the object lives.
+struct ProgramFiles {
+    test_support::ScopedFolder folder;
+    std::string program, setup;
+
+    ProgramFiles(const std::string& name, const std::string& text,
+                 const test_support::SetupWriter& writer);
+    app::CheckJob job() const;
+};
+
+/// Subprograms in loops, parameters, two tools, cuts, a dwell, a crash into the clamp near the end:
+/// some 430 blocks. LinuxCNC's dialect.
+std::string walked_program();
+test_support::SetupWriter walked_setup();
+
+/// The digest of every place of a program, run once from its beginning without any keyframe.
+std::vector<uint64_t> digests_of(const app::CheckJob& job);
+
+/// The record as JSON, without what depends on the machine's speed.
+std::string report_of(const app::CheckRun& run);
+
+/// The same, of the blocks before one, and the findings about them.
+std::string report_before(const app::CheckRun& run, size_t block);
+
+} // namespace session_test
