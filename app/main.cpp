@@ -31,6 +31,8 @@ int run(int argc, char** argv) {
     app::add_trace(cli, exit_code);
     app::add_debug(cli, exit_code);
     app::add_distance(cli, exit_code);
+    app::add_view(cli, exit_code);
+    app::add_shot(cli, exit_code);
     app::add_bench(cli, exit_code);
     try {
         const std::vector<const char*> arguments = arguments_of(argc, argv);

@@ -106,4 +106,14 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
     return step;
 }
 
+void BlockRunner::visit_ahead(const RunPlace& place, const BlockVisit& visit) {
+    gcode::InterpreterState control = place.control;
+    gcode::Lowering lowering = place.lowering;
+    while (true) {
+        const auto next = interpreter_.next(control);
+        if (!next || !*next) return;
+        if (!visit(**next, events_of(*setup_, **next, lowering, speed_by_hand))) return;
+    }
+}
+
 } // namespace app

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 
 #include "app/session/check_run.h"
 #include "app/session/cured_run.h"
@@ -20,6 +22,9 @@ struct BlockStep {
     std::vector<core::Finding> findings;
     std::vector<core::BlockTime> timed; // blocks whose place in time has become known
 };
+
+/// Looks at a block and what it does; whether it wants to see the next one.
+using BlockVisit = std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>;
 
 /// Carries out the blocks of a program one at a time. It keeps nothing of a run: all of that is in
 /// the place. Refers to what it was given.
@@ -56,6 +61,10 @@ public:
     /// Errors: what the control would stop at, and blocks that the machine cannot carry out. The
     ///         place has not changed then.
     core::Result<std::optional<BlockStep>> step(RunPlace& place);
+
+    /// Shows the blocks that come after a place and what they are about to do, without carrying
+    /// them out, as long as `visit` wants more; up to the end or the first error.
+    void visit_ahead(const RunPlace& place, const BlockVisit& visit);
 
 private:
     std::optional<core::Error> refusal(const gcode::BlockResult& block,

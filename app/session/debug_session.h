@@ -75,6 +75,9 @@ public:
     const RunPlace& place() const { return place_; }
     const Keyframes& keyframes() const { return run_->keyframes(); }
 
+    /// Shows the blocks that come next and what they are about to do, as far as `visit` wants.
+    void visit_ahead(const BlockVisit& visit) { run_->visit_ahead(at_, place_, visit); }
+
     /// Goes to a place, recording as far as needed.
     ///
     /// Errors: the program does not go that far. The place has not changed then.

@@ -92,7 +92,7 @@ core::Result<void> put_in_place(const CheckJob& job, PreparedCheck& check) {
 
 } // namespace
 
-core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
+core::Result<PreparedCheck> read_check(const CheckJob& job) {
     const Clock::time_point begin = Clock::now();
     PreparedCheck check;
     CheckRun& run = check.run;
@@ -121,6 +121,11 @@ core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
     take_tool_at_start(run.setup, run, calls_tools(*check.program, file.environment));
     add_standing_assumptions(run.setup, run);
     run.times.read = seconds_since(begin);
+    return check;
+}
+
+core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
+    FEELER_TRY(PreparedCheck check, read_check(job));
     if (const auto placed = put_in_place(job, check); !placed)
         return tl::unexpected(placed.error());
     return check;

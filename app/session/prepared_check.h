@@ -16,6 +16,11 @@ struct PreparedCheck {
     bool stock_is_stated = true;  // false: it was made from the program's own cuts
 };
 
+/// The same without the machine and the model of the stock, which take the longest.
+///
+/// Errors: as run_check.
+core::Result<PreparedCheck> read_check(const CheckJob& job);
+
 /// Errors: as run_check.
 core::Result<PreparedCheck> prepare_check(const CheckJob& job);
 

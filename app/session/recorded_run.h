@@ -54,6 +54,12 @@ public:
     /// Cost: running the blocks again, but for those before the nearest keyframe.
     void take_to(RunPlace& state, size_t from, size_t place);
 
+    /// As BlockRunner::visit_ahead, from a copy of a place.
+    void visit_ahead(size_t place, const RunPlace& state, const BlockVisit& visit) {
+        replayer_.use(setup_at(place));
+        replayer_.visit_ahead(state, visit);
+    }
+
     /// Where one looks: keyframes are kept near it.
     void look_at(size_t place) { keyframes_.look_at(marks_[place].seconds); }
     const Keyframes& keyframes() const { return keyframes_; }

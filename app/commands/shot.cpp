@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "app/commands/commands.h"
+#include "app/commands/number_range.h"
+#include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
+#include "app/viewer/navigation.h"
+#include "app/viewer/studio.h"
+
+namespace app {
+namespace {
+
+using viewer::BlockRow;
+using viewer::Studio;
+using viewer::ViewModel;
+
+constexpr size_t most_prints = 60; // of a sheet
+constexpr int frames_per_second = 25;
+constexpr size_t most_frames = 500; // of a film: 20 seconds
+
+struct Options {
+    std::string program, setup, output, view = "iso", theme = "dark", size = "1440x900";
+    std::optional<double> allowance, mesh_size;
+    std::optional<size_t> block, finding, from, to;
+    bool worst = false, sheet = false, no_ui = false;
+    ProgramArguments reading;
+};
+
+core::Result<render::Viewport> size_in(const std::string& text) {
+    render::Viewport size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) == 2
+        && size.width >= 64 && size.height >= 64 && size.width <= 8192 && size.height <= 8192)
+        return size;
+    return core::fail(core::ErrorCode::invalid_value,
+                      fmt::format("'{}' is no size: write WIDTHxHEIGHT, 64 to 8192 pixels", text));
+}
+
+viewer::ShotView view_named(const std::string& name) {
+    if (name == "top") return viewer::ShotView::top;
+    if (name == "front") return viewer::ShotView::front;
+    if (name == "witness") return viewer::ShotView::witness;
+    return viewer::ShotView::iso;
+}
+
+core::Error no_such(const std::string& what) { return {core::ErrorCode::invalid_value, {}, what}; }
+
+/// The worst verdict, among equals the least margin.
+size_t worst_block(const ViewModel& model) {
+    size_t worst = 0;
+    const auto margin = [](const BlockRow& row) {
+        return row.has_pair() ? *row.lower - *row.allowance : std::numeric_limits<double>::max();
+    };
+    const auto is_worse = [&](const BlockRow& a, const BlockRow& b) {
+        if (a.verdict != b.verdict) return a.verdict > b.verdict;
+        if (a.worst != b.worst) return a.worst > b.worst;
+        return margin(a) < margin(b);
+    };
+    for (size_t i = 1; i < model.rows.size(); ++i)
+        if (is_worse(model.rows[i], model.rows[worst])) worst = i;
+    return worst;
+}
+
+core::Result<size_t> chosen_block(const Options& options, const ViewModel& model) {
+    if (options.block) {
+        if (*options.block >= 1 && *options.block <= model.rows.size()) return *options.block - 1;
+        return tl::unexpected(
+            no_such(fmt::format("--block: the program has {} blocks", model.rows.size())));
+    }
+    if (!options.finding) return worst_block(model);
+    const size_t number = *options.finding;
+    if (number < 1 || number > model.findings.size())
+        return tl::unexpected(
+            no_such(fmt::format("--finding: there are {} findings", model.findings.size())));
+    const core::Finding& finding = model.findings[number - 1];
+    if (!finding.block)
+        return tl::unexpected(
+            no_such(fmt::format("--finding: {} is about the program as a whole", finding.rule)));
+    return core::value_of(*finding.block);
+}
+
+core::Result<void> shoot_block(const Options& options, const render::Viewport& size,
+                               Studio& studio) {
+    FEELER_TRY(const size_t block, chosen_block(options, studio.model));
+    if (options.block)
+        viewer::go_to(studio.model, block);
+    else
+        viewer::go_to_witness(studio.model, block);
+    studio.settle();
+    studio.look(view_named(options.view), size);
+    FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
+    return render::write_png(image, options.output);
+}
+
+/// Blocks with findings, in order, and the numbers of these.
+std::vector<std::pair<size_t, std::vector<size_t>>> blocks_with_findings(const ViewModel& model) {
+    std::map<size_t, std::vector<size_t>> blocks;
+    for (size_t i = 0; i < model.findings.size(); ++i) {
+        const auto& block = model.findings[i].block;
+        if (block && core::value_of(*block) < model.rows.size())
+            blocks[core::value_of(*block)].push_back(i);
+    }
+    return {blocks.begin(), blocks.end()};
+}
+
+std::string caption_of(const ViewModel& model, size_t block, const std::vector<size_t>& findings) {
+    const BlockRow& row = model.rows[block];
+    std::string text;
+    for (const size_t i : findings)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", i + 1, model.findings[i].rule);
+    text += fmt::format("  \xC2\xB7  block {}, line {}", block + 1, row.line);
+    if (row.has_pair())
+        text += fmt::format("  \xC2\xB7  {:.2f} mm  {} \xE2\x80\x93 {}", *row.lower, row.part,
+                            row.body);
+    return text;
+}
+
+core::Result<void> shoot_sheet(const Options& options, Studio& studio) {
+    const render::Viewport size{460, 330};
+    std::vector<Studio::Print> prints;
+    const auto blocks = blocks_with_findings(studio.model);
+    for (const auto& [block, findings] : blocks) {
+        if (prints.size() == most_prints) break;
+        viewer::go_to_witness(studio.model, block);
+        studio.settle();
+        studio.look(viewer::ShotView::witness, size);
+        FEELER_TRY(render::Image image, studio.picture(size, false));
+        prints.push_back({std::move(image), caption_of(studio.model, block, findings)});
+    }
+    if (blocks.size() > prints.size())
+        fmt::print(stderr, "feeler: the sheet has the first {} of {} blocks with findings\n",
+                   prints.size(), blocks.size());
+    if (prints.empty())
+        return core::fail(core::ErrorCode::missing_value, "--sheet: no finding is about a block");
+    const size_t columns = prints.size() < 4 ? prints.size() : prints.size() < 9 ? 2 : 3;
+    FEELER_TRY(const render::Image image, studio.sheet(prints, columns));
+    return render::write_png(image, options.output);
+}
+
+/// Joins numbered pictures; false when there is no ffmpeg, or it failed.
+bool join(const std::string& pattern, const std::string& output) {
+    const std::string rate = std::to_string(frames_per_second);
+    std::array<const char*, 16> words = {
+        "ffmpeg",       "-y",         "-loglevel", "error",
+        "-framerate",   rate.c_str(), "-i",        pattern.c_str(),
+        "-pix_fmt",     "yuv420p",    "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+        output.c_str(), nullptr};
+    pid_t child = 0;
+    if (::posix_spawnp(&child, "ffmpeg", nullptr, nullptr, const_cast<char* const*>(words.data()),
+                       environ)
+        != 0)
+        return false;
+    int status = 0;
+    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+core::Result<void> shoot_film(const Options& options, const render::Viewport& size,
+                              Studio& studio) {
+    ViewModel& model = studio.model;
+    const size_t from = options.from.value_or(1), to = options.to.value_or(model.rows.size());
+    if (from < 1 || to < from || to > model.rows.size())
+        return tl::unexpected(
+            no_such(fmt::format("--from, --to: the program has {} blocks", model.rows.size())));
+    const std::filesystem::path target(options.output);
+    const bool is_film = target.extension() != ".png";
+    const std::filesystem::path stem = target.parent_path() / target.stem();
+    const BlockRow& last = model.rows[to - 1];
+    const double length = last.time + last.duration - model.rows[from - 1].time;
+    const size_t count =
+        std::clamp<size_t>(static_cast<size_t>(length * frames_per_second), 2, most_frames);
+    viewer::go_to(model, from - 1, model.rows[from - 1].duration > 0.0 ? 0.0 : 1.0);
+    model.playback.running = true;
+    model.playback.speed = 1.0;
+    for (size_t i = 0; i < count; ++i) {
+        studio.settle();
+        if (i == 0) studio.look(view_named(options.view), size);
+        FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
+        if (const auto written =
+                render::write_png(image, fmt::format("{}-{:04}.png", stem.string(), i + 1));
+            !written)
+            return written;
+        viewer::play(model, length / static_cast<double>(count - 1));
+    }
+    const std::string pattern = stem.string() + "-%04d.png";
+    if (!is_film) return {};
+    if (!join(pattern, options.output)) {
+        fmt::print(stderr, "feeler: there is no film without ffmpeg; the pictures are {}\n",
+                   pattern);
+        return {};
+    }
+    for (size_t i = 0; i < count; ++i) {
+        std::error_code ignored;
+        std::filesystem::remove(fmt::format("{}-{:04}.png", stem.string(), i + 1), ignored);
+    }
+    return {};
+}
+
+core::Result<void> shoot(const Options& options) {
+    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
+    FEELER_TRY(const render::Viewport size, size_in(options.size));
+    if (auto safe = check_output(options.output, {options.program, options.setup}); !safe)
+        return safe;
+    const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
+    FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
+    CheckJob job;
+    job.program = options.program;
+    job.setup = options.setup;
+    job.allowance = options.allowance;
+    job.mesh_size = options.mesh_size;
+    job.settings = settings;
+    if (const auto opened = studio->open(job); !opened) return opened;
+    if (!studio->model.has_rows())
+        return core::fail(core::ErrorCode::missing_value, "the program runs no block");
+    if (options.sheet) return shoot_sheet(options, *studio);
+    if (options.from || options.to) return shoot_film(options, size, *studio);
+    return shoot_block(options, size, *studio);
+}
+
+} // namespace
+
+void add_shot(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *cli.add_subcommand("shot", "Take pictures of a program, without a window");
+    command.add_option("program", options->program, "NC program")->required();
+    command.add_option("--setup", options->setup,
+                       "Set-up file (TOML); else it is inferred from the program, and said");
+    auto* block = command.add_option("--block", options->block, "The end of this block, from 1");
+    auto* worst = command.add_flag("--worst", options->worst,
+                                   "The block with the worst clearance (the default)");
+    auto* finding =
+        command.add_option("--finding", options->finding, "The block of this finding, from 1");
+    auto* sheet = command.add_flag("--sheet", options->sheet, "All findings on one sheet");
+    auto* from = command.add_option("--from", options->from, "A film from this block ...");
+    auto* to = command.add_option("--to", options->to, "... to this one");
+    for (CLI::Option* one : {block, worst, finding, sheet})
+        for (CLI::Option* other : {block, worst, finding, sheet, from, to})
+            if (one != other) one->excludes(other);
+    command
+        .add_option(
+            "-o,--output", options->output,
+            "Picture (.png); of a film .mp4 or another that ffmpeg writes, else numbered pictures")
+        ->required();
+    command.add_option("--size", options->size, "Pixels")->capture_default_str();
+    command.add_option("--view", options->view, "From where")
+        ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
+        ->capture_default_str();
+    command.add_flag("--no-ui", options->no_ui, "The 3D view alone");
+    command.add_option("--theme", options->theme, "Colours")
+        ->check(CLI::IsMember({"dark", "light"}))
+        ->capture_default_str();
+    command
+        .add_option("--allowance", options->allowance,
+                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
+        ->check(number_range(0.0, 1000.0));
+    command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
+        ->check(number_range(1e-300, 1e300));
+    add_program_arguments(command, options->reading);
+    command.callback([options, &exit_code] {
+        const auto done = shoot(*options);
+        exit_code = done ? ExitCode::clear : ExitCode::failed;
+        if (!done) print_error(done.error());
+    });
+}
+
+} // namespace app

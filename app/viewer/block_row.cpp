@@ -1,0 +1,55 @@
+#include "app/viewer/block_row.h"
+
+#include <algorithm>
+
+namespace app::viewer {
+namespace {
+
+/// The deciding pair that was found, or nothing.
+const core::PairClearance* shown_pair(const core::BlockResult& result) {
+    if (!result.deciding || *result.deciding >= result.pairs.size()) return nullptr;
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    return pair.found() ? &pair : nullptr;
+}
+
+} // namespace
+
+BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
+    const core::BlockResult& result = checked.result;
+    BlockRow row;
+    row.line = checked.line;
+    row.text = checked.text;
+    row.file = checked.file;
+    row.depth = static_cast<uint32_t>(checked.calls.size());
+    row.motion = result.motion;
+    row.tool = result.tool;
+    row.time = result.time;
+    row.duration = result.duration;
+    row.is_known = true;
+    row.is_judged = result.checked;
+    row.verdict = result.verdict;
+    for (const core::Finding& finding : result.findings)
+        row.worst = std::max(row.worst, finding.severity);
+    if (!moves(row) || !result.checked) return row;
+    const core::PairClearance* pair = shown_pair(result);
+    if (!pair) {
+        row.lower = least_clearance(setup, result);
+        return row;
+    }
+    row.lower = std::max(pair->lower, 0.0);
+    row.upper = std::max(pair->upper, 0.0);
+    row.allowance = pair->allowance.distance;
+    row.part = core::part_name(setup, pair->pair);
+    row.body = core::body_name(setup, pair->pair);
+    row.on_tool = pair->on_tool;
+    row.on_body = pair->on_body;
+    row.witness_time = pair->time;
+    return row;
+}
+
+bool is_near(const BlockRow& row) {
+    return !is_offending(row) && row.upper && row.allowance && *row.allowance > 0.0
+           && *row.lower < 2.0 * *row.allowance;
+}
+
+} // namespace app::viewer

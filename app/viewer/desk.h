@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "app/viewer/panels.h"
+#include "app/viewer/popups.h"
+#include "app/viewer/scene_panel.h"
+
+namespace app::viewer {
+
+/// All panels and where they stand. Needs a current OpenGL context and an ImGui context, and no
+/// window: pictures are made by the same functions.
+class Desk {
+public:
+    explicit Desk(render::Renderer renderer) : scene_(std::move(renderer)) {}
+
+    /// Draws everything between ImGui's NewFrame and Render.
+    void draw(ViewModel& model, const Fonts& fonts, double now);
+
+    ScenePanel& scene() { return scene_; }
+
+private:
+    void draw_body(Frame& frame, const Area& area);
+
+    ToolbarPanel toolbar_;
+    ProgramPanel program_;
+    ScenePanel scene_;
+    InspectorPanel inspector_;
+    TimelinePanel timeline_;
+    PopupPanel popups_;
+    WelcomePanel welcome_;
+    ErrorPanel error_;
+};
+
+} // namespace app::viewer

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace app::viewer {
+
+/// Files that are looked at now and then, to see whether somebody has saved them again.
+class FileWatch {
+public:
+    void set(std::vector<std::string> paths);
+
+    /// Whether one of them has changed since the last time, and has rested since: a file that is
+    /// still being written is not read.
+    bool has_changed();
+
+private:
+    struct Seen {
+        std::string path;
+        std::filesystem::file_time_type time = {};
+        uintmax_t size = 0;
+
+        bool operator==(const Seen&) const = default;
+    };
+    static Seen look_at(const std::string& path);
+
+    std::vector<Seen> known_, last_;
+};
+
+} // namespace app::viewer

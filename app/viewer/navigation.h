@@ -1,0 +1,42 @@
+#pragma once
+
+#include "app/viewer/view_model.h"
+
+namespace app::viewer {
+
+/// Goes to a block. `share` 1 is its end; the view that belongs to it is asked for.
+void go_to(ViewModel& model, size_t block, double share = 1.0);
+
+/// Goes to a block at the moment at which it comes nearest, if that is known.
+void go_to_witness(ViewModel& model, size_t block);
+
+/// Steps by so many blocks; with a filter, by blocks that it lets through.
+void step(ViewModel& model, int blocks);
+/// To the next or previous block that changes the tool.
+void step_tool(ViewModel& model, bool forward);
+/// Past the blocks that a call makes.
+void step_over(ViewModel& model, bool forward);
+/// Behind the call of the subprogram that the cursor is in.
+void step_out(ViewModel& model);
+
+/// To the next or previous violation. Whether there is one that is known; if there is none and the
+/// check still runs, the worker is asked to go on until there is.
+bool go_to_offending(ViewModel& model, bool forward);
+
+void go_to_bookmark(ViewModel& model);
+
+/// The first block of a line ("188") or N number ("N1880") from the cursor on, then from the
+/// beginning.
+std::optional<size_t> find_line(const ViewModel& model, const std::string& text);
+
+/// Sets a breakpoint on the line of a block, or takes it away.
+void toggle_breakpoint(ViewModel& model, size_t block);
+bool has_breakpoint(const ViewModel& model, const BlockRow& row);
+
+/// Plays on by so many seconds of wall time. Whether the cursor has moved.
+bool play(ViewModel& model, double seconds);
+
+/// The speed after the next or before the last of 0.1 0.2 0.5 1 2 5 ... 100.
+double next_speed(double speed, bool faster);
+
+} // namespace app::viewer

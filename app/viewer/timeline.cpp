@@ -1,0 +1,74 @@
+#include "app/viewer/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace app::viewer {
+namespace {
+
+constexpr double least_width = 10.0;
+
+/// A range of this width, moved into the program.
+TimelineRange within(double first, double width, size_t blocks) {
+    const double count = std::max(static_cast<double>(blocks), 1.0);
+    width = std::clamp(width, std::min(least_width, count), count);
+    first = std::clamp(first, 0.0, count - width);
+    return {first, first + width};
+}
+
+} // namespace
+
+TimelineRange whole(size_t blocks) { return {0.0, std::max(static_cast<double>(blocks), 1.0)}; }
+
+TimelineRange zoomed(const TimelineRange& range, size_t blocks, double at, double factor) {
+    const double fixed = range.first + at * range.width();
+    const double count = std::max(static_cast<double>(blocks), 1.0);
+    const double width = std::clamp(range.width() * factor, std::min(least_width, count), count);
+    return within(fixed - at * width, width, blocks);
+}
+
+TimelineRange moved(const TimelineRange& range, size_t blocks, double by) {
+    return within(range.first + by * range.width(), range.width(), blocks);
+}
+
+TimelineRange showing(const TimelineRange& range, size_t blocks, size_t block) {
+    const auto at = static_cast<double>(block);
+    if (at < range.first) return within(at, range.width(), blocks);
+    if (at + 1.0 > range.last) return within(at + 1.0 - range.width(), range.width(), blocks);
+    return range;
+}
+
+size_t block_at(const TimelineRange& range, size_t blocks, double at) {
+    const double block = range.first + at * range.width();
+    if (!(block > 0.0)) return 0;
+    return std::min(static_cast<size_t>(block), blocks - 1);
+}
+
+double place_of(const TimelineRange& range, size_t block) {
+    return (static_cast<double>(block) + 0.5 - range.first) / range.width();
+}
+
+std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& range,
+                                  size_t pixels) {
+    std::vector<TimelineCell> cells(pixels);
+    const double step = range.width() / static_cast<double>(std::max<size_t>(pixels, 1));
+    for (size_t i = 0; i < pixels; ++i) {
+        const double begin = range.first + static_cast<double>(i) * step;
+        const auto first = static_cast<size_t>(std::max(begin, 0.0));
+        const auto last = static_cast<size_t>(std::max(std::ceil(begin + step), 0.0));
+        cells[i] = tree.over(first, std::max(last, first + 1));
+    }
+    return cells;
+}
+
+std::vector<ToolBand> tool_bands(const std::vector<BlockRow>& rows) {
+    std::vector<ToolBand> bands;
+    for (size_t i = 0; i < rows.size(); ++i) {
+        if (bands.empty() || bands.back().tool != rows[i].tool)
+            bands.push_back({i, i, rows[i].tool});
+        bands.back().last = i + 1;
+    }
+    return bands;
+}
+
+} // namespace app::viewer

@@ -1,0 +1,185 @@
+#include "app/viewer/view_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/viewer/navigation.h"
+
+namespace app::viewer {
+namespace {
+
+/// Another program, or the same one read again: what a person has said of it stays.
+void start_anew(ViewModel& model, uint64_t opening) {
+    if (model.opening != 0 && model.has_rows()) model.resume = model.row();
+    model.opening = opening;
+    model.program = nullptr;
+    model.rows.clear();
+    model.least.resize(0);
+    model.bands.clear();
+    model.findings.clear();
+    model.offending.clear();
+    model.filtered.clear();
+    model.path = nullptr;
+    model.place = nullptr;
+    model.changes.clear();
+    model.failure.reset();
+    model.stopped.reset();
+    model.walk.reset();
+    model.playback.running = false;
+    model.share = 0.0;
+    model.is_recorded = false;
+}
+
+/// How bad the findings about each block are, as far as the blocks do not say so themselves.
+void mark_rows(ViewModel& model, std::set<size_t>& touched) {
+    for (const core::Finding& finding : model.findings) {
+        if (!finding.block || core::value_of(*finding.block) >= model.rows.size()) continue;
+        const size_t block = core::value_of(*finding.block);
+        BlockRow& row = model.rows[block];
+        if (finding.severity <= row.worst) continue;
+        row.worst = finding.severity;
+        touched.insert(block);
+    }
+}
+
+void count_rows(ViewModel& model) {
+    model.offending.clear();
+    model.near_count = 0;
+    for (size_t i = 0; i < model.rows.size(); ++i) {
+        if (is_offending(model.rows[i])) model.offending.push_back(i);
+        if (is_near(model.rows[i])) ++model.near_count;
+    }
+}
+
+void take_rows(ViewModel& model, RowsUpdate& update) {
+    if (update.rows.empty() && !update.count) return;
+    const size_t end = update.first + update.rows.size();
+    if (model.rows.size() < end) model.rows.resize(end);
+    std::move(update.rows.begin(), update.rows.end(),
+              model.rows.begin() + static_cast<ptrdiff_t>(update.first));
+    if (update.count) model.rows.resize(*update.count);
+    model.least.resize(model.rows.size());
+    for (size_t i = update.first; i < std::min(end, model.rows.size()); ++i)
+        model.least.set(i, cell_of(model.rows[i]));
+    model.bands = tool_bands(model.rows);
+    if (model.follows_timeline) model.range = whole(model.rows.size());
+    if (model.has_rows() && model.cursor.block >= model.rows.size())
+        go_to(model, model.rows.size() - 1);
+}
+
+/// To the line at which the program stood before it was read again.
+void resume(ViewModel& model) {
+    const auto before = std::exchange(model.resume, std::nullopt);
+    if (!before) return;
+    model.cursor.block = std::min(model.cursor.block, model.rows.size() - 1);
+    const auto same = [&](const BlockRow& row) {
+        return row.line == before->line && row.file == before->file;
+    };
+    if (same(model.row())) return;
+    const auto found = std::find_if(model.rows.begin(), model.rows.end(), same);
+    if (found != model.rows.end())
+        model.cursor.block = static_cast<size_t>(found - model.rows.begin());
+}
+
+std::string sentence_of(const Stop& stop) {
+    switch (stop.reason) {
+    case StopReason::breakpoint:
+        return fmt::format("Stopped at breakpoint {}", stop.id);
+    case StopReason::watch:
+        return stop.message;
+    case StopReason::end:
+        return "The program ends here";
+    case StopReason::beginning:
+        return "The program begins here";
+    case StopReason::error:
+        return "The control would stop here";
+    case StopReason::interrupted:
+        return "Stopped";
+    case StopReason::found:
+    case StopReason::step:
+        return {};
+    }
+    return {};
+}
+
+void end_walk(ViewModel& model, const WalkEnd& end, double now) {
+    if (!model.has_rows()) return;
+    const bool is_past = end.block >= model.rows.size();
+    if (end.stop.reason == StopReason::found) {
+        go_to_witness(model, end.block);
+    } else if (end.stop.reason == StopReason::step || is_past) {
+        go_to(model, end.block == 0 ? 0 : end.block - 1);
+    } else {
+        go_to(model, end.block, 0.0);
+    }
+    const std::string text = sentence_of(end.stop);
+    if (!text.empty()) say(model, text, now);
+}
+
+} // namespace
+
+void take_in(ViewModel& model, SessionUpdate news, double now) {
+    if (!news.has_news) return;
+    if (news.opening != model.opening) start_anew(model, news.opening);
+    if (news.opened) model.program = news.opened;
+    const bool has_rows = !news.rows.empty();
+    const bool is_first = !model.has_rows() && has_rows;
+    take_rows(model, news.rows);
+    if (news.findings) model.findings = *std::move(news.findings);
+    if (has_rows || news.findings) {
+        std::set<size_t> touched;
+        mark_rows(model, touched);
+        for (const size_t block : touched) model.least.set(block, cell_of(model.rows[block]));
+        count_rows(model);
+        apply_filter(model);
+    }
+    if (news.path) model.path = news.path;
+    if (news.place) model.place = news.place;
+    if (news.breakpoints) model.breakpoints = *std::move(news.breakpoints);
+    if (news.changes) model.changes = *std::move(news.changes);
+    if (news.failure) model.failure = news.failure;
+    if (news.stopped) model.stopped = news.stopped;
+    model.share = news.share;
+    model.is_recorded = news.is_recorded;
+    model.is_busy = news.is_busy;
+    if (news.refusal) say(model, *news.refusal, now);
+    if (is_first) resume(model);
+    if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.share);
+    if (news.walk) end_walk(model, *news.walk, now);
+}
+
+void say(ViewModel& model, const std::string& text, double now) {
+    model.message = text;
+    model.message_until = now + 5.0;
+}
+
+void apply_filter(ViewModel& model) {
+    model.filtered.clear();
+    const RowFilter filter(model.filter_text);
+    if (filter.empty()) return;
+    for (size_t i = 0; i < model.rows.size(); ++i)
+        if (filter.holds(model.rows[i])) model.filtered.push_back(i);
+}
+
+std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block) {
+    std::vector<const core::Finding*> found;
+    for (const core::Finding& finding : model.findings) {
+        const bool same = block ? finding.block && core::value_of(*finding.block) == *block
+                                : !finding.block.has_value();
+        if (same) found.push_back(&finding);
+    }
+    return found;
+}
+
+std::string length_text(const ViewModel& model, double mm, int decimals) {
+    const double factor = model.settings.inch ? 1.0 / 25.4 : 1.0;
+    const double value = mm * factor;
+    return fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value,
+                       model.settings.inch ? decimals + 2 : decimals);
+}
+
+const char* length_unit(const ViewModel& model) { return model.settings.inch ? "in" : "mm"; }
+
+} // namespace app::viewer

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <set>
+
+#include "app/viewer/row_filter.h"
+#include "app/viewer/session_update.h"
+#include "app/viewer/settings.h"
+#include "app/viewer/timeline.h"
+#include "render/scene.h"
+
+namespace app::viewer {
+
+/// The block that everything follows, and how far it is through, 0..1 of its time.
+struct Cursor {
+    size_t block = 0;
+    double share = 1.0;
+
+    bool operator==(const Cursor&) const = default;
+};
+
+constexpr double slowest = 0.1, fastest = 100.0;
+
+/// Playing at the speed of the machine, times so much.
+struct Playback {
+    bool running = false;
+    double speed = 1.0;
+    bool slow_near = false; // slower where the clearance is small
+};
+
+/// What lies on top of everything else.
+enum class Popup : uint8_t {
+    none,
+    shortcuts,
+    go_to_line,
+    open_file,
+    what_if,
+    breakpoint,
+    settings
+};
+
+/// Two places clicked, and the way between them.
+struct Measuring {
+    bool on = false;
+    std::vector<core::Vec3> places; // frame of the stock; at most two
+};
+
+/// Everything the window shows and everything a person has said, without a window. The functions
+/// that change it are in navigation.h and news.h.
+struct ViewModel {
+    // what is known of the program
+    uint64_t opening = 0;
+    std::shared_ptr<const OpenedProgram> program;
+    std::vector<BlockRow> rows;
+    MinimumTree least;
+    std::vector<ToolBand> bands;
+    std::vector<core::Finding> findings;
+    std::vector<size_t> offending; // blocks, in order
+    size_t near_count = 0;
+    std::shared_ptr<const render::ToolPath> path;
+    std::shared_ptr<const PlaceView> place;
+    std::vector<std::string> changes;
+    std::optional<core::Error> failure, stopped;
+    double share = 0.0;
+    bool is_recorded = false, is_busy = false;
+
+    // what a person has said
+    Cursor cursor;
+    Playback playback;
+    std::string filter_text;
+    std::vector<size_t> filtered; // rows that the filter lets through; only with a filter
+    std::vector<Breakpoint> breakpoints;
+    std::set<size_t> bookmarks;
+    Settings settings;
+    TimelineRange range;
+    bool follows_timeline = true; // the whole program, as it grows
+    render::Camera camera;
+    bool camera_placed = false;
+    std::optional<size_t> hovered;    // block that was pointed at when the last frame was drawn
+    std::optional<size_t> pointed_at; // in this one
+    std::optional<BlockRow> resume;   // where to go on when the program has been read again
+    std::optional<render::SectionPlane> section;
+    Measuring measuring;
+    Popup popup = Popup::none;
+    std::string message; // shown for a while
+    double message_until = 0.0;
+    bool list_follows = true; // the list scrolls to the cursor once
+    bool filter_wants_focus = false;
+
+    // what the worker is to be asked
+    std::optional<ShowRequest> wanted;
+    std::optional<Walk> walk;
+    std::optional<WhatIf> wanted_change; // from the cursor's block on
+    bool wants_take_back = false;
+    bool breakpoints_changed = false;
+    std::vector<std::string> watches; // expressions
+    bool watches_changed = false;
+    std::string wanted_path; // of a program, set-up or mesh that was dropped or typed
+
+    // what the window is to do
+    bool wants_picture = false, wants_reload = false, wants_quit = false;
+
+    bool has_rows() const { return !rows.empty(); }
+    const BlockRow& row() const { return rows[cursor.block]; }
+};
+
+/// Takes in what the worker has to tell. `now`: seconds, as messages are timed.
+void take_in(ViewModel& model, SessionUpdate news, double now);
+
+/// Says something at the foot of the view for some seconds.
+void say(ViewModel& model, const std::string& text, double now);
+
+/// Filters anew.
+void apply_filter(ViewModel& model);
+
+/// Findings about a block, or about the program as a whole.
+std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block);
+
+/// A length as it is shown: mm or inch, without its unit.
+std::string length_text(const ViewModel& model, double mm, int decimals = 2);
+const char* length_unit(const ViewModel& model);
+
+} // namespace app::viewer

@@ -1,0 +1,398 @@
+#include "app/viewer/window.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <deque>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include "app/viewer/desk.h"
+#include "app/viewer/file_watch.h"
+#include "app/viewer/imgui_backends.h"
+#include "app/viewer/key_codes.h"
+#include "app/viewer/navigation.h"
+#include "app/viewer/perform.h"
+#include "app/viewer/screen_picture.h"
+#include "app/viewer/session_worker.h"
+
+namespace app::viewer {
+namespace {
+
+static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
+              && key::escape == GLFW_KEY_ESCAPE && key::of('G') == GLFW_KEY_G
+              && key::keypad_add == GLFW_KEY_KP_ADD && key::slash == GLFW_KEY_SLASH
+              && key::left_bracket == GLFW_KEY_LEFT_BRACKET && key::end == GLFW_KEY_END
+              && mod::shift == GLFW_MOD_SHIFT && mod::control == GLFW_MOD_CONTROL
+              && mod::alt == GLFW_MOD_ALT);
+
+/// How often files are looked at, and how long the window sleeps at most, seconds.
+constexpr double watch_interval = 0.4;
+constexpr double frame_time = 1.0 / 60.0;
+
+struct Glfw {
+    bool is_open = glfwInit() == GLFW_TRUE;
+    ~Glfw() {
+        if (is_open) glfwTerminate();
+    }
+};
+
+/// ImGui with its two backends.
+struct Gui {
+    explicit Gui(GLFWwindow* window) {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.KeyRepeatDelay = 1e9F; // the system does that
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+};
+
+core::Result<std::string> read_text(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    if (!file) return core::fail(core::ErrorCode::io, "there is no such file");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
+}
+
+class Window {
+public:
+    Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
+        : job_(job), window_(window), gui_(window), desk_(std::move(renderer)), worker_([] {
+              glfwPostEmptyEvent();
+          }) {}
+
+    ViewModel model;
+
+    void run();
+    void press(int code, int modifiers);
+    /// A key for ImGui, which sees it in one of the next frames.
+    void type(int code, bool is_down);
+    void drop(const std::vector<std::string>& paths);
+    void damage() { frames_ = 3; }
+    void open_job();
+
+private:
+    void update();
+    void draw();
+    void feed_keys();
+    void rebuild_fonts();
+    void save_picture();
+    void remember_place();
+    void set_title();
+    double wanted_scale() const;
+
+    WindowJob job_;
+    GLFWwindow* window_;
+    Gui gui_;
+    Desk desk_;
+    Fonts fonts_;
+    std::string title_;
+    std::optional<render::Theme> styled_;
+    FileWatch files_;
+    std::deque<std::pair<int, bool>> keys_; // for ImGui
+    double last_watch_ = 0.0, last_frame_ = 0.0;
+    int frames_ = 3;       // still to draw: ImGui needs some until all is where it belongs
+    SessionWorker worker_; // last: it ends first
+};
+
+double Window::wanted_scale() const {
+    float x = 1.0F, y = 1.0F;
+    glfwGetWindowContentScale(window_, &x, &y);
+    int width = 1, height = 1, pixels = 1, rows = 1;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels, &rows);
+    // Where coordinates are not pixels the system scales by itself.
+    const double scaled = width > 0 ? static_cast<double>(pixels) / width : 1.0;
+    return std::clamp(static_cast<double>(x) / std::max(scaled, 1.0), 0.5, 4.0)
+           * model.settings.scale;
+}
+
+void Window::rebuild_fonts() {
+    const double scale = wanted_scale();
+    if (fonts_.text && fonts_.scale == scale && styled_ == model.settings.theme) return;
+    if (!fonts_.text || fonts_.scale != scale) {
+        fonts_ = load_fonts(scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    apply_style(Look{model.settings.theme}, scale);
+    styled_ = model.settings.theme;
+}
+
+void Window::open_job() {
+    if (!job_.check) return;
+    worker_.set_breakpoints(model.breakpoints);
+    worker_.open(*job_.check);
+    files_.set({job_.check->program, job_.check->setup});
+    damage();
+}
+
+void Window::drop(const std::vector<std::string>& paths) {
+    CheckJob check = job_.check.value_or(CheckJob{});
+    const std::string setup_before = check.setup;
+    bool has_program = false, has_setup = false;
+    for (const std::string& path : paths) {
+        if (has_ending(path, {".stl", ".obj", ".ply", ".off"})) {
+            say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", glfwGetTime());
+        } else if (has_ending(path, {".toml"})) {
+            check.setup = path;
+            has_setup = true;
+        } else {
+            check.program = path;
+            has_program = true;
+        }
+    }
+    damage();
+    if (!has_program && !has_setup) return;
+    if (check.program.empty()) return say(model, "Drop the program as well", glfwGetTime());
+    if (has_program && !has_setup) check.setup.clear();
+    if (has_program) model.camera_placed = false;
+    if (has_program) model.breakpoints.clear();
+    job_.check = check;
+    open_job();
+}
+
+void Window::press(int code, int modifiers) {
+    damage();
+    const auto command = command_of(code, modifiers);
+    if (!command) return;
+    const bool is_typing = ImGui::GetIO().WantTextInput;
+    const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
+    const bool moves_text = code >= key::enter && code <= key::end;
+    if (is_typing && (is_plain || moves_text)) return;
+    const bool keeps_keys = model.popup != Popup::none && model.popup != Popup::shortcuts;
+    const bool closes = *command == Command::close_popup || *command == Command::what_if
+                        || *command == Command::quit;
+    if (keeps_keys && !closes && (is_plain || moves_text)) return;
+    perform(model, *command, glfwGetTime());
+}
+
+/// The title tells the place, for lists of windows and for those who have it read to them.
+void Window::set_title() {
+    std::string title = "feeler";
+    if (model.failure || (model.is_recorded && !model.has_rows())) {
+        title = "This could not be opened - feeler";
+    } else if (model.program) {
+        title = std::filesystem::path(model.program->program).filename().string();
+        if (model.has_rows())
+            title += fmt::format(", line {} (block {} of {}{})", model.row().line,
+                                 model.cursor.block + 1, model.rows.size(),
+                                 is_offending(model.row()) ? ", violation" : "");
+        title += " - feeler";
+    }
+    if (title == title_) return;
+    title_ = title;
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::save_picture() {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const std::filesystem::path path = free_picture_name(job_.pictures);
+    const auto written = render::write_png(screen_picture(width, height), path);
+    say(model, written ? "Saved " + path.string() : written.error().message, glfwGetTime());
+    damage();
+}
+
+void Window::update() {
+    const double now = glfwGetTime();
+    SessionUpdate news = worker_.take();
+    if (news.has_news) damage();
+    take_in(model, std::move(news), now);
+    if (play(model, std::min(now - last_frame_, 0.2))) damage();
+    last_frame_ = now;
+    if (!model.wanted_path.empty()) drop({std::exchange(model.wanted_path, {})});
+    if (std::exchange(model.wants_reload, false)) open_job();
+    if (now - last_watch_ > watch_interval) {
+        last_watch_ = now;
+        if (files_.has_changed()) {
+            open_job();
+            say(model, "The file has changed and is read again", now);
+        }
+        if (now < model.message_until + watch_interval) damage();
+    }
+    if (send_requests(model, worker_)) damage();
+    if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void Window::type(int code, bool is_down) {
+    if (code >= 0 && code < IM_ARRAYSIZE(ImGuiIO::KeysDown)) keys_.emplace_back(code, is_down);
+}
+
+/// ImGui 1.86 knows of each key only whether it is down in a frame. One that is pressed and
+/// released between two frames gets a frame for each.
+void Window::feed_keys() {
+    ImGuiIO& io = ImGui::GetIO();
+    std::set<int> changed;
+    while (!keys_.empty() && changed.insert(keys_.front().first).second) {
+        io.KeysDown[keys_.front().first] = keys_.front().second;
+        keys_.pop_front();
+    }
+    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
+    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+    io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
+    if (!keys_.empty()) damage();
+}
+
+void Window::draw() {
+    rebuild_fonts();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    feed_keys();
+    ImGui::NewFrame();
+    desk_.draw(model, fonts_, glfwGetTime());
+    set_title();
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    const ImVec4 back = Look{model.settings.theme}.vector(render::Role::panel);
+    glClearColor(back.x, back.y, back.z, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    if (model.wants_picture && std::exchange(model.wants_picture, false)) save_picture();
+    glfwSwapBuffers(window_);
+}
+
+void Window::remember_place() {
+    Settings& settings = model.settings;
+    settings.maximised = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
+    if (settings.maximised) return;
+    glfwGetWindowSize(window_, &settings.width, &settings.height);
+    glfwGetWindowPos(window_, &settings.x, &settings.y);
+}
+
+void Window::run() {
+    open_job();
+    while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
+        update();
+        if (frames_ > 0) {
+            --frames_;
+            draw();
+        }
+        if (model.playback.running)
+            glfwWaitEventsTimeout(frame_time);
+        else if (frames_ > 0 || model.wanted)
+            glfwPollEvents();
+        else
+            glfwWaitEventsTimeout(watch_interval);
+    }
+    remember_place();
+    if (job_.settings_file.empty()) return;
+    std::error_code ignored; // there is nobody left to be told
+    std::filesystem::create_directories(job_.settings_file.parent_path(), ignored);
+    std::ofstream(job_.settings_file) << text_of(model.settings);
+}
+
+Window& window_of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+void listen(GLFWwindow* window) {
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+        if (glfwGetWindowUserPointer(w))
+            window_of(w).drop(std::vector<std::string>(paths, paths + count));
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) {
+        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
+    });
+}
+
+/// In place of the one of ImGui's backend.
+void listen_to_keys(GLFWwindow* window) {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int, int action, int modifiers) {
+        if (!glfwGetWindowUserPointer(w)) return;
+        window_of(w).damage();
+        // The system repeats keys, and takes fast presses for repeats.
+        if (action == GLFW_REPEAT) window_of(w).type(code, false);
+        window_of(w).type(code, action != GLFW_RELEASE);
+        const int known = mod::shift | mod::control | mod::alt;
+        if (action != GLFW_RELEASE) window_of(w).press(code, modifiers & known);
+    });
+}
+
+struct CloseWindow {
+    void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+using OpenWindow = std::unique_ptr<GLFWwindow, CloseWindow>;
+
+OpenWindow make_window(const Settings& settings) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SAMPLES, 0);
+    glfwWindowHint(GLFW_MAXIMIZED, settings.maximised ? GLFW_TRUE : GLFW_FALSE);
+    OpenWindow window(
+        glfwCreateWindow(settings.width, settings.height, "feeler", nullptr, nullptr));
+    if (!window) return window;
+    if (settings.x >= 0 && settings.y >= 0) glfwSetWindowPos(window.get(), settings.x, settings.y);
+    glfwSetWindowSizeLimits(window.get(), 640, 420, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwMakeContextCurrent(window.get());
+    glfwSwapInterval(1);
+    listen(window.get());
+    return window;
+}
+
+} // namespace
+
+core::Result<void> run_window(const WindowJob& job) {
+    const Glfw glfw;
+    if (!glfw.is_open) return core::fail(core::ErrorCode::unsupported, "there is no display");
+    Settings settings;
+    if (const auto text = read_text(job.settings_file)) settings = settings_in(*text);
+    const OpenWindow window = make_window(settings);
+    if (!window)
+        return core::fail(core::ErrorCode::unsupported, "there is no OpenGL 3.3 for a window here");
+    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+    const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
+    shown->model.settings = settings;
+    listen_to_keys(window.get());
+    glfwSetWindowUserPointer(window.get(), shown.get());
+    shown->run();
+    glfwSetWindowUserPointer(window.get(), nullptr);
+    return {};
+}
+
+} // namespace app::viewer

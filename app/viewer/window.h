@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "app/session/check_run.h"
+
+namespace app::viewer {
+
+/// What the window begins with.
+struct WindowJob {
+    std::optional<CheckJob> check;       // empty: the welcome screen
+    std::filesystem::path settings_file; // read at the start, written at the end; empty: neither
+    std::filesystem::path pictures;      // folder that F12 saves into
+};
+
+/// Opens the window and stays until it is closed.
+///
+/// Errors: unsupported, in a line, when there is no display or no OpenGL 3.3.
+core::Result<void> run_window(const WindowJob& job);
+
+} // namespace app::viewer

@@ -1,0 +1,241 @@
+#include "app/viewer/worker_session.h"
+
+#include <algorithm>
+
+#include "app/viewer/early_track.h"
+
+namespace app::viewer {
+namespace {
+
+/// How long a slice of the record takes, seconds: a request waits for one at most.
+constexpr double slice = 0.01;
+constexpr auto publish_interval = std::chrono::milliseconds(60);
+
+OpenedProgram described(const CheckJob& job, const DebugSession& session) {
+    OpenedProgram opened;
+    opened.program = job.program;
+    opened.setup = job.setup;
+    opened.dialect = gcode::dialect(session.record().dialect).name;
+    opened.assumptions = session.record().assumptions;
+    opened.is_inferred = job.setup.empty();
+    return opened;
+}
+
+/// What the next block of a session does.
+struct BlockAhead {
+    std::vector<core::Event> events;
+    bool exists = false;
+};
+
+BlockAhead block_ahead(DebugSession& session) {
+    BlockAhead ahead;
+    session.visit_ahead([&](const gcode::BlockResult&, std::span<const core::Event> events) {
+        ahead.exists = true;
+        ahead.events.assign(events.begin(), events.end());
+        return false;
+    });
+    return ahead;
+}
+
+/// The tool that a block moves: the one that it changes to, if it does.
+std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
+                                        std::optional<core::ToolNumber> before) {
+    for (const core::Event& event : events)
+        if (const auto* change = std::get_if<core::ToolChange>(&event)) before = change->tool;
+    return before;
+}
+
+} // namespace
+
+void WorkerSession::open(const CheckJob& job, const std::function<void()>& publish) {
+    session_.reset();
+    scenes_.clear();
+    surface_.reset();
+    news_ = {};
+    news_.opening = ++openings_;
+    news_.has_news = news_.is_busy = true;
+    publish();
+    const auto early = early_track(job, is_closing_);
+    if (early) {
+        publisher_.begin(early->track);
+        news_.rows = {0, early->track.rows, early->track.rows.size()};
+        news_.path =
+            std::make_shared<const render::ToolPath>(render::tool_path(early->track.points));
+        news_.opened = early->opened;
+        news_.has_news = news_.is_busy = true;
+        publish();
+    }
+    auto session = DebugSession::open(job);
+    news_.has_news = true;
+    news_.is_busy = false;
+    if (!session) {
+        news_.failure = session.error();
+        return;
+    }
+    session_ = *std::move(session);
+    session_->is_interrupted = is_interrupted_;
+    OpenedProgram opened = described(job, *session_);
+    opened.scene = scene_at(0);
+    news_.opened = std::make_shared<const OpenedProgram>(std::move(opened));
+    set_breakpoints(breakpoints_);
+}
+
+void WorkerSession::record() {
+    if (has_work()) session_->record_for(slice);
+    publish_if_due();
+}
+
+void WorkerSession::publish_if_due() {
+    if (!session_) return;
+    const Clock::time_point now = Clock::now();
+    if (!session_->is_recorded() && now - last_publish_ < publish_interval) return;
+    last_publish_ = now;
+    publisher_.publish(*session_, session_->setup_at(session_->record().blocks.size()), news_);
+}
+
+bool WorkerSession::can_show(const ShowRequest& request) const {
+    return session_
+           && (session_->is_recorded() || request.block < session_->record().blocks.size());
+}
+
+std::shared_ptr<const SceneSetup> WorkerSession::scene_at(size_t block) {
+    size_t first = 0;
+    for (const MadeChange& change : session_->changes())
+        if (change.block <= block) first = std::max(first, change.block);
+    for (const auto& [known, scene] : scenes_)
+        if (known == first) return scene;
+    scenes_.emplace_back(first, make_scene_setup(session_->setup_at(block)));
+    return scenes_.back().second;
+}
+
+std::vector<ShownValue>
+WorkerSession::watched_values(const gcode::InterpreterState& control) const {
+    std::vector<ShownValue> values;
+    for (const std::string& expression : watched_) {
+        const auto value = value_of(expression, control, session_->environment());
+        values.push_back({expression, value ? value->text : value.error().message, false});
+    }
+    return values;
+}
+
+void WorkerSession::show(const ShowRequest& request) {
+    if (!session_ || session_->record().blocks.empty()) return;
+    auto view = std::make_shared<PlaceView>();
+    view->block = std::min(request.block, session_->record().blocks.size() - 1);
+    view->at_end = request.at_end;
+    view->serial = ++views_;
+    if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
+    view->scene = scene_at(view->block);
+    const gcode::InterpreterState before = session_->place().control;
+    const BlockAhead ahead = block_ahead(*session_);
+    view->poses = poses_of(view->scene->setup.machine, ahead.events);
+    view->tool = tool_of(ahead.events, session_->place().machine.tool);
+    if (!request.at_end) surface_.update(session_->place().machine.stock);
+    // A block that the control refuses has nothing behind it: the view is then that before it.
+    if (ahead.exists) static_cast<void>(session_->go_to(view->block + 1));
+    const RunPlace& after = session_->place();
+    if (request.at_end) surface_.update(after.machine.stock);
+    view->stock = surface_.bricks();
+    view->standing = known_values(view->scene->setup.machine, after.machine.position);
+    view->fixtures_there = after.machine.fixtures_there;
+    const gcode::Environment& world = session_->environment();
+    view->modal = compared(modal_values(before, world), modal_values(after.control, world));
+    view->axes = compared(axis_values(before), axis_values(after.control));
+    view->offsets = compared(offset_values(before), offset_values(after.control));
+    view->parameters =
+        compared(parameter_values(before, world), parameter_values(after.control, world));
+    view->watched = watched_values(after.control);
+    news_.place = std::move(view);
+    news_.has_news = true;
+    publish_if_due();
+}
+
+void WorkerSession::walk(Walk walk, size_t block) {
+    if (!session_) return;
+    Stop stop;
+    if (const auto gone = session_->go_to(block); !gone) return refuse(gone.error());
+    switch (walk) {
+    case Walk::go_on:
+        stop = session_->go_on();
+        break;
+    case Walk::go_on_back:
+        stop = session_->go_on_back();
+        break;
+    case Walk::next_finding:
+        stop = session_->next_finding();
+        break;
+    case Walk::previous_finding:
+        stop = session_->previous_finding();
+        break;
+    case Walk::finish:
+        stop = session_->finish();
+        break;
+    case Walk::next:
+        stop = session_->next();
+        break;
+    case Walk::next_back:
+        stop = session_->next_back();
+        break;
+    }
+    news_.walk = WalkEnd{session_->at(), stop};
+    news_.breakpoints = breakpoints_ = session_->breakpoints();
+    news_.has_news = true;
+    publisher_.publish(*session_, session_->setup_at(session_->record().blocks.size()), news_);
+}
+
+void WorkerSession::set_breakpoints(const std::vector<Breakpoint>& breakpoints) {
+    breakpoints_ = breakpoints;
+    if (!session_) return;
+    session_->breakpoints().clear();
+    for (const Breakpoint& breakpoint : breakpoints_) session_->add(breakpoint);
+    news_.breakpoints = breakpoints_ = session_->breakpoints();
+    news_.has_news = true;
+}
+
+void WorkerSession::change(const WhatIf& change, size_t block) {
+    if (!session_) return;
+    if (const auto gone = session_->go_to(block); !gone) return refuse(gone.error());
+    if (const auto made = session_->change(change); !made) return refuse(made.error());
+    follow_anew();
+}
+
+void WorkerSession::take_back() {
+    if (!session_ || session_->changes().empty()) return;
+    if (const auto back = session_->take_back(); !back) return refuse(back.error());
+    follow_anew();
+}
+
+void WorkerSession::follow_anew() {
+    scenes_.clear();
+    surface_.reset();
+    const size_t block = session_->at();
+    ProgramTrack track(session_->setup_at(block), block, session_->place().machine.tool);
+    session_->visit_ahead(
+        [&](const gcode::BlockResult& ahead, std::span<const core::Event> events) {
+            track.add(ahead, events);
+            return track.rows.size() < most_early_blocks;
+        });
+    news_.rows.append({block, track.rows, block + track.rows.size()});
+    publisher_.begin_again(block, std::move(track));
+    publisher_.publish(*session_, session_->setup_at(block), news_);
+    std::vector<std::string> changes;
+    for (const MadeChange& change : session_->changes()) changes.push_back(text_of(change.change));
+    news_.changes = std::move(changes);
+    news_.has_news = true;
+}
+
+void WorkerSession::refuse(const core::Error& error) {
+    news_.refusal = error.message;
+    news_.has_news = true;
+}
+
+SessionUpdate WorkerSession::take_news() {
+    SessionUpdate news = std::move(news_);
+    news_ = {};
+    news_.opening = news.opening = openings_;
+    news_.share = news.share;
+    news_.is_recorded = news.is_recorded;
+    return news;
+}
+
+} // namespace app::viewer

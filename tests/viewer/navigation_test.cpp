@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+
+#include "app/viewer/navigation.h"
+#include "tests/viewer/rows.h"
+
+namespace {
+
+using namespace app::viewer;
+using viewer_test::model_of;
+using viewer_test::row_with;
+
+ViewModel ten_blocks() {
+    std::vector<BlockRow> rows(10, row_with(5.0));
+    rows[3] = row_with(0.5);
+    rows[3].witness_time = 0.25;
+    rows[7] = row_with(0.2);
+    for (size_t i = 5; i < 10; ++i) rows[i].tool = core::ToolNumber{2};
+    return model_of(rows);
+}
+
+TEST(Navigation, StepsStayInTheProgram) {
+    ViewModel model = ten_blocks();
+    step(model, -1);
+    EXPECT_EQ(model.cursor, (Cursor{0, 1.0}));
+    step(model, 4);
+    EXPECT_EQ(model.cursor.block, 4U);
+    step(model, 100);
+    EXPECT_EQ(model.cursor.block, 9U);
+    ASSERT_TRUE(model.wanted.has_value());
+    EXPECT_EQ(model.wanted->block, 9U);
+}
+
+TEST(Navigation, AStepInTheMiddleOfABlockGoesToItsEnd) {
+    ViewModel model = ten_blocks();
+    go_to(model, 4, 0.5);
+    step(model, 1);
+    EXPECT_EQ(model.cursor, (Cursor{4, 1.0}));
+    step(model, 1);
+    EXPECT_EQ(model.cursor, (Cursor{5, 1.0}));
+}
+
+TEST(Navigation, ViolationsAreVisitedAtTheirClosestMomentAndRoundAgain) {
+    ViewModel model = ten_blocks();
+    EXPECT_TRUE(go_to_offending(model, true));
+    EXPECT_EQ(model.cursor, (Cursor{3, 0.25}));
+    EXPECT_FALSE(model.wanted->at_end);
+    EXPECT_TRUE(go_to_offending(model, true));
+    EXPECT_EQ(model.cursor.block, 7U);
+    EXPECT_TRUE(go_to_offending(model, true));
+    EXPECT_EQ(model.cursor.block, 3U);
+    EXPECT_TRUE(go_to_offending(model, false));
+    EXPECT_EQ(model.cursor.block, 7U);
+}
+
+TEST(Navigation, AsksTheWorkerWhileTheCheckStillRuns) {
+    ViewModel model = ten_blocks();
+    model.is_recorded = false;
+    go_to(model, 8);
+    EXPECT_TRUE(go_to_offending(model, true));
+    EXPECT_EQ(model.walk, Walk::next_finding);
+}
+
+TEST(Navigation, StepsByTool) {
+    ViewModel model = ten_blocks();
+    step_tool(model, true);
+    EXPECT_EQ(model.cursor.block, 5U);
+    step_tool(model, true);
+    EXPECT_EQ(model.cursor.block, 9U);
+    step_tool(model, false);
+    EXPECT_EQ(model.cursor.block, 5U);
+    step_tool(model, false);
+    EXPECT_EQ(model.cursor.block, 0U);
+}
+
+TEST(Navigation, StepsOverAndOutOfCalls) {
+    std::vector<BlockRow> rows(8, row_with(5.0));
+    for (size_t i = 2; i < 5; ++i) rows[i].depth = 1;
+    ViewModel model = model_of(rows);
+    go_to(model, 1);
+    step_over(model, true);
+    EXPECT_EQ(model.cursor.block, 5U);
+    step_over(model, false);
+    EXPECT_EQ(model.cursor.block, 1U);
+    go_to(model, 3);
+    step_out(model);
+    EXPECT_EQ(model.cursor.block, 5U);
+}
+
+TEST(Navigation, WithAFilterStepsOnlyToWhatItShows) {
+    ViewModel model = ten_blocks();
+    model.filter_text = "violation";
+    apply_filter(model);
+    EXPECT_EQ(model.filtered, (std::vector<size_t>{3, 7}));
+    step(model, 1);
+    EXPECT_EQ(model.cursor.block, 3U);
+    step(model, 1);
+    EXPECT_EQ(model.cursor.block, 7U);
+    step(model, -1);
+    EXPECT_EQ(model.cursor.block, 3U);
+}
+
+TEST(Navigation, FindsLinesAndNumbers) {
+    std::vector<BlockRow> rows(4, row_with(5.0));
+    rows[1].text = "N0210 G1 X1";
+    rows[3].text = "  N210X5";
+    ViewModel model = model_of(rows);
+    EXPECT_EQ(find_line(model, "12"), 2U);
+    EXPECT_EQ(find_line(model, "N210"), 1U);
+    go_to(model, 2);
+    EXPECT_EQ(find_line(model, "n210"), 3U) << "the next one from the cursor on";
+    EXPECT_EQ(find_line(model, "N21"), std::nullopt);
+    EXPECT_EQ(find_line(model, "999"), std::nullopt);
+    EXPECT_EQ(find_line(model, "2x"), std::nullopt);
+}
+
+TEST(Navigation, ABreakpointIsOnTheLineWhereverItIsRun) {
+    std::vector<BlockRow> rows(4, row_with(5.0));
+    rows[0].line = rows[2].line = 77;
+    ViewModel model = model_of(rows);
+    toggle_breakpoint(model, 0);
+    EXPECT_TRUE(has_breakpoint(model, model.rows[2]));
+    EXPECT_FALSE(has_breakpoint(model, model.rows[1]));
+    EXPECT_TRUE(model.breakpoints_changed);
+    toggle_breakpoint(model, 2);
+    EXPECT_TRUE(model.breakpoints.empty());
+}
+
+TEST(Playback, TakesAsLongAsTheMachine) {
+    ViewModel model = ten_blocks();
+    go_to(model, 0, 0.0);
+    model.playback.running = true;
+    double seconds = 0.0;
+    while (model.playback.running && seconds < 60.0) {
+        play(model, 0.016);
+        seconds += 0.016;
+    }
+    EXPECT_NEAR(seconds, 10.0, 0.04);
+    EXPECT_EQ(model.cursor, (Cursor{9, 1.0}));
+}
+
+TEST(Playback, IsAsManyTimesAsFastAsIsSaid) {
+    for (const double speed : {0.1, 0.5, 2.0, 100.0}) {
+        ViewModel model = ten_blocks();
+        go_to(model, 0, 0.0);
+        model.playback.running = true;
+        model.playback.speed = speed;
+        play(model, 4.5 / speed);
+        EXPECT_EQ(model.cursor.block, 4U) << speed;
+        EXPECT_NEAR(model.cursor.share, 0.5, 1e-9) << speed;
+    }
+}
+
+TEST(Playback, SpeedsGoUpAndDownBetweenTheirEnds) {
+    double speed = slowest;
+    for (int i = 0; i < 20; ++i) speed = next_speed(speed, true);
+    EXPECT_EQ(speed, fastest);
+    for (int i = 0; i < 20; ++i) speed = next_speed(speed, false);
+    EXPECT_EQ(speed, slowest);
+    EXPECT_EQ(next_speed(3.0, true), 5.0);
+}
+
+TEST(News, ReadingAgainComesBackToTheLine) {
+    ViewModel model = ten_blocks();
+    go_to(model, 6);
+    toggle_breakpoint(model, 4);
+    SessionUpdate news;
+    news.opening = 2;
+    news.has_news = true;
+    std::vector<BlockRow> rows(12, row_with(5.0));
+    for (size_t i = 0; i < rows.size(); ++i) rows[i].line = static_cast<uint32_t>(8 + i);
+    news.rows.rows = rows;
+    take_in(model, std::move(news), 0.0);
+    EXPECT_EQ(model.row().line, 16U);
+    EXPECT_EQ(model.breakpoints.size(), 1U);
+}
+
+TEST(News, FindingsMarkTheirBlocks) {
+    ViewModel model = ten_blocks();
+    SessionUpdate news;
+    news.opening = 1;
+    news.has_news = true;
+    core::Finding finding;
+    finding.severity = core::Severity::error;
+    finding.block = core::BlockIndex{5};
+    news.findings = {finding};
+    take_in(model, std::move(news), 0.0);
+    EXPECT_EQ(model.offending, (std::vector<size_t>{3, 5, 7}));
+    EXPECT_TRUE(model.least.over(5, 6).offending);
+    EXPECT_EQ(findings_of(model, 5).size(), 1U);
+    EXPECT_TRUE(findings_of(model, std::nullopt).empty());
+}
+
+} // namespace

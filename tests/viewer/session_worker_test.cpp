@@ -1,0 +1,163 @@
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+#include "app/viewer/navigation.h"
+#include "app/viewer/session_worker.h"
+
+namespace {
+
+using namespace app::viewer;
+
+const std::string assets = FEELER_SOURCE_DIR "/assets/";
+
+app::CheckJob clamped_plate() {
+    app::CheckJob job;
+    job.program = assets + "programs/clamped_plate_low.nc";
+    job.setup = assets + "setups/clamped_plate.toml";
+    return job;
+}
+
+/// What a window would know, without one.
+class Watcher {
+public:
+    ViewModel model;
+
+    void open(const app::CheckJob& job) { worker_.open(job); }
+    SessionWorker& worker() { return worker_; }
+
+    /// Takes in news until something is true; whether it came to be.
+    template <typename Condition>
+    bool wait_for(const Condition& condition) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (true) {
+            take_in(model, worker_.take(), 0.0);
+            if (condition()) return true;
+            std::unique_lock lock(mutex_);
+            if (!woken_.wait_until(lock, end, [&] { return is_woken_; })) return false;
+            is_woken_ = false;
+        }
+    }
+    bool record() {
+        return wait_for([&] { return model.is_recorded || model.failure; }) && !model.failure;
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable woken_;
+    bool is_woken_ = false;
+    SessionWorker worker_{[this] {
+        {
+            const std::lock_guard lock(mutex_);
+            is_woken_ = true;
+        }
+        woken_.notify_all();
+    }};
+};
+
+TEST(SessionWorker, TellsTheWindowWhatACheckSays) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.record());
+    const auto run = app::run_check(clamped_plate());
+    ASSERT_TRUE(run.has_value());
+    const ViewModel& model = watcher.model;
+    ASSERT_EQ(model.rows.size(), run->blocks.size());
+    for (size_t i = 0; i < model.rows.size(); ++i) {
+        const BlockRow expected = row_of(run->setup, run->blocks[i]);
+        EXPECT_EQ(model.rows[i].line, expected.line) << i;
+        EXPECT_EQ(model.rows[i].text, expected.text) << i;
+        EXPECT_EQ(model.rows[i].verdict, expected.verdict) << i;
+        EXPECT_EQ(model.rows[i].lower, expected.lower) << i;
+        EXPECT_EQ(model.rows[i].upper, expected.upper) << i;
+        EXPECT_EQ(model.rows[i].duration, expected.duration) << i;
+        EXPECT_EQ(model.rows[i].time, expected.time) << i;
+    }
+    EXPECT_EQ(model.findings.size(), run->findings.size());
+    EXPECT_FALSE(model.offending.empty());
+    ASSERT_TRUE(model.path);
+    for (const uint32_t block : {15U, 39U})
+        EXPECT_FALSE(render::bounds_of_block(*model.path, block).empty()) << block;
+}
+
+TEST(SessionWorker, ShowsABlockAsItFindsTheStockAndAsItLeavesIt) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.record());
+    const auto show = [&](size_t block, bool at_end) {
+        watcher.worker().show({block, at_end});
+        return watcher.wait_for([&] {
+            const auto& place = watcher.model.place;
+            return place && place->block == block && place->at_end == at_end;
+        });
+    };
+    ASSERT_TRUE(show(15, false));
+    const auto before = watcher.model.place;
+    ASSERT_TRUE(show(15, true));
+    const auto after = watcher.model.place;
+    EXPECT_FALSE(before->stock.empty());
+    EXPECT_NE(before->stock, after->stock) << "this block cuts";
+    ASSERT_FALSE(after->poses.empty());
+    EXPECT_EQ(pose_at(after->poses, 1.0), after->standing);
+    ASSERT_TRUE(show(15, false));
+    ASSERT_EQ(watcher.model.place->stock.size(), before->stock.size());
+}
+
+TEST(SessionWorker, StopsAtABreakpoint) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.record());
+    app::Breakpoint breakpoint;
+    breakpoint.line = 44;
+    watcher.worker().set_breakpoints({breakpoint});
+    watcher.worker().walk(Walk::go_on, 0);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.cursor.block > 0; }));
+    EXPECT_EQ(watcher.model.row().line, 44U);
+    EXPECT_EQ(watcher.model.cursor.share, 0.0);
+    ASSERT_EQ(watcher.model.breakpoints.size(), 1U);
+    EXPECT_EQ(watcher.model.breakpoints[0].hits, 1U);
+}
+
+TEST(SessionWorker, AWhatIfChangesOnlyWhatComesAfterIt) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.record());
+    const auto before = watcher.model.rows;
+    const size_t violations = watcher.model.offending.size();
+    watcher.worker().change(app::MovedFixture{"strap-1", {0.0, 0.0, -60.0}}, 30);
+    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.changes.empty(); }));
+    ASSERT_TRUE(watcher.record());
+    ASSERT_EQ(watcher.model.rows.size(), before.size());
+    for (size_t i = 0; i < 30; ++i) EXPECT_EQ(watcher.model.rows[i].lower, before[i].lower) << i;
+    EXPECT_LT(watcher.model.offending.size(), violations);
+    watcher.worker().take_back();
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.changes.empty(); }));
+    ASSERT_TRUE(watcher.record());
+    EXPECT_EQ(watcher.model.offending.size(), violations);
+}
+
+TEST(SessionWorker, SaysWhyAProgramCannotBeOpened) {
+    Watcher watcher;
+    app::CheckJob job = clamped_plate();
+    job.program = assets + "meshes/clamp.stl";
+    watcher.open(job);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.failure.has_value(); }));
+    EXPECT_NE(watcher.model.failure->message, "");
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.is_recorded; }))
+        << "the next one opens as if nothing had been";
+}
+
+TEST(SessionWorker, EndsAtAnyMoment) {
+    for (int milliseconds = 0; milliseconds < 200; milliseconds += 9) {
+        std::atomic<int> news = 0;
+        SessionWorker worker([&] { ++news; });
+        worker.open(clamped_plate());
+        worker.show({3, true});
+        worker.walk(Walk::next_finding, 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        worker.show({20, false});
+    }
+}
+
+} // namespace

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Pictures without a window: every form of `feeler shot`, no display needed. Arguments: the program
+# feeler, the folder of assets, a folder for the pictures (kept).
+set -euo pipefail
+feeler=$1 assets=$2 pictures=$3
+unset DISPLAY WAYLAND_DISPLAY
+if ! command -v identify >/dev/null; then
+    printf 'skipped: there is no identify (imagemagick)\n'
+    exit 77
+fi
+mkdir -p "$pictures"
+rm -f "$pictures"/*
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export XDG_CONFIG_HOME=$work
+
+die() {
+    printf 'failed: %s\n' "$1"
+    exit 1
+}
+shot() {
+    local name=$1
+    shift
+    "$feeler" shot "$assets/programs/clamped_plate_low.nc" \
+        --setup "$assets/setups/clamped_plate.toml" -o "$pictures/$name" "$@"
+}
+size_of() { identify -format '%wx%h' "$pictures/$1"; }
+# Colours of a picture: an empty one has few.
+is_rich() { (($(identify -format '%k' "$pictures/$1") > 400)) || die "$1 shows next to nothing"; }
+differ() { ! cmp -s "$pictures/$1" "$pictures/$2" || die "$1 and $2 are the same"; }
+
+shot worst.png --worst
+[[ $(size_of worst.png) == 1440x900 ]] || die 'the usual size'
+is_rich worst.png
+shot again.png --worst
+cmp "$pictures/worst.png" "$pictures/again.png" || die 'the same picture every time'
+
+shot light.png --worst --theme light --size 1000x700
+[[ $(size_of light.png) == 1000x700 ]] || die 'the size that was asked for'
+is_rich light.png
+shot finding.png --finding 2 --view witness --no-ui --size 800x600
+is_rich finding.png
+shot block.png --block 20 --view top --no-ui --size 800x600
+differ finding.png block.png
+shot front.png --block 20 --view front --no-ui --size 800x600
+differ front.png block.png
+shot sheet.png --sheet
+is_rich sheet.png
+
+shot steps.png --from 17 --to 17 --no-ui --size 320x200
+[[ -s $pictures/steps-0001.png && -s $pictures/steps-0002.png ]] || die 'numbered pictures'
+if command -v ffmpeg >/dev/null; then
+    shot film.mp4 --from 17 --to 17 --no-ui --size 320x200
+    [[ -s $pictures/film.mp4 ]] || die 'a film'
+fi
+
+refused() {
+    local status=0
+    shot none.png "$@" 2>"$work/errors" || status=$?
+    [[ $status == 2 && -s $work/errors && ! -e $pictures/none.png ]] || die "refuses $*"
+}
+refused --block 0
+refused --block 47
+refused --finding 99
+refused --size 10x10
+refused --size wide
+refused --from 9 --to 3
+
+status=0
+"$feeler" view "$assets/programs/TEST_G90.NC" 2>"$work/errors" || status=$?
+[[ $status == 2 ]] || die 'without a display the window ends with 2'
+[[ $(wc -l <"$work/errors") == 1 ]] || die 'and says so in one line'
+grep -q 'feeler shot' "$work/errors" || die 'and proposes feeler shot'
+printf 'passed\n'
