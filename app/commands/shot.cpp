@@ -71,11 +71,15 @@ size_t worst_block(const ViewModel& model) {
     return worst;
 }
 
+std::string block_numbers(const ViewModel& model) {
+    return fmt::format("the blocks of this program are 0 to {}, as in the reports of check",
+                       model.rows.size() - 1);
+}
+
 core::Result<size_t> chosen_block(const Options& options, const ViewModel& model) {
     if (options.block) {
-        if (*options.block >= 1 && *options.block <= model.rows.size()) return *options.block - 1;
-        return tl::unexpected(
-            no_such(fmt::format("--block: the program has {} blocks", model.rows.size())));
+        if (*options.block < model.rows.size()) return *options.block;
+        return tl::unexpected(no_such("--block: " + block_numbers(model)));
     }
     if (!options.finding) return worst_block(model);
     const size_t number = *options.finding;
@@ -118,7 +122,7 @@ std::string caption_of(const ViewModel& model, size_t block, const std::vector<s
     std::string text;
     for (const size_t i : findings)
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", i + 1, model.findings[i].rule);
-    text += fmt::format("  \xC2\xB7  block {}, line {}", block + 1, row.line);
+    text += fmt::format("  \xC2\xB7  block {}, line {}", block, row.line);
     if (row.has_pair())
         text += fmt::format("  \xC2\xB7  {:.2f} mm  {} \xE2\x80\x93 {}", *row.lower, row.part,
                             row.body);
@@ -167,18 +171,17 @@ bool join(const std::string& pattern, const std::string& output) {
 core::Result<void> shoot_film(const Options& options, const render::Viewport& size,
                               Studio& studio) {
     ViewModel& model = studio.model;
-    const size_t from = options.from.value_or(1), to = options.to.value_or(model.rows.size());
-    if (from < 1 || to < from || to > model.rows.size())
-        return tl::unexpected(
-            no_such(fmt::format("--from, --to: the program has {} blocks", model.rows.size())));
+    const size_t from = options.from.value_or(0), to = options.to.value_or(model.rows.size() - 1);
+    if (to < from || to >= model.rows.size())
+        return tl::unexpected(no_such("--from, --to: " + block_numbers(model)));
     const std::filesystem::path target(options.output);
     const bool is_film = target.extension() != ".png";
     const std::filesystem::path stem = target.parent_path() / target.stem();
-    const BlockRow& last = model.rows[to - 1];
-    const double length = last.time + last.duration - model.rows[from - 1].time;
+    const BlockRow& last = model.rows[to];
+    const double length = last.time + last.duration - model.rows[from].time;
     const size_t count =
         std::clamp<size_t>(static_cast<size_t>(length * frames_per_second), 2, most_frames);
-    viewer::go_to(model, from - 1, model.rows[from - 1].duration > 0.0 ? 0.0 : 1.0);
+    viewer::go_to(model, from, model.rows[from].duration > 0.0 ? 0.0 : 1.0);
     model.playback.running = true;
     model.playback.speed = 1.0;
     for (size_t i = 0; i < count; ++i) {
@@ -234,7 +237,8 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("--setup", options->setup,
                        "Set-up file (TOML); else it is inferred from the program, and said");
-    auto* block = command.add_option("--block", options->block, "The end of this block, from 1");
+    auto* block = command.add_option("--block", options->block,
+                                     "The end of this block, numbered as in the reports of check");
     auto* worst = command.add_flag("--worst", options->worst,
                                    "The block with the worst clearance (the default)");
     auto* finding =

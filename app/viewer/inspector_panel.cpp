@@ -137,7 +137,7 @@ std::string plain_name(std::string name) {
 void draw_block(Frame& frame) {
     const ViewModel& model = frame.model;
     const BlockRow& row = model.row();
-    heading(frame, fmt::format("Block {}", model.cursor.block + 1).c_str());
+    heading(frame, fmt::format("Block {}", model.cursor.block).c_str());
     value_row(frame, "line",
               row.file.empty() ? std::to_string(row.line)
                                : fmt::format("{} of {}", row.line, row.file),

@@ -219,7 +219,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
     const core::Setup& setup = model.place->scene->setup;
     wrapped_text(
         frame.fonts.text, frame.look.color(Role::dim),
-        fmt::format("From block {} on; what lies before stays as it is.", model.cursor.block + 1));
+        fmt::format("From block {} on; what lies before stays as it is.", model.cursor.block));
     draw_lengths(frame, setup);
     row_name(frame, "Allowance");
     if (length_to_try(frame, "allowance", allowance_))

@@ -61,8 +61,9 @@ void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::s
 std::string place_text(const ViewModel& model) {
     const BlockRow& row = model.row();
     const BlockRow& last = model.rows.back();
-    return fmt::format("Block {} of {}   \xC2\xB7   {} / {}", model.cursor.block + 1,
-                       model.rows.size(), clock_text(row.time + model.cursor.share * row.duration),
+    return fmt::format("Block {} of {}   \xC2\xB7   {} / {}", model.cursor.block,
+                       model.rows.size() - 1,
+                       clock_text(row.time + model.cursor.share * row.duration),
                        clock_text(last.time + last.duration));
 }
 
@@ -140,8 +141,7 @@ void ScenePanel::take_click(Frame& frame, const Area& area, const render::Viewpo
     if (found.path) return go_to(model, found.path->block);
     if (found.stock && found.stock->block) {
         go_to(model, *found.stock->block);
-        say(model,
-            fmt::format("Cut by block {}, line {}", model.cursor.block + 1, model.row().line),
+        say(model, fmt::format("Cut by block {}, line {}", model.cursor.block, model.row().line),
             frame.now);
         return;
     }

@@ -132,7 +132,7 @@ void draw_cursor(Frame& frame, ImDrawList& list, const Bars& bars, float bottom)
 void show_hovered(Frame& frame, size_t block) {
     const BlockRow& row = frame.model.rows[block];
     ImGui::BeginTooltip();
-    text(frame.fonts.strong, frame.look.color(Role::text), fmt::format("Block {}", block + 1));
+    text(frame.fonts.strong, frame.look.color(Role::text), fmt::format("Block {}", block));
     text(frame.fonts.mono, frame.look.color(Role::dim), row.text);
     if (row.lower && row.is_known)
         text(frame.fonts.text, frame.look.of(row, Role::text),

@@ -197,9 +197,9 @@ void Window::set_title() {
     } else if (model.program) {
         title = std::filesystem::path(model.program->program).filename().string();
         if (model.has_rows())
-            title += fmt::format(", line {} (block {} of {}{})", model.row().line,
-                                 model.cursor.block + 1, model.rows.size(),
-                                 is_offending(model.row()) ? ", violation" : "");
+            title +=
+                fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
+                            model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
         title += " - feeler";
     }
     if (title == title_) return;

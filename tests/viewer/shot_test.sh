@@ -59,8 +59,8 @@ refused() {
     shot none.png "$@" 2>"$work/errors" || status=$?
     [[ $status == 2 && -s $work/errors && ! -e $pictures/none.png ]] || die "refuses $*"
 }
-refused --block 0
-refused --block 47
+refused --block -1
+refused --block 46
 refused --finding 99
 refused --size 10x10
 refused --size wide
