@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
-#include "app/commands/number_range.h"
 #include "app/commands/output.h"
-#include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 #include "app/report/csv_report.h"
 #include "app/report/json_report.h"
@@ -16,10 +15,8 @@ namespace app {
 namespace {
 
 struct Options {
-    std::string program, setup, output, stock, comparison;
-    ProgramArguments reading;
-    std::string format = "text", start_line;
-    std::optional<double> allowance, mesh_size, memory_limit;
+    CheckArguments what;
+    std::string output, stock, comparison, format = "text";
     bool blocks = false;
     bool pairs = false;
     bool verdict_only = false;
@@ -34,11 +31,13 @@ std::string report(const Options& options, const CheckRun& run) {
 
 /// Whether what is to be written can be, as far as that is known beforehand.
 core::Result<void> check_files(const Options& options) {
-    if (auto safe = check_output(options.output, {options.program, options.setup}); !safe)
+    if (auto safe = check_output(options.output, {options.what.program, options.what.setup}); !safe)
         return safe;
     for (const std::string& name : {options.stock, options.comparison}) {
         if (name.empty()) continue;
-        if (auto safe = check_output(name, {options.program, options.setup, options.output}); !safe)
+        if (auto safe =
+                check_output(name, {options.what.program, options.what.setup, options.output});
+            !safe)
             return safe;
         if (auto form = mesh_form(name); !form) return tl::unexpected(form.error());
     }
@@ -89,31 +88,21 @@ ExitCode check(const Options& options) {
         print_error(safe.error());
         return ExitCode::failed;
     }
-    const auto settings = settings_of(options.reading);
-    if (!settings) {
-        print_error(settings.error());
+    auto job = job_of(options.what);
+    if (!job) {
+        print_error(job.error());
         return ExitCode::failed;
     }
-    const bool needs_surface = !options.stock.empty() || !options.comparison.empty();
-    std::optional<double> memory_limit;
-    if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
     stop_on_interrupt();
     ProgressLine line;
-    const auto show = [&line](const CheckProgress& progress) {
+    job->detail = detail_of(options);
+    job->needs_surface = !options.stock.empty() || !options.comparison.empty();
+    job->before_model = say_memory;
+    job->after_block = [&line](const CheckProgress& progress) {
         line.show(progress);
         return !is_interrupted();
     };
-    auto run = run_check({.program = options.program,
-                          .setup = options.setup,
-                          .allowance = options.allowance,
-                          .mesh_size = options.mesh_size,
-                          .memory_limit = memory_limit,
-                          .detail = detail_of(options),
-                          .needs_surface = needs_surface,
-                          .before_model = say_memory,
-                          .after_block = show,
-                          .start_line = options.start_line,
-                          .settings = *settings});
+    auto run = run_check(*job);
     line.clear();
     if (!run) {
         print_error(run.error());
@@ -138,23 +127,8 @@ ExitCode check(const Options& options) {
 void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup,
-                       "Set-up file (TOML); else it is inferred from the program, and said");
-    command
-        .add_option("--allowance", options->allowance,
-                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
-        ->check(number_range(0.0, 1000.0));
-    command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-300, 1e300));
-    command
-        .add_option("--memory-limit", options->memory_limit,
-                    "What the model of the stock may take, MB (8590 unless said)")
-        ->check(number_range(1.0, 1e9));
-    add_program_arguments(command, options->reading);
-    command.add_option("--start-line", options->start_line,
-                       "Start at this line, or at block N210, as after switching on, and list what "
-                       "is missing");
+    add_check_arguments(command, options->what)->required();
+    add_start_line(command, options->what);
     command
         .add_option("--format", options->format,
                     "text, json, jsonl (an object to a line) or csv (a row to a block)")

@@ -6,12 +6,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/line_reader.h"
-#include "app/commands/number_range.h"
 #include "app/commands/output.h"
-#include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 
 namespace app {
@@ -24,10 +23,7 @@ struct Script {
 };
 
 struct Options {
-    std::string program, setup;
-    ProgramArguments reading;
-    std::string start_line;
-    std::optional<double> allowance, mesh_size, memory_limit;
+    CheckArguments what;
     std::vector<Script> scripts; // in the order of the command line
     bool batch = false;
 };
@@ -122,20 +118,12 @@ private:
 };
 
 ExitCode debug(const Options& options) {
-    const auto settings = settings_of(options.reading);
-    if (!settings) {
-        print_error(settings.error());
+    const auto job = job_of(options.what);
+    if (!job) {
+        print_error(job.error());
         return ExitCode::failed;
     }
-    std::optional<double> memory_limit;
-    if (options.memory_limit) memory_limit = *options.memory_limit * 1e6;
-    auto session = DebugSession::open({.program = options.program,
-                                       .setup = options.setup,
-                                       .allowance = options.allowance,
-                                       .mesh_size = options.mesh_size,
-                                       .memory_limit = memory_limit,
-                                       .start_line = options.start_line,
-                                       .settings = *settings});
+    auto session = DebugSession::open(*job);
     if (!session) {
         print_error(session.error());
         return ExitCode::failed;
@@ -158,22 +146,8 @@ void add_debug(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command =
         *cli.add_subcommand("debug", "Step through a program at a prompt, forwards and back");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup,
-                       "Set-up file (TOML); else it is inferred from the program");
-    command
-        .add_option("--allowance", options->allowance,
-                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
-        ->check(number_range(0.0, 1000.0));
-    command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-300, 1e300));
-    command
-        .add_option("--memory-limit", options->memory_limit,
-                    "What the model of the stock may take, MB (8590 unless said)")
-        ->check(number_range(1.0, 1e9));
-    add_program_arguments(command, options->reading);
-    command.add_option("--start-line", options->start_line,
-                       "Start at this line, or at block N210, as after switching on");
+    add_check_arguments(command, options->what)->required();
+    add_start_line(command, options->what);
     const auto add_script = [options](bool is_file) {
         return [options, is_file](const std::string& text) {
             options->scripts.push_back({text, is_file});

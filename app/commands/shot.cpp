@@ -10,10 +10,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
-#include "app/commands/number_range.h"
 #include "app/commands/output.h"
-#include "app/commands/program_arguments.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/studio.h"
 
@@ -29,11 +28,10 @@ constexpr int frames_per_second = 25;
 constexpr size_t most_frames = 500; // of a film: 20 seconds
 
 struct Options {
-    std::string program, setup, output, view = "iso", theme = "dark", size = "1440x900";
-    std::optional<double> allowance, mesh_size;
+    CheckArguments what;
+    std::string output, view = "iso", theme = "dark", size = "1440x900";
     std::optional<size_t> block, finding, from, to;
     bool worst = false, sheet = false, no_ui = false;
-    ProgramArguments reading;
 };
 
 core::Result<render::Viewport> size_in(const std::string& text) {
@@ -209,18 +207,12 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
 }
 
 core::Result<void> shoot(const Options& options) {
-    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
+    FEELER_TRY(const CheckJob job, job_of(options.what));
     FEELER_TRY(const render::Viewport size, size_in(options.size));
-    if (auto safe = check_output(options.output, {options.program, options.setup}); !safe)
+    if (auto safe = check_output(options.output, {options.what.program, options.what.setup}); !safe)
         return safe;
     const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
     FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
-    CheckJob job;
-    job.program = options.program;
-    job.setup = options.setup;
-    job.allowance = options.allowance;
-    job.mesh_size = options.mesh_size;
-    job.settings = settings;
     if (const auto opened = studio->open(job); !opened) return opened;
     if (!studio->model.has_rows())
         return core::fail(core::ErrorCode::missing_value, "the program runs no block");
@@ -234,9 +226,7 @@ core::Result<void> shoot(const Options& options) {
 void add_shot(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("shot", "Take pictures of a program, without a window");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup,
-                       "Set-up file (TOML); else it is inferred from the program, and said");
+    add_check_arguments(command, options->what)->required();
     auto* block = command.add_option("--block", options->block,
                                      "The end of this block, numbered as in the reports of check");
     auto* worst = command.add_flag("--worst", options->worst,
@@ -262,13 +252,6 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--theme", options->theme, "Colours")
         ->check(CLI::IsMember({"dark", "light"}))
         ->capture_default_str();
-    command
-        .add_option("--allowance", options->allowance,
-                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
-        ->check(number_range(0.0, 1000.0));
-    command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-300, 1e300));
-    add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] {
         const auto done = shoot(*options);
         exit_code = done ? ExitCode::clear : ExitCode::failed;
