@@ -64,7 +64,8 @@ void BlockRunner::remark_on(const gcode::BlockResult& block, const RunPlace& pla
     for (const gcode::Warning& warning : block.warnings) {
         // What the set-up states is stated, be it all zero.
         const auto active = static_cast<int>(place.control.modal.offsets.active);
-        if (warning.rule == "work-offset-unset" && offsets_stated.contains(active)) continue;
+        if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
+            continue;
         core::Finding finding = remark(*setup_, warning);
         finding.block = block.block;
         if (finding.severity != core::Severity::off) findings.push_back(std::move(finding));
@@ -74,16 +75,16 @@ void BlockRunner::remark_on(const gcode::BlockResult& block, const RunPlace& pla
 core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
     before_ = place.control;
     const auto next = interpreter_.next(place.control);
-    if (!next) return tl::unexpected(named(next.error(), program_.file));
+    if (!next) return tl::unexpected(named(next.error(), check_.program->file));
     if (!*next) return std::nullopt;
     const gcode::BlockResult& block = **next;
     const gcode::Lowering lowering_before = place.lowering;
     const std::vector<core::Event> events =
-        events_of(*setup_, block, place.lowering, speed_by_hand);
+        events_of(*setup_, block, place.lowering, check_.file.speed_by_hand);
     if (auto refused = refusal(block, place.lowering)) {
         place.control = before_;
         place.lowering = lowering_before;
-        return tl::unexpected(named(*std::move(refused), program_.file));
+        return tl::unexpected(named(*std::move(refused), check_.program->file));
     }
     for (const size_t move : fixture_moves_of(*setup_, block)) place.moves_made.insert(move);
     BlockStep step{{block.block,
@@ -106,13 +107,12 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
     return step;
 }
 
-void BlockRunner::visit_ahead(const RunPlace& place, const BlockVisit& visit) {
-    gcode::InterpreterState control = place.control;
-    gcode::Lowering lowering = place.lowering;
+void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
+                              const BlockVisit& visit) {
     while (true) {
         const auto next = interpreter_.next(control);
         if (!next || !*next) return;
-        if (!visit(**next, events_of(*setup_, **next, lowering, speed_by_hand))) return;
+        if (!visit(**next, events_of(*setup_, **next, lowering, check_.file.speed_by_hand))) return;
     }
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
 
-#include "app/session/check_run.h"
 #include "app/session/cured_run.h"
+#include "app/session/prepared_check.h"
 #include "app/session/run_place.h"
 
 namespace app {
@@ -27,30 +26,14 @@ struct BlockStep {
 using BlockVisit = std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>;
 
 /// Carries out the blocks of a program one at a time. It keeps nothing of a run: all of that is in
-/// the place. Refers to what it was given.
+/// the place. Refers to the check.
 class BlockRunner {
 public:
-    /// Places refer to subprograms by the order in which a library has read them: whoever takes a
-    /// place from one runner to another lets both have the same library.
-    BlockRunner(const gcode::Program& program, const gcode::Environment& environment,
-                const core::Setup& setup, std::shared_ptr<gcode::ProgramLibrary> library = nullptr)
-        : program_(program),
-          environment_(environment),
-          setup_(&setup),
-          library_(library
-                       ? std::move(library)
-                       : std::make_shared<gcode::ProgramLibrary>(
-                           program, gcode::dialect(environment.dialect), environment.search_path)) {
-    }
+    explicit BlockRunner(const PreparedCheck& check) : check_(check), setup_(&check.run.setup) {}
 
-    bool speed_by_hand = false;   // whatever the program says of it
-    std::set<int> offsets_stated; // work offsets that the set-up states, 0 is G54
     // Told of a block before it is run, when the control has read it and nothing has moved.
     std::function<void(const gcode::BlockResult&, const ProgramPlace&)> before_block;
 
-    const gcode::Program& program() const { return program_; }
-    const gcode::Environment& environment() const { return environment_; }
-    const std::shared_ptr<gcode::ProgramLibrary>& library() const { return library_; }
     const core::Setup& setup() const { return *setup_; }
     /// From the next block on. The set-up must outlive the runner.
     void use(const core::Setup& setup) { setup_ = &setup; }
@@ -62,9 +45,10 @@ public:
     ///         place has not changed then.
     core::Result<std::optional<BlockStep>> step(RunPlace& place);
 
-    /// Shows the blocks that come after a place and what they are about to do, without carrying
-    /// them out, as long as `visit` wants more; up to the end or the first error.
-    void visit_ahead(const RunPlace& place, const BlockVisit& visit);
+    /// Shows the blocks that come after a place of the control and what they are about to do,
+    /// without carrying them out, as long as `visit` wants more; up to the end or the first error.
+    void visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
+                     const BlockVisit& visit);
 
 private:
     std::optional<core::Error> refusal(const gcode::BlockResult& block,
@@ -73,12 +57,11 @@ private:
     void remark_on(const gcode::BlockResult& block, const RunPlace& place,
                    std::vector<core::Finding>& findings) const;
 
-    const gcode::Program& program_;
-    const gcode::Environment& environment_;
+    const PreparedCheck& check_;
     const core::Setup* setup_;
-    std::shared_ptr<gcode::ProgramLibrary> library_;
-    gcode::Interpreter interpreter_{*library_, environment_};
-    gcode::InterpreterState before_ = gcode::initial_state(environment_); // spares allocating
+    gcode::Interpreter interpreter_{*check_.library, check_.file.environment};
+    gcode::InterpreterState before_ = gcode::initial_state(check_.file.environment); // spares
+                                                                                     // allocating
 };
 
 } // namespace app

@@ -1,22 +1,15 @@
 #include "app/session/body_pair.h"
 
-#include <chrono>
-
+#include "app/session/stopwatch.h"
 #include "core/dbm/mesh_scan.h"
 
 namespace app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// What double precision may be off by, mm: below 1e-9 within 2 m, growing with the coordinates.
 double rounding(const core::Aabb& box) {
     const core::Vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
     return 1e-9 * std::max(1.0, std::max({farthest.x, farthest.y, farthest.z}) / 2000.0);
-}
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 core::ExactBody exact(const MeasuredBody& body) {
@@ -59,30 +52,30 @@ core::Result<BodyPairDistance> measure(const MeasuredBody& a, const MeasuredBody
                                        const core::Transform& a_from_b, const core::Vec3& sweep,
                                        double mesh_size, core::DistanceEngine& engine) {
     BodyPairDistance found{.engine = std::string(engine.name())};
-    Clock::time_point start = Clock::now();
+    const Stopwatch modelling;
     FEELER_TRY(const auto points_a, points_of(a, mesh_size));
     FEELER_TRY(const auto points_b, points_of(b, mesh_size));
     found.points_a = points_a.size();
     found.points_b = points_b.size();
-    found.model_seconds = seconds_since(start);
+    found.model_seconds = modelling.seconds();
 
-    start = Clock::now();
+    const Stopwatch building;
     FEELER_TRY(const core::PointBody in_a, engine.add(points_a));
     FEELER_TRY(const core::PointBody in_b, engine.add(points_b));
-    found.build_seconds = seconds_since(start);
+    found.build_seconds = building.seconds();
 
-    start = Clock::now();
+    const Stopwatch asking;
     FEELER_TRY(const core::ClosestPair pair,
                engine.closest_pair(in_a, in_b, a_from_b, {.sweep = sweep}));
     find_points(pair, found);
-    found.query_seconds = seconds_since(start);
+    found.query_seconds = asking.seconds();
 
-    start = Clock::now();
+    const Stopwatch proving;
     const core::ExactBody exact_a = exact(a), exact_b = exact(b);
     const double slack = rounding(core::bounds(exact_a)) + rounding(core::bounds(exact_b))
                          + 1e-12 * (glm::length(a_from_b.translation) + glm::length(sweep));
     find_bounds(core::separation(exact_a, exact_b, a_from_b, sweep), slack, found);
-    found.exact_seconds = seconds_since(start);
+    found.exact_seconds = proving.seconds();
     return found;
 }
 

@@ -57,7 +57,7 @@ void put_in_order(std::vector<core::Finding>& findings) {
 
 } // namespace
 
-void conclude(PreparedCheck& check, const core::SimulatorState& end,
+void conclude(PreparedCheck& check, core::SimulatorState end,
               const std::vector<LengthDoubt>& doubts, bool needs_surface) {
     CheckRun& run = check.run;
     run.statistics = end.statistics;
@@ -69,7 +69,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
     say_not_judged(run, check.file.not_judged);
-    run.stock = end.stock;
+    run.stock = std::move(end.stock);
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = core::stock_mesh(*run.stock);
     check_part(run);

@@ -1,6 +1,7 @@
 #include "app/session/cured_run.h"
 
 #include "app/session/block_events.h"
+#include "gcode/execution.h"
 
 namespace app {
 
@@ -22,12 +23,11 @@ CuredRun::CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& env
 }
 
 void CuredRun::put_length_on() {
-    gcode::Offsets& offsets = place_.modal.offsets;
+    const gcode::Offsets& offsets = place_.modal.offsets;
     if (offsets.tool[2] == length_) return;
-    // The machine stands where it is: its place gets another name.
-    const gcode::Position there = gcode::machine_from_program(offsets, place_.modal.position);
-    offsets.tool[2] = lowering_.offsets.tool[2] = length_;
-    place_.modal.position = gcode::program_from_machine(offsets, there);
+    gcode::Offsets cured = offsets;
+    cured.tool[2] = lowering_.offsets.tool[2] = length_;
+    gcode::change_offsets(place_.modal, cured);
 }
 
 void CuredRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {

@@ -14,7 +14,13 @@ namespace app {
 
 core::Result<std::unique_ptr<DebugSession>> DebugSession::open(const CheckJob& job,
                                                                size_t memory_budget) {
-    FEELER_TRY(auto run, RecordedRun::open(job, memory_budget));
+    FEELER_TRY(PreparedCheck check, read_check(job));
+    return open(job, std::move(check), memory_budget);
+}
+
+core::Result<std::unique_ptr<DebugSession>>
+DebugSession::open(const CheckJob& job, PreparedCheck check, size_t memory_budget) {
+    FEELER_TRY(auto run, RecordedRun::open(job, std::move(check), memory_budget));
     return std::unique_ptr<DebugSession>(new DebugSession(std::move(run)));
 }
 
@@ -172,7 +178,7 @@ core::Result<size_t> DebugSession::find_line(const std::string& line) {
         if (!is_run) break;
         if (is_there(block)) return block;
     }
-    for (size_t block = 0; block < at_ && knows(block); ++block)
+    for (size_t block = 0; block < at_; ++block)
         if (is_there(block)) return block;
     return core::fail(core::ErrorCode::invalid_value,
                       fmt::format("no block of line {} is run", number));

@@ -43,6 +43,9 @@ public:
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, size_t memory_budget = default_memory_budget);
+    /// The same of a check that has been read, but not placed.
+    static core::Result<std::unique_ptr<DebugSession>>
+    open(const CheckJob& job, PreparedCheck check, size_t memory_budget = default_memory_budget);
 
     // --- the record ---
 

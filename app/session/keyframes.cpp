@@ -59,6 +59,14 @@ size_t bytes_apart(const RunPlace& place, const RunPlace& other) {
     return bytes;
 }
 
+size_t Keyframes::index_after(size_t blocks) const {
+    const auto is_before = [](size_t wanted, const Keyframe& frame) {
+        return wanted < frame.blocks;
+    };
+    const auto after = std::upper_bound(frames_.begin(), frames_.end(), blocks, is_before);
+    return static_cast<size_t>(after - frames_.begin());
+}
+
 bool Keyframes::wants(size_t blocks, double seconds) const {
     if (frames_.empty()) return true;
     const Keyframe& last = before(blocks);
@@ -68,20 +76,17 @@ bool Keyframes::wants(size_t blocks, double seconds) const {
 }
 
 const Keyframe& Keyframes::before(size_t blocks) const {
-    const auto after = std::upper_bound(
-        frames_.begin(), frames_.end(), blocks,
-        [](size_t wanted, const Keyframe& frame) { return wanted < frame.blocks; });
-    assert(after != frames_.begin());
-    return *std::prev(after);
+    const size_t after = index_after(blocks);
+    assert(after > 0);
+    return frames_[after - 1];
 }
 
-void Keyframes::add(size_t blocks, double seconds, const RunPlace& place) {
-    const auto after = std::upper_bound(
-        frames_.begin(), frames_.end(), blocks,
-        [](size_t wanted, const Keyframe& frame) { return wanted < frame.blocks; });
-    const RunPlace& shared = after == frames_.begin() ? place : std::prev(after)->place;
-    const size_t bytes = bytes_apart(place, shared);
-    frames_.insert(after, {blocks, seconds, place, bytes});
+void Keyframes::note(size_t blocks, double seconds, const RunPlace& place) {
+    if (!wants(blocks, seconds)) return;
+    const size_t after = index_after(blocks);
+    const size_t bytes = bytes_apart(place, after == 0 ? place : frames_[after - 1].place);
+    frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(after),
+                   {blocks, seconds, place, bytes});
     memory_ += bytes;
     thin_out();
 }

@@ -21,9 +21,8 @@ class Keyframes {
 public:
     explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
 
-    /// Whether a keyframe so far in the run would be worth its memory.
-    bool wants(size_t blocks, double seconds) const;
-    void add(size_t blocks, double seconds, const RunPlace& place);
+    /// Keeps a place if it is far enough from the one before it.
+    void note(size_t blocks, double seconds, const RunPlace& place);
 
     /// The last one at or before a place; there is one, once the first place was added.
     const Keyframe& before(size_t blocks) const;
@@ -39,6 +38,10 @@ public:
     const std::vector<Keyframe>& frames() const { return frames_; }
 
 private:
+    /// Where the first keyframe behind a place is, or would be.
+    size_t index_after(size_t blocks) const;
+    /// Whether a keyframe there would be worth its memory.
+    bool wants(size_t blocks, double seconds) const;
     void thin_out();
     void remove(size_t index);
     /// How bad it would be to go without a keyframe: 1 is a wait that is noticed.

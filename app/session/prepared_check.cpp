@@ -1,24 +1,18 @@
 #include "app/session/prepared_check.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 
 #include "app/session/block_runner.h"
 #include "app/session/digest.h"
 #include "app/session/inferred_setup.h"
+#include "app/session/stopwatch.h"
 #include "app/session/timing_notes.h"
 #include "core/sim/allowance.h"
 
 namespace app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The dialect that was stated, else what the program looks like.
 core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
@@ -53,19 +47,10 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
                                   : "rapids run as dog-legs, each axis at its own speed");
 }
 
-void take_tool_at_start(core::Setup& setup, CheckRun& run, bool program_calls_tools) {
-    if (program_calls_tools || setup.tool_at_start || setup.tools.size() != 1) return;
-    setup.tool_at_start = setup.tools.begin()->first;
-    run.assumptions.push_back(fmt::format("the program calls no tool: tool {} is in the spindle",
-                                          core::value_of(*setup.tool_at_start)));
-}
-
 /// Whether any block up to the end or the first error changes the tool.
-bool calls_tools(const gcode::Program& program, const gcode::Environment& environment) {
-    gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
-                                  environment.search_path);
-    gcode::Interpreter interpreter(library, environment);
-    gcode::InterpreterState state = gcode::initial_state(environment);
+bool calls_tools(const PreparedCheck& check) {
+    gcode::Interpreter interpreter(*check.library, check.file.environment);
+    gcode::InterpreterState state = gcode::initial_state(check.file.environment);
     while (true) {
         const auto block = interpreter.next(state);
         if (!block || !*block) return false;
@@ -74,26 +59,19 @@ bool calls_tools(const gcode::Program& program, const gcode::Environment& enviro
     }
 }
 
-/// The raw stock, and the machine beside it.
-core::Result<void> put_in_place(const CheckJob& job, PreparedCheck& check) {
-    const Clock::time_point modelling = Clock::now();
-    CheckRun& run = check.run;
-    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
-    if (job.before_model && run.memory <= run.setup.memory_limit) job.before_model(run.memory);
-    auto state = core::start_of_run(run.setup, check.file.environment.start);
-    if (!state) return tl::unexpected(named(state.error(), job.setup));
-    check.machine = *std::move(state);
-    core::SpindleChange& spindle = check.machine.spindle;
-    spindle.direction = run.setup.spindle_at_start;
-    if (spindle.direction != core::SpindleDirection::stopped) spindle.speed = 1.0;
-    run.times.model = seconds_since(modelling);
-    return {};
+void take_tool_at_start(PreparedCheck& check) {
+    core::Setup& setup = check.run.setup;
+    if (setup.tool_at_start || setup.tools.size() != 1 || calls_tools(check)) return;
+    setup.tool_at_start = setup.tools.begin()->first;
+    check.run.assumptions.push_back(
+        fmt::format("the program calls no tool: tool {} is in the spindle",
+                    core::value_of(*setup.tool_at_start)));
 }
 
 } // namespace
 
 core::Result<PreparedCheck> read_check(const CheckJob& job) {
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch reading;
     PreparedCheck check;
     CheckRun& run = check.run;
     run.program_file = job.program;
@@ -118,16 +96,32 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     run.setup.search_limit = core::search_limit_of(run.setup);
-    take_tool_at_start(run.setup, run, calls_tools(*check.program, file.environment));
+    check.library = std::make_shared<gcode::ProgramLibrary>(
+        *check.program, gcode::dialect(file.environment.dialect), file.environment.search_path);
+    take_tool_at_start(check);
     add_standing_assumptions(run.setup, run);
-    run.times.read = seconds_since(begin);
+    run.times.read = reading.seconds();
     return check;
+}
+
+core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
+    const Stopwatch modelling;
+    CheckRun& run = check.run;
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    if (job.before_model && run.memory <= run.setup.memory_limit) job.before_model(run.memory);
+    auto state = core::start_of_run(run.setup, check.file.environment.start);
+    if (!state) return tl::unexpected(named(state.error(), job.setup));
+    check.machine = *std::move(state);
+    core::SpindleChange& spindle = check.machine.spindle;
+    spindle.direction = run.setup.spindle_at_start;
+    if (spindle.direction != core::SpindleDirection::stopped) spindle.speed = 1.0;
+    run.times.model = modelling.seconds();
+    return {};
 }
 
 core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
     FEELER_TRY(PreparedCheck check, read_check(job));
-    if (const auto placed = put_in_place(job, check); !placed)
-        return tl::unexpected(placed.error());
+    if (const auto placed = place_check(job, check); !placed) return tl::unexpected(placed.error());
     return check;
 }
 

@@ -55,22 +55,20 @@ std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& 
 } // namespace
 
 ProgramRunner::ProgramRunner(PreparedCheck& check)
-    : run_(check.run),
-      runner_(*check.program, check.file.environment, run_.setup),
-      stock_is_stated_(check.stock_is_stated),
+    : check_(check),
+      run_(check.run),
+      runner_(check),
       place_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
-    runner_.speed_by_hand = check.file.speed_by_hand;
-    runner_.offsets_stated = check.file.offsets_set;
     runner_.before_block = [this](const gcode::BlockResult& block, const ProgramPlace& before) {
         follow_cure(block, before);
     };
 }
 
 core::Result<void> ProgramRunner::start_at(const std::string& line) {
-    const gcode::Dialect& dialect = gcode::dialect(runner_.environment().dialect);
-    FEELER_TRY(const uint32_t number, gcode::line_meant(runner_.program(), dialect, line));
+    const gcode::Dialect& dialect = gcode::dialect(check_.file.environment.dialect);
+    FEELER_TRY(const uint32_t number, gcode::line_meant(*check_.program, dialect, line));
     FEELER_TRY(const gcode::Restart restart,
-               gcode::restart_at(*runner_.library(), runner_.environment(), number,
+               gcode::restart_at(*check_.library, check_.file.environment, number,
                                  run_.setup.tool_at_start));
     place_.control = restart.state;
     place_.lowering = gcode::initial_lowering(place_.control);
@@ -97,7 +95,7 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
         bool made = move.line && *move.line < line;
         for (uint32_t before = 1; move.code && !made && before < line; ++before) {
-            const auto text = runner_.program().find_line(before);
+            const auto text = check_.program->find_line(before);
             made = text && *text && has_m_code(**text, *move.code);
         }
         if (!made) continue;
@@ -113,8 +111,8 @@ void ProgramRunner::make_moves_before(uint32_t line) {
 void ProgramRunner::stop(core::Error error) {
     const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
     if (auto finding = alarm(runner_.setup(), error)) {
-        const bool in_main = error.file == runner_.program().file;
-        const auto text = runner_.program().find_line(error.where.line);
+        const bool in_main = error.file == check_.program->file;
+        const auto text = check_.program->find_line(error.where.line);
         run_.blocks.push_back({block,
                                error.where.line,
                                in_main && text && *text ? std::string(**text) : std::string(),
@@ -134,8 +132,8 @@ void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPl
     if (is_first) {
         followed_ = lengths.doubts.back();
         cured_ =
-            std::make_unique<CuredRun>(*runner_.library(), runner_.environment(), runner_.setup(),
-                                       runner_.speed_by_hand, before, lengths.doubts.back());
+            std::make_unique<CuredRun>(*check_.library, check_.file.environment, runner_.setup(),
+                                       check_.file.speed_by_hand, before, lengths.doubts.back());
     }
     if (cured_) cured_->follow(block, runner_.setup());
 }
@@ -214,7 +212,7 @@ bool ProgramRunner::advance() {
 
 CheckProgress ProgramRunner::progress() const {
     return {run_.blocks.size(),
-            static_cast<double>(last_line_) / static_cast<double>(runner_.program().line_count()),
+            static_cast<double>(last_line_) / static_cast<double>(check_.program->line_count()),
             run_.findings.size()};
 }
 
@@ -239,14 +237,14 @@ void ProgramRunner::go_back(const RunPlace& place, size_t blocks, size_t finding
 }
 
 void ProgramRunner::end() {
-    const gcode::Environment& environment = runner_.environment();
+    const gcode::Environment& environment = check_.file.environment;
     if (!run_.stopped)
         if (const auto warning = gcode::ending_warning(environment, place_.control))
             run_.findings.push_back(remark(runner_.setup(), *warning));
     end_cure();
     for (core::Finding& finding : core::end_of_run(runner_.setup(), place_.machine))
         run_.findings.push_back(std::move(finding));
-    if (stock_is_stated_) hold_against_stock();
+    if (check_.stock_is_stated) hold_against_stock();
     if (!run_.stopped) tell_of_moves_not_made();
     std::vector<core::BlockTime> timed;
     core::stop_clock(place_.clock, timed);
@@ -263,7 +261,7 @@ void ProgramRunner::to_the_end() {
                               "the check was stopped after this block: the rest of the program is "
                               "not checked",
                               last.file},
-                             runner_.program().file);
+                             check_.program->file);
         return end();
     }
 }

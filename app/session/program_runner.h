@@ -17,9 +17,6 @@ public:
 
     std::function<bool(const CheckProgress&)> after_block; // false: stop there
 
-    /// That all places of the run refer to.
-    const std::shared_ptr<gcode::ProgramLibrary>& library() const { return runner_.library(); }
-
     /// Begins in the middle of the program, at a line or "N210", as a control does that was just
     /// switched on.
     ///
@@ -68,9 +65,9 @@ private:
     /// Fixture moves that the set-up asks for and no block has made.
     void tell_of_moves_not_made();
 
+    const PreparedCheck& check_;
     CheckRun& run_;
     BlockRunner runner_;
-    bool stock_is_stated_;
     RunPlace place_;
     uint32_t last_line_ = 0; // of the main program
     std::unique_ptr<CuredRun> cured_ = {};

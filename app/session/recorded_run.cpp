@@ -2,33 +2,24 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 #include <fmt/format.h>
 
 #include "app/session/conclusion.h"
+#include "app/session/stopwatch.h"
 
 namespace app {
-namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-} // namespace
-
-core::Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const CheckJob& job,
-                                                             size_t memory_budget) {
-    FEELER_TRY(PreparedCheck check, prepare_check(job));
+core::Result<std::unique_ptr<RecordedRun>>
+RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget) {
+    if (const auto placed = place_check(job, check); !placed) return tl::unexpected(placed.error());
     std::unique_ptr<RecordedRun> run(new RecordedRun(std::move(check), memory_budget));
     run->needs_surface_ = job.needs_surface;
     if (!job.start_line.empty())
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
-    run->keyframes_.add(0, 0.0, run->runner_->place());
+    run->keyframes_.note(0, 0.0, run->runner_->place());
     run->told_.assumptions = run->record().assumptions;
     return run;
 }
@@ -36,23 +27,19 @@ core::Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const CheckJob& job
 RecordedRun::RecordedRun(PreparedCheck check, size_t memory_budget)
     : check_(std::move(check)),
       runner_(std::make_unique<ProgramRunner>(check_)),
-      replayer_(*check_.program, check_.file.environment, check_.run.setup, runner_->library()),
-      keyframes_(memory_budget) {
-    replayer_.speed_by_hand = check_.file.speed_by_hand;
-    replayer_.offsets_stated = check_.file.offsets_set;
-}
+      replayer_(check_),
+      keyframes_(memory_budget) {}
 
 bool RecordedRun::advance() {
     if (is_complete_) return false;
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch work;
     if (!runner_->advance()) {
         finish();
         return false;
     }
-    const double seconds = marks_.back().seconds + seconds_since(begin);
+    const double seconds = marks_.back().seconds + work.seconds();
     marks_.push_back({seconds, record().findings.size()});
-    if (keyframes_.wants(last_place(), seconds))
-        keyframes_.add(last_place(), seconds, runner_->place());
+    keyframes_.note(last_place(), seconds, runner_->place());
     return true;
 }
 
@@ -112,8 +99,7 @@ void RecordedRun::take_to(RunPlace& state, size_t from, size_t place) {
         assert(step && *step);
         ++from;
         change_at(from, state);
-        if (keyframes_.wants(from, marks_[from].seconds))
-            keyframes_.add(from, marks_[from].seconds, state);
+        keyframes_.note(from, marks_[from].seconds, state);
     }
 }
 

@@ -22,8 +22,10 @@ struct MadeChange {
 /// A place is counted in blocks that have been run: at place p block p of the record is the next.
 class RecordedRun {
 public:
+    /// Of a check that was read, but not placed.
+    ///
     /// Errors: as run_check.
-    static core::Result<std::unique_ptr<RecordedRun>> open(const CheckJob& job,
+    static core::Result<std::unique_ptr<RecordedRun>> open(const CheckJob& job, PreparedCheck check,
                                                            size_t memory_budget);
 
     /// What is known so far: blocks in order, and findings as they were told. Once it is complete,
@@ -40,7 +42,7 @@ public:
 
     const PreparedCheck& check() const { return check_; }
     /// That all places of the run refer to.
-    gcode::ProgramLibrary& library() const { return *runner_->library(); }
+    gcode::ProgramLibrary& library() const { return *check_.library; }
     /// The set-up that a block is run under.
     const core::Setup& setup_at(size_t block) const;
 
@@ -57,7 +59,7 @@ public:
     /// As BlockRunner::visit_ahead, from a copy of a place.
     void visit_ahead(size_t place, const RunPlace& state, const BlockVisit& visit) {
         replayer_.use(setup_at(place));
-        replayer_.visit_ahead(state, visit);
+        replayer_.visit_ahead(state.control, state.lowering, visit);
     }
 
     /// Where one looks: keyframes are kept near it.

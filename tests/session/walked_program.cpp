@@ -88,9 +88,7 @@ test_support::SetupWriter walked_setup() {
 std::vector<uint64_t> digests_of(const app::CheckJob& job) {
     auto check = app::prepare_check(job);
     if (!check) return {};
-    app::BlockRunner runner(*check->program, check->file.environment, check->run.setup);
-    runner.speed_by_hand = check->file.speed_by_hand;
-    runner.offsets_stated = check->file.offsets_set;
+    app::BlockRunner runner(*check);
     app::RunPlace place =
         app::start_of_program(check->file.environment, check->run.setup, std::move(check->machine));
     std::vector<uint64_t> digests = {app::digest_of(place)};
