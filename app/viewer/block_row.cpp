@@ -28,8 +28,6 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
     row.is_known = true;
     row.is_judged = result.checked;
     row.verdict = result.verdict;
-    for (const core::Finding& finding : result.findings)
-        row.worst = std::max(row.worst, finding.severity);
     if (!moves(row) || !result.checked) return row;
     const core::PairClearance* pair = shown_pair(result);
     if (!pair) {
@@ -50,6 +48,13 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
 bool is_near(const BlockRow& row) {
     return !is_offending(row) && row.upper && row.allowance && *row.allowance > 0.0
            && *row.lower < 2.0 * *row.allowance;
+}
+
+render::ClearanceState state_of(const BlockRow& row) {
+    if (is_offending(row)) return render::ClearanceState::violation;
+    if (is_near(row)) return render::ClearanceState::near;
+    return row.is_known && row.is_judged ? render::ClearanceState::clear
+                                         : render::ClearanceState::none;
 }
 
 } // namespace app::viewer

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/session/check_run.h"
+#include "render/tool_path.h"
 
 namespace app::viewer {
 
@@ -38,12 +39,15 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked);
 /// Whether anything moves in it.
 inline bool moves(const BlockRow& row) { return row.motion != core::BlockMotion::none; }
 
-/// Whether N stops at it.
+/// Whether N stops at it: an error was found in it, or its allowance is not proven to be kept.
 inline bool is_offending(const BlockRow& row) {
-    return row.worst == core::Severity::error || row.verdict >= core::Verdict::violation;
+    return row.worst == core::Severity::error || row.verdict != core::Verdict::clear;
 }
 
 /// Whether it keeps its allowance, but not twice.
 bool is_near(const BlockRow& row);
+
+/// How it is coloured wherever it is drawn.
+render::ClearanceState state_of(const BlockRow& row);
 
 } // namespace app::viewer

@@ -8,8 +8,6 @@
 namespace app::viewer {
 namespace {
 
-constexpr double drawing_error = 0.02; // mm
-
 void add_motion(const core::Machine& machine, const core::Motion& motion, double begin,
                 std::vector<Pose>& poses) {
     const auto from = known_values(machine, motion.from);

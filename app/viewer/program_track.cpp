@@ -3,13 +3,10 @@
 #include <algorithm>
 
 #include "core/sim/path.h"
-#include "render/setup_scene.h"
+#include "render/motion_path.h"
 
 namespace app::viewer {
 namespace {
-
-/// Chords of arcs stay within this of them, mm: less than a pixel.
-constexpr double drawing_error = 0.02;
 
 core::BlockMotion motion_of(core::MotionKind kind) {
     switch (kind) {
@@ -58,30 +55,11 @@ void ProgramTrack::add(const gcode::BlockResult& block, std::span<const core::Ev
 
 void ProgramTrack::add_motion(const core::Motion& motion, BlockRow& row) {
     row.motion = std::max(row.motion, motion_of(motion.kind));
-    const auto from = known_values(setup_.machine, motion.from);
-    const auto to = known_values(setup_.machine, motion.to);
-    if (!to) return;
-    const bool is_rapid = motion.kind == core::MotionKind::rapid;
-    if (!from) {
-        add_point(*to, true, is_rapid);
-        return;
-    }
     const core::Path path = core::path_of(motion, setup_.machine, drawing_error);
     row.duration += path.duration;
-    add_point(*from, true, is_rapid);
-    for (const core::Leg& leg : path.legs)
-        if (leg.straight && leg.places.size() == 2) add_point(leg.places[1], false, is_rapid);
-    add_point(*to, false, is_rapid);
-}
-
-void ProgramTrack::add_point(const core::AxisValues& values, bool begins, bool is_rapid) {
-    render::PathPoint point;
-    point.place = glm::vec3(render::tip_in_stock(setup_, tool_length(), values));
-    point.block = static_cast<uint32_t>(first_ + rows.size() - 1);
-    point.rapid = is_rapid;
-    point.begins = begins;
-    if (!points.empty() && points.back().place == point.place) return;
-    points.push_back(point);
+    render::append_motion(points, setup_, tool_length(), path,
+                          {.block = static_cast<uint32_t>(first_ + rows.size() - 1),
+                           .rapid = motion.kind == core::MotionKind::rapid});
 }
 
 double ProgramTrack::tool_length() const {

@@ -8,6 +8,9 @@
 
 namespace app::viewer {
 
+/// Chords of arcs are drawn within this of them, mm: less than a pixel.
+constexpr double drawing_error = 0.02;
+
 /// What is known of a program before it is checked: its blocks in order and the way of the tip.
 ///
 /// Frame: path in that of the stock.
@@ -25,7 +28,6 @@ public:
 
 private:
     void add_motion(const core::Motion& motion, BlockRow& row);
-    void add_point(const core::AxisValues& values, bool begins, bool is_rapid);
     double tool_length() const;
 
     const core::Setup& setup_;

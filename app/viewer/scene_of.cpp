@@ -5,12 +5,6 @@
 namespace app::viewer {
 namespace {
 
-render::ClearanceState state_of(const BlockRow& row) {
-    if (is_offending(row)) return render::ClearanceState::violation;
-    if (is_near(row)) return render::ClearanceState::near;
-    return row.is_known ? render::ClearanceState::clear : render::ClearanceState::none;
-}
-
 /// The view of the cursor's block; an older one while the worker makes it.
 const PlaceView* view_of(const ViewModel& model) {
     return model.place ? model.place.get() : nullptr;

@@ -6,31 +6,19 @@
 #include "core/sim/timing.h"
 
 namespace app::viewer {
-namespace {
-
-render::ClearanceState state_of(const BlockRow& row) {
-    if (is_offending(row)) return render::ClearanceState::violation;
-    if (is_near(row)) return render::ClearanceState::near;
-    if (!row.is_judged || row.verdict == core::Verdict::undecided)
-        return render::ClearanceState::none;
-    return render::ClearanceState::clear;
-}
-
-} // namespace
-
-void SessionPublisher::begin(ProgramTrack track) {
+void SessionPublisher::begin(std::vector<render::PathPoint> points, size_t rows) {
     *this = {};
-    rows_ = track.rows.size();
-    points_ = std::move(track.points);
+    rows_ = rows;
+    points_ = std::move(points);
 }
 
-void SessionPublisher::begin_again(size_t block, ProgramTrack track) {
-    rows_ = block + track.rows.size();
+void SessionPublisher::begin_again(size_t block, const std::vector<render::PathPoint>& points,
+                                   size_t rows) {
+    rows_ = rows;
     const auto from = std::find_if(points_.begin(), points_.end(),
                                    [&](const auto& point) { return point.block >= block; });
     points_.erase(from, points_.end());
-    painted_ = std::min(painted_, points_.size());
-    points_.insert(points_.end(), track.points.begin(), track.points.end());
+    points_.insert(points_.end(), points.begin(), points.end());
     durations_.resize(std::min(durations_.size(), block));
     states_.resize(std::min(states_.size(), block));
     findings_ = std::numeric_limits<size_t>::max(); // send them again
@@ -69,15 +57,24 @@ void SessionPublisher::add_rows(const DebugSession& session, const core::Setup& 
     if (!update.empty()) news.rows.append(std::move(update));
 }
 
+std::vector<render::ClearanceState> SessionPublisher::known_states(const CheckRun& run) const {
+    std::vector<render::ClearanceState> states = states_;
+    for (const core::Finding& finding : run.findings) {
+        if (finding.severity != core::Severity::error || !finding.block) continue;
+        const size_t block = core::value_of(*finding.block);
+        if (block < states.size()) states[block] = render::ClearanceState::violation;
+    }
+    return states;
+}
+
 void SessionPublisher::paint_path(const DebugSession& session, SessionUpdate& news) {
     const Clock::time_point now = Clock::now();
     const bool is_due = last_path_ == Clock::time_point{}
                         || now - last_path_ > std::chrono::milliseconds(300) + 20 * path_cost_;
     if (!is_due && !(session.is_recorded() && !is_whole_)) return;
-    while (painted_ < points_.size() && points_[painted_].block < states_.size()) {
-        points_[painted_].state = states_[points_[painted_].block];
-        ++painted_;
-    }
+    const std::vector<render::ClearanceState> states = known_states(session.record());
+    for (render::PathPoint& point : points_)
+        if (point.block < states.size()) point.state = states[point.block];
     news.path = std::make_shared<const render::ToolPath>(render::tool_path(points_));
     last_path_ = Clock::now();
     path_cost_ = last_path_ - now;

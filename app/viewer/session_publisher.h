@@ -11,9 +11,9 @@ namespace app::viewer {
 class SessionPublisher {
 public:
     /// Another program: all of it is new.
-    void begin(ProgramTrack track);
+    void begin(std::vector<render::PathPoint> points, size_t rows);
     /// From a block on the program goes another way.
-    void begin_again(size_t block, ProgramTrack track);
+    void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
 
     /// What the record has gained since the last call.
     void publish(const DebugSession& session, const core::Setup& setup, SessionUpdate& news);
@@ -24,15 +24,16 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void add_rows(const DebugSession& session, const core::Setup& setup, SessionUpdate& news);
+    /// The states of the blocks that were checked.
+    std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
     void paint_path(const DebugSession& session, SessionUpdate& news);
     /// The first row whose time has been settled since it was sent.
     size_t first_changed(const CheckRun& run) const;
 
     std::vector<render::PathPoint> points_;
-    std::vector<double> durations_; // as they were sent
-    std::vector<render::ClearanceState> states_;
-    size_t rows_ = 0;    // known to the window
-    size_t painted_ = 0; // points whose state is known
+    std::vector<double> durations_;              // as they were sent
+    std::vector<render::ClearanceState> states_; // of blocks, but for the findings about them
+    size_t rows_ = 0;                            // known to the window
     size_t findings_ = 0;
     bool is_whole_ = false;
     Clock::time_point last_path_ = {};

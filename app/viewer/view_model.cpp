@@ -32,15 +32,18 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.is_recorded = false;
 }
 
-/// How bad the findings about each block are, as far as the blocks do not say so themselves.
-void mark_rows(ViewModel& model, std::set<size_t>& touched) {
+/// How bad the findings about each block are: they come and go until the check is complete.
+void mark_rows(ViewModel& model) {
+    std::vector<core::Severity> worst(model.rows.size(), core::Severity::off);
     for (const core::Finding& finding : model.findings) {
-        if (!finding.block || core::value_of(*finding.block) >= model.rows.size()) continue;
-        const size_t block = core::value_of(*finding.block);
-        BlockRow& row = model.rows[block];
-        if (finding.severity <= row.worst) continue;
-        row.worst = finding.severity;
-        touched.insert(block);
+        if (!finding.block || core::value_of(*finding.block) >= worst.size()) continue;
+        core::Severity& of_block = worst[core::value_of(*finding.block)];
+        of_block = std::max(of_block, finding.severity);
+    }
+    for (size_t i = 0; i < worst.size(); ++i) {
+        if (model.rows[i].worst == worst[i]) continue;
+        model.rows[i].worst = worst[i];
+        model.least.set(i, cell_of(model.rows[i]));
     }
 }
 
@@ -129,9 +132,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     take_rows(model, news.rows);
     if (news.findings) model.findings = *std::move(news.findings);
     if (has_rows || news.findings) {
-        std::set<size_t> touched;
-        mark_rows(model, touched);
-        for (const size_t block : touched) model.least.set(block, cell_of(model.rows[block]));
+        mark_rows(model);
         count_rows(model);
         apply_filter(model);
     }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "app/viewer/early_track.h"
+#include "app/session/block_runner.h"
+#include "app/viewer/program_track.h"
 
 namespace app::viewer {
 namespace {
@@ -11,14 +12,32 @@ namespace {
 constexpr double slice = 0.01;
 constexpr auto publish_interval = std::chrono::milliseconds(60);
 
-OpenedProgram described(const CheckJob& job, const DebugSession& session) {
+/// Blocks beyond these are only known once they are checked.
+constexpr size_t most_early_blocks = 2'000'000;
+
+OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     OpenedProgram opened;
     opened.program = job.program;
     opened.setup = job.setup;
-    opened.dialect = gcode::dialect(session.record().dialect).name;
-    opened.assumptions = session.record().assumptions;
+    opened.dialect = gcode::dialect(check.run.dialect).name;
+    opened.assumptions = check.run.assumptions;
     opened.is_inferred = job.setup.empty();
+    opened.scene = make_scene_setup(check.run.setup);
     return opened;
+}
+
+/// The way of a program before its stock is modelled, to its end or its first error.
+ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
+                      const std::function<bool()>& is_closing) {
+    const gcode::Environment& environment = check.file.environment;
+    ProgramTrack track(setup);
+    BlockRunner(check).visit_ahead(
+        gcode::initial_state(environment), gcode::initial_lowering(environment),
+        [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
+            track.add(block, events);
+            return track.rows.size() < most_early_blocks && !is_closing();
+        });
+    return track;
 }
 
 /// What the next block of a session does.
@@ -55,29 +74,33 @@ void WorkerSession::open(const CheckJob& job, const std::function<void()>& publi
     news_.opening = ++openings_;
     news_.has_news = news_.is_busy = true;
     publish();
-    const auto early = early_track(job, is_closing_);
-    if (early) {
-        publisher_.begin(early->track);
-        news_.rows = {0, early->track.rows, early->track.rows.size()};
-        news_.path =
-            std::make_shared<const render::ToolPath>(render::tool_path(early->track.points));
-        news_.opened = early->opened;
-        news_.has_news = news_.is_busy = true;
-        publish();
-    }
-    auto session = DebugSession::open(job);
-    news_.has_news = true;
-    news_.is_busy = false;
-    if (!session) {
-        news_.failure = session.error();
-        return;
-    }
+    auto check = read_check(job);
+    if (!check) return fail(check.error());
+    OpenedProgram opened = described(job, *check);
+    scenes_.emplace_back(0, opened.scene);
+    show_early(track_of(*check, opened.scene->setup, is_closing_));
+    news_.opened = std::make_shared<const OpenedProgram>(opened);
+    news_.has_news = news_.is_busy = true;
+    publish();
+    auto session = DebugSession::open(job, *std::move(check));
+    if (!session) return fail(session.error());
     session_ = *std::move(session);
     session_->is_interrupted = is_interrupted_;
-    OpenedProgram opened = described(job, *session_);
-    opened.scene = scene_at(0);
-    news_.opened = std::make_shared<const OpenedProgram>(std::move(opened));
+    news_.has_news = true;
     set_breakpoints(breakpoints_);
+}
+
+void WorkerSession::fail(const core::Error& error) {
+    news_.failure = error;
+    news_.has_news = true;
+    news_.is_busy = false;
+}
+
+void WorkerSession::show_early(ProgramTrack track) {
+    news_.path = std::make_shared<const render::ToolPath>(render::tool_path(track.points));
+    publisher_.begin(std::move(track.points), track.rows.size());
+    const size_t count = track.rows.size();
+    news_.rows = {0, std::move(track.rows), count};
 }
 
 void WorkerSession::record() {
@@ -215,8 +238,9 @@ void WorkerSession::follow_anew() {
             track.add(ahead, events);
             return track.rows.size() < most_early_blocks;
         });
-    news_.rows.append({block, track.rows, block + track.rows.size()});
-    publisher_.begin_again(block, std::move(track));
+    const size_t count = block + track.rows.size();
+    publisher_.begin_again(block, track.points, count);
+    news_.rows.append({block, std::move(track.rows), count});
     publisher_.publish(*session_, session_->setup_at(block), news_);
     std::vector<std::string> changes;
     for (const MadeChange& change : session_->changes()) changes.push_back(text_of(change.change));

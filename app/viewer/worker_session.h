@@ -34,6 +34,9 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void publish_if_due();
+    /// The program cannot be opened.
+    void fail(const core::Error& error);
+    void show_early(ProgramTrack track);
     void refuse(const core::Error& error);
     /// What is drawn of the set-up that a block is run under.
     std::shared_ptr<const SceneSetup> scene_at(size_t block);

@@ -18,6 +18,33 @@ ViewModel ten_blocks() {
     return model_of(rows);
 }
 
+TEST(BlockRow, WhatCouldNotBeDecidedIsHighlightedLikeAViolation) {
+    BlockRow row = row_with(1.5);
+    EXPECT_FALSE(is_offending(row));
+    EXPECT_EQ(state_of(row), render::ClearanceState::near);
+    row.verdict = core::Verdict::undecided;
+    EXPECT_TRUE(is_offending(row));
+    EXPECT_EQ(state_of(row), render::ClearanceState::violation);
+}
+
+TEST(BlockRow, IsAsBadAsTheFindingsThatAreLeftAboutIt) {
+    ViewModel model = model_of({row_with(5.0), row_with(5.0)});
+    const auto take = [&](std::vector<core::Finding> findings) {
+        SessionUpdate news;
+        news.opening = 1;
+        news.has_news = news.is_recorded = true;
+        news.findings = std::move(findings);
+        take_in(model, std::move(news), 0.0);
+    };
+    core::Finding finding;
+    finding.block = core::BlockIndex{1};
+    finding.severity = core::Severity::error;
+    take({finding});
+    EXPECT_EQ(model.offending, std::vector<size_t>{1});
+    take({});
+    EXPECT_TRUE(model.offending.empty()) << "a comment in the program allows it";
+}
+
 TEST(Navigation, StepsStayInTheProgram) {
     ViewModel model = ten_blocks();
     step(model, -1);

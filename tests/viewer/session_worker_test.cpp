@@ -4,6 +4,7 @@
 
 #include "app/viewer/navigation.h"
 #include "app/viewer/session_worker.h"
+#include "tests/support/scoped_folder.h"
 
 namespace {
 
@@ -78,6 +79,43 @@ TEST(SessionWorker, TellsTheWindowWhatACheckSays) {
     ASSERT_TRUE(model.path);
     for (const uint32_t block : {15U, 39U})
         EXPECT_FALSE(render::bounds_of_block(*model.path, block).empty()) << block;
+}
+
+/// The program beginning above the machine's travel: errors that no clearance tells of.
+app::CheckJob out_of_travel(const test_support::ScopedFolder& folder) {
+    std::string text = test_support::bytes_of(assets + "programs/clamped_plate.nc");
+    text.replace(text.find("G53 G0 Z0"), 9, "G53 G0 Z40");
+    app::CheckJob job = clamped_plate();
+    job.program = folder.write("high.nc", text);
+    return job;
+}
+
+/// How the pieces of a block's path are coloured, if all are the same.
+std::optional<render::ClearanceState> colour_of(const render::ToolPath& path, size_t block) {
+    const auto [first, last] = render::points_of_block(path, static_cast<uint32_t>(block));
+    if (first == last) return {};
+    for (size_t i = first; i < last; ++i)
+        if (path.points[i].state != path.points[first].state) return {};
+    return path.points[first].state;
+}
+
+TEST(SessionWorker, PathAndListShowABlockWithAnErrorAlike) {
+    const test_support::ScopedFolder folder;
+    Watcher watcher;
+    watcher.open(out_of_travel(folder));
+    ASSERT_TRUE(watcher.record());
+    const ViewModel& model = watcher.model;
+    size_t by_finding = 0, shown = 0;
+    for (size_t i = 0; i < model.rows.size(); ++i) {
+        if (is_offending(model.rows[i]) && model.rows[i].verdict == core::Verdict::clear)
+            ++by_finding;
+        const auto colour = colour_of(*model.path, i);
+        if (!colour) continue;
+        ++shown;
+        EXPECT_EQ(*colour, state_of(model.rows[i])) << i << ": " << model.rows[i].text;
+    }
+    EXPECT_GT(by_finding, 0U);
+    EXPECT_GT(shown, 30U);
 }
 
 TEST(SessionWorker, ShowsABlockAsItFindsTheStockAndAsItLeavesIt) {
