@@ -1,6 +1,7 @@
 #include "gcode/program_text.h"
 
 #include <algorithm>
+#include <charconv>
 
 namespace gcode {
 
@@ -20,6 +21,22 @@ std::string_view what_has_nuls(std::string_view text) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         return "is UTF-16 text, which controls do not read: save it as plain text (ASCII or UTF-8)";
     return "holds NUL bytes: it is a binary file, not an NC program";
+}
+
+std::optional<uint32_t> number_in(std::string_view text) {
+    uint32_t number = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+    return number;
+}
+
+std::optional<uint32_t> block_number(std::string_view line, bool has_letter) {
+    size_t at = line.find_first_not_of(" \t/");
+    if (at == std::string_view::npos) return std::nullopt;
+    if (has_letter && line[at] != 'N' && line[at] != 'n') return std::nullopt;
+    at += has_letter ? 1 : 0;
+    const size_t end = line.find_first_not_of("0123456789", at);
+    return number_in(line.substr(at, end == std::string_view::npos ? end : end - at));
 }
 
 size_t count_stray_controls(std::string_view text) {

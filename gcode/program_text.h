@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +26,12 @@ std::string_view what_has_nuls(std::string_view text);
 
 /// Whether anything stands outside of comments, tape marks and blanks.
 bool has_a_block(std::string_view text);
+
+/// The number that a text is, if it is nothing but digits.
+std::optional<uint32_t> number_in(std::string_view text);
+
+/// The number of a block: behind N, or at the line's beginning where blocks are counted so.
+std::optional<uint32_t> block_number(std::string_view line, bool has_letter);
 
 /// Whether a character is a control character that no NC program has a use for. Tape readers left
 /// XON, XOFF and friends; DOS left its end-of-file mark.

@@ -1,11 +1,11 @@
 #include "gcode/restart.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
 #include "gcode/execution.h"
+#include "gcode/program_text.h"
 
 namespace gcode {
 namespace {
@@ -14,23 +14,6 @@ constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
 constexpr MotionCode arc_codes_end = 30; // G0 to G3; later ones are cycles and the like
-
-std::optional<uint32_t> number_in(std::string_view text) {
-    uint32_t number = 0;
-    const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
-    return number;
-}
-
-/// The number that stands behind N, or at the line's beginning where blocks are counted so.
-std::optional<uint32_t> block_number(std::string_view line, bool has_letter) {
-    size_t at = line.find_first_not_of(" \t/");
-    if (at == std::string_view::npos) return std::nullopt;
-    if (has_letter && line[at] != 'N' && line[at] != 'n') return std::nullopt;
-    at += has_letter ? 1 : 0;
-    const size_t end = line.find_first_not_of("0123456789", at);
-    return number_in(line.substr(at, end == std::string_view::npos ? end : end - at));
-}
 
 bool is_feed(const CanonicalCommand& command) {
     return std::holds_alternative<StraightFeed>(command) || std::holds_alternative<ArcFeed>(command)

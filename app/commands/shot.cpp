@@ -1,17 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <map>
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
+#include "app/commands/film_writer.h"
 #include "app/commands/output.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/studio.h"
@@ -23,8 +20,7 @@ using viewer::BlockRow;
 using viewer::Studio;
 using viewer::ViewModel;
 
-constexpr size_t most_prints = 60; // of a sheet
-constexpr int frames_per_second = 25;
+constexpr size_t most_prints = 60;  // of a sheet
 constexpr size_t most_frames = 500; // of a film: 20 seconds
 
 struct Options {
@@ -149,32 +145,12 @@ core::Result<void> shoot_sheet(const Options& options, Studio& studio) {
     return render::write_png(image, options.output);
 }
 
-/// Joins numbered pictures; false when there is no ffmpeg, or it failed.
-bool join(const std::string& pattern, const std::string& output) {
-    const std::string rate = std::to_string(frames_per_second);
-    std::array<const char*, 16> words = {
-        "ffmpeg",       "-y",         "-loglevel", "error",
-        "-framerate",   rate.c_str(), "-i",        pattern.c_str(),
-        "-pix_fmt",     "yuv420p",    "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-        output.c_str(), nullptr};
-    pid_t child = 0;
-    if (::posix_spawnp(&child, "ffmpeg", nullptr, nullptr, const_cast<char* const*>(words.data()),
-                       environ)
-        != 0)
-        return false;
-    int status = 0;
-    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 core::Result<void> shoot_film(const Options& options, const render::Viewport& size,
                               Studio& studio) {
     ViewModel& model = studio.model;
     const size_t from = options.from.value_or(0), to = options.to.value_or(model.rows.size() - 1);
     if (to < from || to >= model.rows.size())
         return tl::unexpected(no_such("--from, --to: " + block_numbers(model)));
-    const std::filesystem::path target(options.output);
-    const bool is_film = target.extension() != ".png";
-    const std::filesystem::path stem = target.parent_path() / target.stem();
     const BlockRow& last = model.rows[to];
     const double length = last.time + last.duration - model.rows[from].time;
     const size_t count =
@@ -182,27 +158,18 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
     viewer::go_to(model, from, model.rows[from].duration > 0.0 ? 0.0 : 1.0);
     model.playback.running = true;
     model.playback.speed = 1.0;
+    FilmWriter film(options.output);
     for (size_t i = 0; i < count; ++i) {
         studio.settle();
         if (i == 0) studio.look(view_named(options.view), size);
         FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
-        if (const auto written =
-                render::write_png(image, fmt::format("{}-{:04}.png", stem.string(), i + 1));
-            !written)
-            return written;
+        if (const auto written = film.add(image); !written) return written;
         viewer::play(model, length / static_cast<double>(count - 1));
     }
-    const std::string pattern = stem.string() + "-%04d.png";
-    if (!is_film) return {};
-    if (!join(pattern, options.output)) {
+    FEELER_TRY(const std::string pictures, film.finish());
+    if (!pictures.empty() && std::filesystem::path(options.output).extension() != ".png")
         fmt::print(stderr, "feeler: there is no film without ffmpeg; the pictures are {}\n",
-                   pattern);
-        return {};
-    }
-    for (size_t i = 0; i < count; ++i) {
-        std::error_code ignored;
-        std::filesystem::remove(fmt::format("{}-{:04}.png", stem.string(), i + 1), ignored);
-    }
+                   pictures);
     return {};
 }
 

@@ -1,8 +1,9 @@
 #include "app/viewer/navigation.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "gcode/program_text.h"
 
 namespace app::viewer {
 namespace {
@@ -33,20 +34,6 @@ size_t stepped(const ViewModel& model, int blocks) {
     const auto to = std::clamp<long long>(static_cast<long long>(rank) + by, 0,
                                           static_cast<long long>(model.filtered.size()) - 1);
     return model.filtered[static_cast<size_t>(to)];
-}
-
-/// Whether a line begins with this N number.
-bool has_number(const std::string& text, const std::string& wanted) {
-    size_t i = 0;
-    while (i < text.size() && (text[i] == ' ' || text[i] == '/' || text[i] == ':')) ++i;
-    if (i >= text.size() || std::toupper(static_cast<unsigned char>(text[i])) != 'N') return false;
-    const auto digits = [](const std::string& word, size_t at) {
-        while (at < word.size() && word[at] == '0') ++at;
-        size_t end = at;
-        while (end < word.size() && std::isdigit(static_cast<unsigned char>(word[end]))) ++end;
-        return word.substr(at, end - at);
-    };
-    return digits(text, i + 1) == digits(wanted, 1);
 }
 
 } // namespace
@@ -133,12 +120,13 @@ void go_to_bookmark(ViewModel& model) {
 
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text) {
     if (text.empty() || !model.has_rows()) return {};
-    const bool is_number = text[0] == 'N' || text[0] == 'n';
-    if (!is_number && text.find_first_not_of("0123456789") != std::string::npos) return {};
-    const unsigned long line = is_number ? 0 : std::strtoul(text.c_str(), nullptr, 10);
+    const bool has_letter = text[0] == 'N' || text[0] == 'n';
+    const bool counts_blocks = model.program && model.program->counts_blocks;
+    const auto number = gcode::number_in(std::string_view(text).substr(has_letter ? 1 : 0));
+    if (!number) return {};
     const auto fits = [&](const BlockRow& row) {
-        if (is_number) return has_number(row.text, text);
-        return row.file.empty() && row.line == line;
+        if (!has_letter && !counts_blocks) return row.file.empty() && row.line == *number;
+        return gcode::block_number(row.text, !counts_blocks) == number;
     };
     const size_t count = model.rows.size();
     for (size_t i = 0; i < count; ++i) {

@@ -13,6 +13,7 @@ struct OpenedProgram {
     std::string dialect;
     std::vector<std::string> assumptions;
     bool is_inferred = false;
+    bool counts_blocks = false; // its lines begin with the numbers of their blocks, without N
     std::shared_ptr<const SceneSetup> scene;
 };
 

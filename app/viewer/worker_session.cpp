@@ -19,7 +19,9 @@ OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     OpenedProgram opened;
     opened.program = job.program;
     opened.setup = job.setup;
-    opened.dialect = gcode::dialect(check.run.dialect).name;
+    const gcode::Dialect& dialect = gcode::dialect(check.run.dialect);
+    opened.dialect = dialect.name;
+    opened.counts_blocks = dialect.language == gcode::Language::klartext;
     opened.assumptions = check.run.assumptions;
     opened.is_inferred = job.setup.empty();
     opened.scene = make_scene_setup(check.run.setup);

@@ -138,6 +138,19 @@ TEST(Navigation, FindsLinesAndNumbers) {
     EXPECT_EQ(find_line(model, "N21"), std::nullopt);
     EXPECT_EQ(find_line(model, "999"), std::nullopt);
     EXPECT_EQ(find_line(model, "2x"), std::nullopt);
+    EXPECT_EQ(find_line(model, "N"), std::nullopt);
+}
+
+TEST(Navigation, FindsTheBlocksOfKlartextByTheirOwnNumbers) {
+    std::vector<BlockRow> rows(3, row_with(5.0));
+    rows[1].text = "12 L X+5 R0 FMAX";
+    rows[2].line = 12;
+    ViewModel model = model_of(rows);
+    OpenedProgram opened;
+    opened.counts_blocks = true;
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    EXPECT_EQ(find_line(model, "12"), 1U);
+    EXPECT_EQ(find_line(model, "13"), std::nullopt);
 }
 
 TEST(Navigation, ABreakpointIsOnTheLineWhereverItIsRun) {

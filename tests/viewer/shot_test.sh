@@ -50,8 +50,15 @@ is_rich sheet.png
 shot steps.png --from 17 --to 17 --no-ui --size 320x200
 [[ -s $pictures/steps-0001.png && -s $pictures/steps-0002.png ]] || die 'numbered pictures'
 if command -v ffmpeg >/dev/null; then
+    printf mine >"$pictures/film-0001.png"
     shot film.mp4 --from 17 --to 17 --no-ui --size 320x200
     [[ -s $pictures/film.mp4 ]] || die 'a film'
+    [[ $(cat "$pictures/film-0001.png") == mine ]] || die "somebody's picture stays"
+    cp "$pictures/film.mp4" "$pictures/film.xyz"
+    status=0
+    shot film.xyz --from 17 --to 17 --no-ui --size 320x200 2>"$work/errors" || status=$?
+    [[ $status == 2 && -s $work/errors ]] || die 'no film of a kind that nobody knows'
+    cmp "$pictures/film.mp4" "$pictures/film.xyz" || die 'what was there stays'
 fi
 
 refused() {

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "render/image.h"
+
+namespace app {
+
+constexpr int frames_per_second = 25;
+
+/// Pictures in order that become a film by ffmpeg, or else numbered pictures: `name-0001.png` and
+/// so on. They are numbered when the output is a .png, or there is no ffmpeg.
+class FilmWriter {
+public:
+    explicit FilmWriter(const std::string& output);
+    FilmWriter(const FilmWriter&) = delete;
+    FilmWriter& operator=(const FilmWriter&) = delete;
+    ~FilmWriter();
+
+    /// Errors: the picture cannot be written.
+    core::Result<void> add(const render::Image& image);
+
+    /// Makes the film; what was there under its name before stays until it is whole. The names of
+    /// the pictures, where they are the result; empty for a film.
+    ///
+    /// Errors: ffmpeg could not write it.
+    core::Result<std::string> finish();
+
+private:
+    std::string picture(size_t number) const;
+
+    std::filesystem::path output_;
+    std::filesystem::path folder_; // of a film's pictures; empty when they are the result
+    size_t count_ = 0;
+};
+
+} // namespace app
