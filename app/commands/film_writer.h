@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "render/image.h"
@@ -13,7 +14,8 @@ constexpr int frames_per_second = 25;
 /// so on. They are numbered when the output is a .png, or there is no ffmpeg.
 class FilmWriter {
 public:
-    explicit FilmWriter(const std::string& output);
+    /// Errors: ffmpeg is there, but cannot write such a file; no room for the pictures.
+    static core::Result<std::unique_ptr<FilmWriter>> open(const std::string& output);
     FilmWriter(const FilmWriter&) = delete;
     FilmWriter& operator=(const FilmWriter&) = delete;
     ~FilmWriter();
@@ -28,6 +30,10 @@ public:
     core::Result<std::string> finish();
 
 private:
+    explicit FilmWriter(const std::string& output) : output_(output) {}
+    core::Error refusal() const;
+    /// Where ffmpeg writes, with the extension that it knows the format by.
+    std::string unfinished() const;
     std::string picture(size_t number) const;
 
     std::filesystem::path output_;

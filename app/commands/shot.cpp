@@ -158,15 +158,15 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
     viewer::go_to(model, from, model.rows[from].duration > 0.0 ? 0.0 : 1.0);
     model.playback.running = true;
     model.playback.speed = 1.0;
-    FilmWriter film(options.output);
+    FEELER_TRY(const auto film, FilmWriter::open(options.output));
     for (size_t i = 0; i < count; ++i) {
         studio.settle();
         if (i == 0) studio.look(view_named(options.view), size);
         FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
-        if (const auto written = film.add(image); !written) return written;
+        if (const auto written = film->add(image); !written) return written;
         viewer::play(model, length / static_cast<double>(count - 1));
     }
-    FEELER_TRY(const std::string pictures, film.finish());
+    FEELER_TRY(const std::string pictures, film->finish());
     if (!pictures.empty() && std::filesystem::path(options.output).extension() != ".png")
         fmt::print(stderr, "feeler: there is no film without ffmpeg; the pictures are {}\n",
                    pictures);

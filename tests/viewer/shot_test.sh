@@ -47,18 +47,19 @@ differ front.png block.png
 shot sheet.png --sheet
 is_rich sheet.png
 
-shot steps.png --from 17 --to 17 --no-ui --size 320x200
+shot steps.png --from 18 --to 18 --no-ui --size 320x200
 [[ -s $pictures/steps-0001.png && -s $pictures/steps-0002.png ]] || die 'numbered pictures'
 if command -v ffmpeg >/dev/null; then
     printf mine >"$pictures/film-0001.png"
-    shot film.mp4 --from 17 --to 17 --no-ui --size 320x200
+    shot film.mp4 --from 18 --to 18 --no-ui --size 320x200
     [[ -s $pictures/film.mp4 ]] || die 'a film'
     [[ $(cat "$pictures/film-0001.png") == mine ]] || die "somebody's picture stays"
     cp "$pictures/film.mp4" "$pictures/film.xyz"
     status=0
-    shot film.xyz --from 17 --to 17 --no-ui --size 320x200 2>"$work/errors" || status=$?
+    shot film.xyz --from 18 --to 18 --no-ui --size 320x200 2>"$work/errors" || status=$?
     [[ $status == 2 && -s $work/errors ]] || die 'no film of a kind that nobody knows'
     cmp "$pictures/film.mp4" "$pictures/film.xyz" || die 'what was there stays'
+    [[ -z $(find "$pictures" -name '.unfinished*') ]] || die 'nothing is left over'
 fi
 
 refused() {
