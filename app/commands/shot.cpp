@@ -49,7 +49,7 @@ viewer::ShotView view_named(const std::string& name) {
 
 core::Error no_such(const std::string& what) { return {core::ErrorCode::invalid_value, {}, what}; }
 
-/// The worst verdict, among equals the least margin.
+/// The worst verdict, among equals one with an error, then the least margin.
 size_t worst_block(const ViewModel& model) {
     size_t worst = 0;
     const auto margin = [](const BlockRow& row) {
@@ -57,7 +57,9 @@ size_t worst_block(const ViewModel& model) {
     };
     const auto is_worse = [&](const BlockRow& a, const BlockRow& b) {
         if (a.verdict != b.verdict) return a.verdict > b.verdict;
-        if (a.worst != b.worst) return a.worst > b.worst;
+        const bool a_fails = a.worst == core::Severity::error;
+        const bool b_fails = b.worst == core::Severity::error;
+        if (a_fails != b_fails) return a_fails;
         return margin(a) < margin(b);
     };
     for (size_t i = 1; i < model.rows.size(); ++i)
@@ -188,37 +190,46 @@ core::Result<void> shoot(const Options& options) {
     return shoot_block(options, size, *studio);
 }
 
+/// What is to be seen: one of these.
+void add_subject(CLI::App& command, Options& options) {
+    auto* block = command.add_option("--block", options.block,
+                                     "The end of this block, numbered as in the reports of check");
+    auto* worst = command.add_flag("--worst", options.worst,
+                                   "The block with the worst clearance (the default)");
+    auto* finding =
+        command.add_option("--finding", options.finding, "The block of this finding, from 1");
+    auto* sheet = command.add_flag("--sheet", options.sheet, "All findings on one sheet");
+    auto* from = command.add_option("--from", options.from, "A film from this block ...");
+    auto* to = command.add_option("--to", options.to, "... to this one");
+    for (CLI::Option* one : {block, worst, finding, sheet})
+        for (CLI::Option* other : {block, worst, finding, sheet, from, to})
+            if (one != other) one->excludes(other);
+}
+
+void add_looks(CLI::App& command, Options& options) {
+    command.add_option("--size", options.size, "Pixels")->capture_default_str();
+    command.add_option("--view", options.view, "From where")
+        ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
+        ->capture_default_str();
+    command.add_flag("--no-ui", options.no_ui, "The 3D view alone");
+    command.add_option("--theme", options.theme, "Colours")
+        ->check(CLI::IsMember({"dark", "light"}))
+        ->capture_default_str();
+}
+
 } // namespace
 
 void add_shot(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = *cli.add_subcommand("shot", "Take pictures of a program, without a window");
     add_check_arguments(command, options->what)->required();
-    auto* block = command.add_option("--block", options->block,
-                                     "The end of this block, numbered as in the reports of check");
-    auto* worst = command.add_flag("--worst", options->worst,
-                                   "The block with the worst clearance (the default)");
-    auto* finding =
-        command.add_option("--finding", options->finding, "The block of this finding, from 1");
-    auto* sheet = command.add_flag("--sheet", options->sheet, "All findings on one sheet");
-    auto* from = command.add_option("--from", options->from, "A film from this block ...");
-    auto* to = command.add_option("--to", options->to, "... to this one");
-    for (CLI::Option* one : {block, worst, finding, sheet})
-        for (CLI::Option* other : {block, worst, finding, sheet, from, to})
-            if (one != other) one->excludes(other);
+    add_subject(command, *options);
     command
         .add_option(
             "-o,--output", options->output,
             "Picture (.png); of a film .mp4 or another that ffmpeg writes, else numbered pictures")
         ->required();
-    command.add_option("--size", options->size, "Pixels")->capture_default_str();
-    command.add_option("--view", options->view, "From where")
-        ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
-        ->capture_default_str();
-    command.add_flag("--no-ui", options->no_ui, "The 3D view alone");
-    command.add_option("--theme", options->theme, "Colours")
-        ->check(CLI::IsMember({"dark", "light"}))
-        ->capture_default_str();
+    add_looks(command, *options);
     command.callback([options, &exit_code] {
         const auto done = shoot(*options);
         exit_code = done ? ExitCode::clear : ExitCode::failed;

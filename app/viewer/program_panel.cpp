@@ -91,6 +91,31 @@ void draw_gutter(Frame& frame, ImDrawList& list, const Area& row, const BlockRow
                      frame.fonts.icon(Icon::bookmark));
 }
 
+/// Line number, code and clearance.
+void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow& row) {
+    ImFont* const font = frame.fonts.mono;
+    const float top = area.y + 0.5F * (area.height - font->FontSize);
+    const auto put_right = [&](const std::string& words, float right, ImU32 color) {
+        const float length = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str()).x;
+        list.AddText(font, font->FontSize, {right - length, top}, color, words.c_str());
+        return right - length;
+    };
+    const float line_end = area.x + frame.px(62);
+    put_right(std::to_string(row.line), line_end, frame.look.color(Role::dim));
+    const float code =
+        line_end + frame.px(14) + frame.px(12) * static_cast<float>(std::min(row.depth, 6U));
+    const float end = area.x + area.width - frame.px(70);
+    list.PushClipRect({code, area.y}, {end, area.y + area.height}, true);
+    draw_code(frame, list, {code, top}, row, end);
+    list.PopClipRect();
+    const float left = put_right(clearance_text(frame.model, row),
+                                 area.x + area.width - frame.px(8), frame.look.of(row, Role::dim));
+    if (!is_offending(row)) return;
+    list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
+                 {left - frame.px(17), area.y + frame.px(3)}, frame.look.color(Role::violation),
+                 frame.fonts.icon(Icon::warning));
+}
+
 } // namespace
 
 void ProgramPanel::draw_head(Frame& frame, const Area& area) {
@@ -141,29 +166,7 @@ void ProgramPanel::draw_row(Frame& frame, size_t block, float width) {
     if (is_hovered)
         list.AddRectFilled(area.corner(), area.far_corner(), frame.look.color(Role::text, 0.05));
     draw_gutter(frame, list, area, row, block);
-    ImFont* const font = frame.fonts.mono;
-    const float top = area.y + 0.5F * (area.height - font->FontSize);
-    const auto put_right = [&](const std::string& words, float right, ImU32 color) {
-        const float length = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str()).x;
-        list.AddText(font, font->FontSize, {right - length, top}, color, words.c_str());
-        return right - length;
-    };
-    const float line_end = area.x + frame.px(62);
-    put_right(std::to_string(row.line), line_end, frame.look.color(Role::dim));
-    const float code =
-        line_end + frame.px(14) + frame.px(12) * static_cast<float>(std::min(row.depth, 6U));
-    const float end = area.x + width - frame.px(70);
-    list.PushClipRect({code, area.y}, {end, area.y + area.height}, true);
-    draw_code(frame, list, {code, top}, row, end);
-    list.PopClipRect();
-    std::string number = clearance_text(model, row);
-    const float left =
-        put_right(number, area.x + width - frame.px(8), frame.look.of(row, Role::dim));
-    if (is_offending(row) && number.empty()) number = "!";
-    if (is_offending(row))
-        list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
-                     {left - frame.px(17), area.y + frame.px(3)}, frame.look.color(Role::violation),
-                     frame.fonts.icon(Icon::warning));
+    draw_words(frame, list, area, row);
 }
 
 void ProgramPanel::draw_rows(Frame& frame) {

@@ -72,6 +72,39 @@ std::string words_of(const ViewModel& model, const BlockRow& row) {
     return length_text(model, *row.lower) + " " + length_unit(model);
 }
 
+/// An end of an axis, on which a click looks along it.
+struct AxisBall {
+    const char* name;
+    core::Vec3 axis;
+    ImU32 color;
+    Command command;
+};
+
+constexpr std::array<AxisBall, 6> axis_balls = {
+    {{"X", {1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_right},
+     {"Y", {0, 1, 0}, IM_COL32(69, 168, 84, 255), Command::view_back},
+     {"Z", {0, 0, 1}, IM_COL32(58, 134, 228, 255), Command::view_top},
+     {"", {-1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_left},
+     {"", {0, -1, 0}, IM_COL32(69, 168, 84, 255), Command::view_front},
+     {"", {0, 0, -1}, IM_COL32(58, 134, 228, 255), Command::view_bottom}}};
+
+void draw_ball(Frame& frame, ImDrawList& list, const AxisBall& ball, const ImVec2& middle,
+               const ImVec2& at) {
+    const bool is_named = ball.name[0] != 0;
+    const float size = frame.px(is_named ? 9.5 : 5.5);
+    if (is_named) list.AddLine(middle, at, ball.color, frame.px(2));
+    list.AddCircleFilled(at, size, is_named ? ball.color : (ball.color & 0x66FFFFFF));
+    ImFont* const font = frame.fonts.small;
+    const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, ball.name);
+    list.AddText(font, font->FontSize, {at.x - 0.5F * room.x, at.y - 0.5F * room.y},
+                 IM_COL32(255, 255, 255, 255), ball.name);
+    ImGui::SetCursorScreenPos({at.x - size, at.y - size});
+    ImGui::PushID(static_cast<int>(ball.command));
+    if (ImGui::InvisibleButton("ball", ImVec2(2 * size, 2 * size))) frame.perform(ball.command);
+    tip(frame, tip_of(ball.command));
+    ImGui::PopID();
+}
+
 } // namespace
 
 void ScenePanel::place_camera(ViewModel& model, const render::Viewport& size) {
@@ -230,49 +263,21 @@ void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewp
 }
 
 void ScenePanel::draw_axes(Frame& frame, const Area& area) {
-    ViewModel& model = frame.model;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float radius = frame.px(43);
     const ImVec2 middle(area.x + area.width - radius - frame.px(14),
                         area.y + radius + frame.px(14));
     list.AddCircleFilled(middle, radius, frame.look.color(Role::panel, 0.6), 48);
-    struct Ball {
-        const char* name;
-        core::Vec3 axis;
-        ImU32 color;
-        Command command;
-    };
-    const std::array<Ball, 6> balls = {
-        {{"X", {1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_right},
-         {"Y", {0, 1, 0}, IM_COL32(69, 168, 84, 255), Command::view_back},
-         {"Z", {0, 0, 1}, IM_COL32(58, 134, 228, 255), Command::view_top},
-         {"", {-1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_left},
-         {"", {0, -1, 0}, IM_COL32(69, 168, 84, 255), Command::view_front},
-         {"", {0, 0, -1}, IM_COL32(58, 134, 228, 255), Command::view_bottom}}};
-    const render::CameraAxes seen = render::axes(model.camera);
-    std::array<size_t, 6> order = {0, 1, 2, 3, 4, 5};
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-        return glm::dot(balls[a].axis, seen.backward) < glm::dot(balls[b].axis, seen.backward);
+    const render::CameraAxes seen = render::axes(frame.model.camera);
+    std::array<AxisBall, 6> balls = axis_balls;
+    std::sort(balls.begin(), balls.end(), [&](const AxisBall& a, const AxisBall& b) {
+        return glm::dot(a.axis, seen.backward) < glm::dot(b.axis, seen.backward);
     });
     const float reach = radius - frame.px(13);
-    for (const size_t i : order) {
-        const Ball& ball = balls[i];
-        const ImVec2 at(middle.x + reach * static_cast<float>(glm::dot(ball.axis, seen.right)),
-                        middle.y - reach * static_cast<float>(glm::dot(ball.axis, seen.up)));
-        const bool is_named = ball.name[0] != 0;
-        const float size = frame.px(is_named ? 9.5 : 5.5);
-        if (is_named) list.AddLine(middle, at, ball.color, frame.px(2));
-        list.AddCircleFilled(at, size, is_named ? ball.color : (ball.color & 0x66FFFFFF));
-        ImFont* const font = frame.fonts.small;
-        const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, ball.name);
-        list.AddText(font, font->FontSize, {at.x - 0.5F * room.x, at.y - 0.5F * room.y},
-                     IM_COL32(255, 255, 255, 255), ball.name);
-        ImGui::SetCursorScreenPos({at.x - size, at.y - size});
-        ImGui::PushID(static_cast<int>(i));
-        if (ImGui::InvisibleButton("ball", ImVec2(2 * size, 2 * size))) frame.perform(ball.command);
-        tip(frame, tip_of(ball.command));
-        ImGui::PopID();
-    }
+    for (const AxisBall& ball : balls)
+        draw_ball(frame, list, ball, middle,
+                  {middle.x + reach * static_cast<float>(glm::dot(ball.axis, seen.right)),
+                   middle.y - reach * static_cast<float>(glm::dot(ball.axis, seen.up))});
 }
 
 void ScenePanel::draw(Frame& frame, const Area& area) {
