@@ -51,24 +51,32 @@ void draw_bar(Frame& frame, ImDrawList& list, const Bars& bars, const TimelineCe
     const float height =
         std::max(bars.height_of(cell.least + bars.allowance), frame.px(cell.offending ? 6 : 2));
     list.AddRectFilled({x, bottom - height}, {x + width, bottom}, color);
-    if (!cell.offending) return;
-    const float middle = x + 0.5F * width, half = frame.px(5), top = bars.area.y;
-    list.AddTriangleFilled({middle - half, top}, {middle + half, top}, {middle, top + frame.px(8)},
-                           color);
+}
+
+/// The tick above a bar of a violation.
+void draw_tick(Frame& frame, ImDrawList& list, const Bars& bars, float x) {
+    const float half = frame.px(5), top = bars.area.y;
+    list.AddTriangleFilled({x - half, top}, {x + half, top}, {x, top + frame.px(8)},
+                           frame.look.color(Role::violation));
 }
 
 void draw_bars(Frame& frame, ImDrawList& list, const Bars& bars) {
     const ViewModel& model = frame.model;
-    const float step = std::max(frame.px(4), 2.0F);
     const auto blocks = static_cast<float>(model.range.width());
-    const auto count =
-        static_cast<size_t>(std::max(1.0F, std::min(bars.area.width / step, blocks)));
+    const auto count = static_cast<size_t>(std::max(1.0F, std::min(bars.area.width, blocks)));
     const float width = bars.area.width / static_cast<float>(count);
     const auto cells = columns(model.least, model.range, count);
     const float gap = width > 3.0F ? std::min(0.22F * width, frame.px(1.5)) : 0.0F;
+    const auto left_of = [&](size_t i) { return bars.area.x + static_cast<float>(i) * width; };
     for (size_t i = 0; i < count; ++i)
-        draw_bar(frame, list, bars, cells[i], bars.area.x + static_cast<float>(i) * width,
-                 width - gap);
+        draw_bar(frame, list, bars, cells[i], left_of(i), width - gap);
+    float last_tick = -1e9F;
+    for (size_t i = 0; i < count; ++i) {
+        const float middle = left_of(i) + 0.5F * (width - gap);
+        if (!cells[i].offending || middle - last_tick < frame.px(3)) continue;
+        draw_tick(frame, list, bars, middle);
+        last_tick = middle;
+    }
 }
 
 void draw_allowance(Frame& frame, ImDrawList& list, const Bars& bars, double allowance) {
