@@ -183,6 +183,8 @@ core::Result<void> shoot(const Options& options) {
     const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
     FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
     if (const auto opened = studio->open(job); !opened) return opened;
+    if (!studio->model.has_rows() && studio->model.stopped)
+        return tl::unexpected(*studio->model.stopped);
     if (!studio->model.has_rows())
         return core::fail(core::ErrorCode::missing_value, "the program runs no block");
     if (options.sheet) return shoot_sheet(options, *studio);
