@@ -50,14 +50,16 @@ core::Result<bool> DebugSession::reaches(size_t block) {
 
 core::Result<void> DebugSession::go_to(size_t place) {
     if (place == at_) return {};
-    if (place > at_ && (place == at_ + 1 || run_->last_place() >= place)) {
-        if (!knows(place - 1)) return tl::unexpected(run_->place_at(place).error());
+    const bool was_known = place <= run_->last_place();
+    if (place > 0 && !knows(place - 1)) return tl::unexpected(run_->place_at(place).error());
+    run_->look_at(place); // the way there leaves keyframes near it
+    // What was recorded just now need not be run again.
+    if (place > at_ && (was_known || place == at_ + 1)) {
         run_->take_to(place_, at_, place);
     } else {
         FEELER_TRY(place_, run_->place_at(place));
     }
     at_ = place;
-    run_->look_at(at_);
     return {};
 }
 

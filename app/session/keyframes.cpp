@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace app {
 namespace {
@@ -28,16 +29,6 @@ size_t bytes_apart(const core::ScanLines& lines, const core::ScanLines& other) {
     return bytes;
 }
 
-size_t bytes_of(const core::TileBoxes& boxes) {
-    size_t bytes =
-        boxes.boxes.size() * sizeof(core::Aabb) + boxes.gaps.size() * sizeof(core::BoxGap)
-        + boxes.blocks.size() * sizeof(core::Aabb) + boxes.block_gaps.size() * sizeof(core::BoxGap)
-        + boxes.stale.size() * sizeof(uint16_t);
-    for (const core::TileLevel& level : boxes.above)
-        bytes += level.boxes.size() * sizeof(core::Aabb);
-    return bytes;
-}
-
 /// Logs in chunks: their pointers, and the last chunk, which each copy may have to itself.
 size_t bytes_of_logs(const core::CutModel& stock) {
     constexpr size_t pointer = sizeof(std::shared_ptr<void>);
@@ -45,18 +36,32 @@ size_t bytes_of_logs(const core::CutModel& stock) {
     return 3 * pointer * (stock.log.size() / 64 + 1) + stock.history.size() * per_tile;
 }
 
+/// The boxes of a stock: those of its three families of lines, and of its columns.
+core::TileBoxes& boxes_of(core::CutModel& stock, size_t i) {
+    return i < 3 ? stock.line_boxes[i] : stock.column_boxes;
+}
+
+/// Bytes of a keyframe that it does not share with another one.
+size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
+    constexpr size_t of_the_rest = 16384; // of the control, the clock and the rules, about
+    const core::CutModel& stock = frame.place.machine.stock;
+    const core::CutModel& other_stock = other.place.machine.stock;
+    size_t bytes =
+        of_the_rest + bytes_of_logs(stock) + bytes_apart(stock.columns, other_stock.columns);
+    for (size_t axis = 0; axis < 3; ++axis)
+        bytes += bytes_apart(stock.lines.families[axis], other_stock.lines.families[axis]);
+    for (size_t i = 0; i < frame.boxes.size(); ++i)
+        bytes += frame.boxes[i].bytes_apart(other.boxes[i]);
+    return bytes;
+}
+
 } // namespace
 
-size_t bytes_apart(const RunPlace& place, const RunPlace& other) {
-    constexpr size_t of_the_rest = 16384; // of the control, the clock and the rules, about
-    const core::CutModel& stock = place.machine.stock;
-    const core::CutModel& other_stock = other.machine.stock;
-    size_t bytes = of_the_rest + bytes_of(stock.column_boxes) + bytes_of_logs(stock)
-                   + bytes_apart(stock.columns, other_stock.columns);
-    for (size_t axis = 0; axis < 3; ++axis)
-        bytes += bytes_of(stock.line_boxes[axis])
-                 + bytes_apart(stock.lines.families[axis], other_stock.lines.families[axis]);
-    return bytes;
+RunPlace Keyframe::restored() const {
+    RunPlace whole = place;
+    for (size_t i = 0; i < boxes.size(); ++i)
+        boxes_of(whole.machine.stock, i) = app::restored(boxes[i]);
+    return whole;
 }
 
 size_t Keyframes::index_after(size_t blocks) const {
@@ -84,10 +89,15 @@ const Keyframe& Keyframes::before(size_t blocks) const {
 void Keyframes::note(size_t blocks, double seconds, const RunPlace& place) {
     if (!wants(blocks, seconds)) return;
     const size_t after = index_after(blocks);
-    const size_t bytes = bytes_apart(place, after == 0 ? place : frames_[after - 1].place);
-    frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(after),
-                   {blocks, seconds, place, bytes});
-    memory_ += bytes;
+    static const Keyframe nothing;
+    const Keyframe& before = after == 0 ? nothing : frames_[after - 1];
+    Keyframe frame{blocks, seconds, place, {}, 0};
+    for (size_t i = 0; i < frame.boxes.size(); ++i)
+        frame.boxes[i] =
+            kept(std::exchange(boxes_of(frame.place.machine.stock, i), {}), before.boxes[i]);
+    frame.bytes = bytes_apart(frame, before);
+    memory_ += frame.bytes;
+    frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(after), std::move(frame));
     thin_out();
 }
 
@@ -107,7 +117,7 @@ void Keyframes::remove(size_t index) {
     if (index + 1 < frames_.size()) {
         Keyframe& next = frames_[index + 1];
         memory_ -= next.bytes;
-        next.bytes = bytes_apart(next.place, frames_[index - 1].place);
+        next.bytes = bytes_apart(next, frames_[index - 1]);
         memory_ += next.bytes;
     }
     frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(index));

@@ -1,18 +1,23 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "app/session/kept_boxes.h"
 #include "app/session/run_place.h"
 
 namespace app {
 
-/// A place that is kept, to come back from.
+/// A place that is kept, to come back from. It shares with the keyframe before it what is the same.
 struct Keyframe {
     size_t blocks = 0;    // that were run before it
     double seconds = 0.0; // of work from the first place to here
-    RunPlace place;
+    RunPlace place;       // but for the boxes round its lines and columns
+    std::array<KeptBoxes, 4> boxes;
     size_t bytes = 0; // that it does not share with the keyframe before it
+
+    RunPlace restored() const;
 };
 
 /// Places along a run, kept within a budget of memory: close to one another where the run is looked
@@ -52,8 +57,5 @@ private:
     double focus_ = 0.0;
     std::vector<Keyframe> frames_ = {};
 };
-
-/// Bytes of a place that it does not share with another one.
-size_t bytes_apart(const RunPlace& place, const RunPlace& other);
 
 } // namespace app

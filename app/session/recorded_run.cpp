@@ -81,7 +81,7 @@ core::Result<RunPlace> RecordedRun::place_at(size_t place) {
 
 RunPlace RecordedRun::replayed(size_t place) {
     const Keyframe& frame = keyframes_.before(place);
-    RunPlace state = frame.place;
+    RunPlace state = frame.restored();
     if (frame.blocks == 0) change_at(0, state); // it is the program's start, whatever was changed
     take_to(state, frame.blocks, place);
     return state;
@@ -90,7 +90,7 @@ RunPlace RecordedRun::replayed(size_t place) {
 void RecordedRun::take_to(RunPlace& state, size_t from, size_t place) {
     assert(from <= place && place <= last_place());
     if (const Keyframe& frame = keyframes_.before(place); frame.blocks > from) {
-        state = frame.place;
+        state = frame.restored();
         from = frame.blocks;
     }
     while (from < place) {
