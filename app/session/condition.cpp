@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/session/condition_node.h"
 #include "app/session/condition_parser.h"
@@ -14,112 +19,111 @@ namespace {
 using Node = Condition::Node;
 using Number = std::optional<double>;
 
-const CheckedBlock& block_of(const Condition::Subject& subject) {
-    return subject.record.blocks[subject.block];
-}
-
-const core::PairClearance* deciding_pair(const core::BlockResult& result) {
-    return result.deciding ? &result.pairs[*result.deciding] : nullptr;
-}
-
-Number number_of(BlockFact fact, const Condition::Subject& subject) {
-    const CheckedBlock& block = block_of(subject);
-    const core::BlockResult& result = block.result;
-    const core::PairClearance* pair = deciding_pair(result);
-    const Number far = result.checked ? Number(core::infinity) : Number(); // else nobody knows
+Number number_of(BlockFact fact, const BlockFacts& facts) {
     switch (fact) {
     case BlockFact::clearance:
-        return pair ? pair->lower : far;
+        return facts.clearance;
     case BlockFact::upper:
-        return pair ? pair->upper : far;
+        return facts.upper;
     case BlockFact::allowance:
-        return pair ? Number(pair->allowance.distance) : Number();
+        return facts.allowance;
     case BlockFact::margin:
-        return pair ? pair->margin() : far;
+        return facts.margin;
     case BlockFact::removed:
-        return result.removed;
+        return facts.removed;
     case BlockFact::duration:
-        return result.duration;
+        return facts.duration;
     case BlockFact::time:
-        return result.time;
+        return facts.time;
     case BlockFact::block:
-        return static_cast<double>(subject.block);
+        return static_cast<double>(facts.block);
     case BlockFact::line:
-        return block.line;
+        return facts.line;
     case BlockFact::depth:
-        return static_cast<double>(block.calls.size());
+        return static_cast<double>(facts.depth);
     default:
-        return result.tool ? Number(core::value_of(*result.tool)) : Number();
+        return facts.tool ? Number(core::value_of(*facts.tool)) : Number();
     }
 }
 
-std::string word_of(BlockFact fact, const CheckedBlock& block) {
-    if (fact == BlockFact::motion) return core::name_of(block.result.motion);
-    if (fact == BlockFact::verdict) return core::name_of(block.result.verdict);
-    return block.file;
+std::string rules_of(const BlockFacts& facts) {
+    std::set<std::string> rules;
+    for (const core::Finding* finding : facts.findings) rules.insert(finding->rule);
+    return fmt::format("{}", fmt::join(rules, " "));
 }
 
-/// Whether any finding of the block is so, be it told with another one. While a record grows, its
-/// findings are in no order.
+std::string word_of(BlockFact fact, const BlockFacts& facts) {
+    if (fact == BlockFact::motion) return core::name_of(facts.motion);
+    if (fact == BlockFact::file) return std::string(facts.file);
+    if (fact == BlockFact::rule) return rules_of(facts);
+    return facts.verdict ? core::name_of(*facts.verdict) : "unknown";
+}
+
 template <typename Predicate>
-bool any_finding(const Condition::Subject& subject, Predicate&& is_so) {
-    const core::BlockIndex block{static_cast<uint32_t>(subject.block)};
-    const auto is_meant = [&](const core::Finding& finding) {
-        return finding.block == block && is_so(finding);
-    };
-    const auto& findings = subject.record.findings;
-    const auto& taken_in = subject.record.taken_in;
-    return std::any_of(findings.begin(), findings.end(), is_meant)
-           || std::any_of(taken_in.begin(), taken_in.end(), is_meant);
+bool any_finding(const BlockFacts& facts, Predicate&& is_so) {
+    return std::any_of(facts.findings.begin(), facts.findings.end(),
+                       [&](const core::Finding* finding) { return is_so(*finding); });
 }
 
-bool is_about(const Node& node, const Condition::Subject& subject) {
-    const CheckRun& record = subject.record;
-    for (const core::PairClearance& pair : block_of(subject).result.pairs) {
-        if (!pair.found()) continue;
-        if (lowered(core::part_name(record.setup, pair.pair)) == node.text) return true;
-        if (lowered(core::body_name(record.setup, pair.pair)) == node.text) return true;
-    }
-    return any_finding(subject, [&](const core::Finding& finding) {
-        return lowered(finding.pair[0]) == node.text || lowered(finding.pair[1]) == node.text;
-    });
+bool is_about(const Node& node, const BlockFacts& facts) {
+    const auto is_meant = [&](const std::string& name) { return lowered(name) == node.text; };
+    return std::any_of(facts.bodies.begin(), facts.bodies.end(), is_meant)
+           || any_finding(facts, [&](const core::Finding& finding) {
+                  return is_meant(finding.pair[0]) || is_meant(finding.pair[1]);
+              });
 }
 
 /// Whether a line begins with an N word; it may stand behind a `/`.
-bool begins_with(std::string line, const std::string& number) {
-    line = lowered(line);
+bool begins_with(std::string_view text, const std::string& number) {
+    const std::string line = lowered(text);
     const size_t begin = line.find_first_not_of(" \t/");
     if (begin == std::string::npos || line.compare(begin, number.size(), number) != 0) return false;
     const size_t end = begin + number.size();
     return end >= line.size() || !std::isdigit(static_cast<unsigned char>(line[end]));
 }
 
-bool has_rule(const std::string& rule, const Condition::Subject& subject) {
-    return any_finding(subject, [&](const core::Finding& one) { return one.rule == rule; });
+bool has_rule(const std::string& rule, const BlockFacts& facts) {
+    return any_finding(facts, [&](const core::Finding& one) { return one.rule == rule; });
 }
 
-bool truth_of(const Node& node, const Condition::Subject& subject) {
-    const CheckedBlock& block = block_of(subject);
-    const core::BlockResult& result = block.result;
+bool is_judged(const std::string& verdict, const BlockFacts& facts) {
+    return facts.verdict && verdict == core::name_of(*facts.verdict);
+}
+
+bool has_severity(core::Severity severity, const BlockFacts& facts) {
+    return any_finding(facts, [&](const core::Finding& one) { return one.severity == severity; });
+}
+
+/// Whether it keeps its allowance, but not twice.
+bool is_near(const BlockFacts& facts) {
+    const bool is_kept = facts.verdict && *facts.verdict < core::Verdict::violation
+                         && !has_severity(core::Severity::error, facts);
+    return is_kept && facts.clearance && facts.allowance && *facts.allowance > 0.0
+           && *facts.clearance < 2.0 * *facts.allowance;
+}
+
+bool truth_of(const Node& node, const BlockFacts& facts) {
     switch (node.kind) {
     case NodeKind::moves:
-        return node.text == core::name_of(result.motion);
+        return node.text == core::name_of(facts.motion);
     case NodeKind::judged:
-        return node.text == core::name_of(result.verdict) || has_rule(node.text, subject);
+        return is_judged(node.text, facts) || has_rule(node.text, facts);
     case NodeKind::rule:
-        return has_rule(node.text, subject);
+        return has_rule(node.text, facts);
     case NodeKind::severity:
-        return any_finding(subject, [&](const core::Finding& one) {
+        return any_finding(facts, [&](const core::Finding& one) {
             return node.text.empty() || node.text == core::name_of(one.severity);
         });
     case NodeKind::has_tool:
-        return result.tool && core::value_of(*result.tool) == static_cast<int>(node.number);
+        return facts.tool && core::value_of(*facts.tool) == static_cast<int>(node.number);
+    case NodeKind::near:
+        return is_near(facts);
     case NodeKind::numbered:
-        return begins_with(block.text, node.text);
+        return begins_with(facts.text, node.text);
     case NodeKind::body:
-        return is_about(node, subject);
+        return is_about(node, facts);
     default: // contains
-        return lowered(block.text).find(node.text) != std::string::npos;
+        return lowered(facts.text).find(node.text) != std::string::npos;
     }
 }
 
@@ -130,12 +134,10 @@ gcode::Environment plain_environment(gcode::DialectId dialect) {
     return environment;
 }
 
-core::Result<NodeValue> of_control(const Node& node, const Condition::Subject& subject) {
+core::Result<NodeValue> of_control(const Node& node, const Condition::Asked& asked) {
     core::Result<InspectedValue> value = InspectedValue{std::nullopt, "unknown"};
-    if (subject.control && subject.environment)
-        value = value_of(node.text, *subject.control, *subject.environment);
-    else if (subject.control)
-        value = value_of(node.text, *subject.control, plain_environment(subject.record.dialect));
+    if (asked.control && asked.environment)
+        value = value_of(node.text, *asked.control, *asked.environment);
     if (!value) return tl::unexpected(value.error());
     if (node.type == ValueType::word) return NodeValue(*std::move(value));
     return NodeValue(value->number);
@@ -175,11 +177,11 @@ core::Result<NodeValue> of_words(const Node& node, const NodeValue& left, const 
     return NodeValue(same == (node.kind == NodeKind::equal));
 }
 
-core::Result<NodeValue> of_two(const Node& node, const Condition::Subject& subject) {
-    FEELER_TRY(const NodeValue left, value_of(node.of[0], subject));
+core::Result<NodeValue> of_two(const Node& node, const Condition::Asked& asked) {
+    FEELER_TRY(const NodeValue left, value_of(node.of[0], asked));
     if (node.kind == NodeKind::both && !std::get<bool>(left)) return NodeValue(false);
     if (node.kind == NodeKind::either && std::get<bool>(left)) return NodeValue(true);
-    FEELER_TRY(const NodeValue right, value_of(node.of[1], subject));
+    FEELER_TRY(const NodeValue right, value_of(node.of[1], asked));
     if (node.kind == NodeKind::both || node.kind == NodeKind::either) return right;
     if (std::holds_alternative<InspectedValue>(left)) return of_words(node, left, right);
     const auto& a = std::get<Number>(left);
@@ -190,8 +192,8 @@ core::Result<NodeValue> of_two(const Node& node, const Condition::Subject& subje
     return NodeValue(compared(node.kind, *a, *b));
 }
 
-core::Result<NodeValue> of_one(const Node& node, const Condition::Subject& subject) {
-    FEELER_TRY(const NodeValue value, value_of(node.of[0], subject));
+core::Result<NodeValue> of_one(const Node& node, const Condition::Asked& asked) {
+    FEELER_TRY(const NodeValue value, value_of(node.of[0], asked));
     if (node.kind == NodeKind::opposite) return NodeValue(!std::get<bool>(value));
     const auto& number = std::get<Number>(value);
     return NodeValue(number ? Number(-*number) : Number());
@@ -206,30 +208,58 @@ InspectedValue shown(const NodeValue& value) {
     return quantity(number);
 }
 
+bool any_node(const Node& node, const std::function<bool(const Node&)>& is_so) {
+    return is_so(node) || std::any_of(node.of.begin(), node.of.end(), [&](const Node& part) {
+               return any_node(part, is_so);
+           });
+}
+
+bool is_of_findings(const Node& node) {
+    return node.kind == NodeKind::judged || node.kind == NodeKind::rule
+           || node.kind == NodeKind::severity || node.kind == NodeKind::near
+           || node.kind == NodeKind::body
+           || (node.kind == NodeKind::fact && node.fact == BlockFact::rule);
+}
+
+WantedFacts wanted_by(const Node& root) {
+    return {any_node(root, [](const Node& node) { return node.kind == NodeKind::body; }),
+            any_node(root, is_of_findings)};
+}
+
+core::Result<NodeValue> value_of(const Node& root, const Condition::Subject& subject,
+                                 const WantedFacts& wanted) {
+    const BlockFacts facts = facts_of(subject.record, subject.block, wanted);
+    if (subject.environment || !subject.control)
+        return value_of(root, Condition::Asked{facts, subject.control, subject.environment});
+    const gcode::Environment plain = plain_environment(subject.record.dialect);
+    return value_of(root, Condition::Asked{facts, subject.control, &plain});
+}
+
 } // namespace
 
-core::Result<NodeValue> value_of(const Node& node, const Condition::Subject& subject) {
+core::Result<NodeValue> value_of(const Node& node, const Condition::Asked& asked) {
     switch (node.kind) {
     case NodeKind::number:
         return NodeValue(Number(node.number));
     case NodeKind::word:
         return NodeValue(InspectedValue{std::nullopt, node.text});
     case NodeKind::fact:
-        if (node.type == ValueType::number) return NodeValue(number_of(node.fact, subject));
-        return NodeValue(InspectedValue{std::nullopt, word_of(node.fact, block_of(subject))});
+        if (node.type == ValueType::number) return NodeValue(number_of(node.fact, asked.facts));
+        return NodeValue(InspectedValue{std::nullopt, word_of(node.fact, asked.facts)});
     case NodeKind::control:
-        return of_control(node, subject);
+        return of_control(node, asked);
     default:
-        if (node.of.size() == 2) return of_two(node, subject);
-        if (node.of.size() == 1) return of_one(node, subject);
-        return NodeValue(truth_of(node, subject));
+        if (node.of.size() == 2) return of_two(node, asked);
+        if (node.of.size() == 1) return of_one(node, asked);
+        return NodeValue(truth_of(node, asked.facts));
     }
 }
 
-bool asks_control(const Node& node) {
-    return node.kind == NodeKind::control
-           || std::any_of(node.of.begin(), node.of.end(),
-                          [](const Node& part) { return asks_control(part); });
+const Condition::Node* asked_of_control(const Node& node) {
+    if (node.kind == NodeKind::control) return &node;
+    for (const Node& part : node.of)
+        if (const Node* found = asked_of_control(part)) return found;
+    return nullptr;
 }
 
 core::Result<Condition> Condition::read(std::string_view text) {
@@ -242,25 +272,31 @@ core::Result<Condition> Condition::read(std::string_view text) {
                           {.line = 1, .column = root.column});
     Condition condition;
     condition.text_ = std::string(text);
-    condition.asks_control_ = app::asks_control(root);
+    if (const Node* node = asked_of_control(root)) condition.asks_control_ = node->text;
+    condition.wanted_ = wanted_by(root);
     condition.root_ = std::make_shared<const Node>(std::move(root));
     return condition;
 }
 
 bool Condition::holds(const Subject& subject) const {
-    const auto value = value_of(*root_, subject);
+    const auto value = value_of(*root_, subject, wanted_);
+    return value && std::get<bool>(*value);
+}
+
+bool Condition::holds(const BlockFacts& facts) const {
+    const auto value = value_of(*root_, Asked{facts});
     return value && std::get<bool>(*value);
 }
 
 core::Result<InspectedValue> evaluate(std::string_view text, const Condition::Subject& subject) {
     FEELER_TRY(const Node root, parse_condition(text));
-    FEELER_TRY(const NodeValue value, value_of(root, subject));
+    FEELER_TRY(const NodeValue value, value_of(root, subject, wanted_by(root)));
     return shown(value);
 }
 
 bool asks_control(std::string_view text) {
     const auto root = parse_condition(text);
-    return root && asks_control(*root);
+    return root && asked_of_control(*root);
 }
 
 } // namespace app

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/session/check_run.h"
+#include "app/session/block_facts.h"
 #include "app/session/inspected_value.h"
 
 namespace app {
@@ -15,9 +15,10 @@ namespace app {
 /// 0 < z < 5), `and` `or` `not` (&& || !), round or square brackets, + - * /, numbers.
 ///   numbers of the block: clearance (its lower bound) upper allowance margin removed duration time
 ///       block line depth tool
-///   words of the block, for = and !=: motion verdict file
-///   true or false: rapid feed arc cycle none; clear violation collision undecided; finding error
-///       warning note; T3 (its tool), N210; a rule's name (near-miss); a body's name in quotes
+///   words of the block, for = and !=: motion verdict file rule (of any of its findings)
+///   true or false: rapid feed arc cycle none; clear violation collision undecided; near (it keeps
+///       its allowance, but not twice); finding error warning note; T3 (its tool), N210; a rule's
+///       name (near-miss); a body's name in quotes
 ///       ("clamp-1") that the record tells of; ~ "G81": the line has this text
 ///   of the control before the block: #100 #<_name> R5 Q5 x machine.x G54.x and all that value_of
 ///       names; words only for = and !=: plane = ZX
@@ -33,7 +34,11 @@ public:
     const std::string& text() const { return text_; }
 
     /// Whether it asks about the control, not only about what the record tells of blocks.
-    bool asks_control() const { return asks_control_; }
+    bool asks_control() const { return !asks_control_.empty(); }
+    /// What it asks the control for first; empty if it does not.
+    const std::string& control_value() const { return asks_control_; }
+    /// The facts that it cannot be answered without.
+    const WantedFacts& wanted() const { return wanted_; }
 
     /// What a question is asked about: a block of the record, and the control before it (needed
     /// only if asks_control). Without an environment, that of its dialect as delivered.
@@ -47,13 +52,17 @@ public:
     ///
     /// Cost: reads all findings of the record where it asks about findings.
     bool holds(const Subject& subject) const;
+    /// The same where only the facts of a block are at hand: of the control nothing is known.
+    bool holds(const BlockFacts& facts) const;
 
     struct Node;
+    struct Asked;
 
 private:
     std::string text_;
     std::shared_ptr<const Node> root_;
-    bool asks_control_ = false;
+    std::string asks_control_;
+    WantedFacts wanted_;
 };
 
 /// The value of an expression in the language of conditions, of a block: a number, a word, "true"

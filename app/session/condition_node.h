@@ -28,6 +28,7 @@ enum class BlockFact : uint8_t {
     motion,
     verdict,
     file,
+    rule, // of its findings: compared, it is any of them
 };
 
 enum class NodeKind : uint8_t {
@@ -39,6 +40,7 @@ enum class NodeKind : uint8_t {
     moves,    // the block's motion is `text`
     judged,   // its verdict is `text`, or it has a finding of that rule
     rule,     // it has a finding of the rule `text`
+    near,     // it keeps its allowance, but not twice
     severity, // it has a finding of the severity `text`; of any where it is empty
     has_tool, // its tool is `number`
     numbered, // it begins with `text`, an N word
@@ -73,9 +75,17 @@ struct Condition::Node {
 /// What a condition, or a part of it, is worth of a block. A number is empty when nobody knows it.
 using NodeValue = std::variant<std::optional<double>, InspectedValue, bool>;
 
-/// Errors: those of value_of.
-core::Result<NodeValue> value_of(const Condition::Node& node, const Condition::Subject& subject);
+/// What a condition is asked about; of the control, what is not there is unknown.
+struct Condition::Asked {
+    const BlockFacts& facts;
+    const gcode::InterpreterState* control = nullptr;
+    const gcode::Environment* environment = nullptr;
+};
 
-bool asks_control(const Condition::Node& node);
+/// Errors: those of value_of.
+core::Result<NodeValue> value_of(const Condition::Node& node, const Condition::Asked& asked);
+
+/// The first part that asks the control for something, or nothing.
+const Condition::Node* asked_of_control(const Condition::Node& node);
 
 } // namespace app

@@ -162,12 +162,24 @@ private:
                || (behind.kind == Kind::sign && std::string_view("+-*/").find(behind.text) < 4);
     }
 
+    /// A block may have findings of several rules.
+    static Node compared_rule(const std::string& sign, const Node& left, const Node& right) {
+        Node rule{.kind = NodeKind::rule,
+                  .type = ValueType::truth,
+                  .text = right.text,
+                  .column = left.column};
+        if (sign == "=") return rule;
+        return made_of(NodeKind::opposite, ValueType::truth, std::move(rule), left.column);
+    }
+
     static core::Result<Node> compared(const std::string& sign, Node left, Node right) {
         const bool words = left.type == ValueType::word && right.type == ValueType::word;
         if (!words || (sign != "=" && sign != "!="))
             for (const Node* node : {&left, &right})
                 if (auto wanted = want_number(*node); !wanted)
                     return tl::unexpected(wanted.error());
+        if (left.kind == NodeKind::fact && left.fact == BlockFact::rule && words)
+            return compared_rule(sign, left, right);
         const bool turned = sign[0] == '>';
         const NodeKind kind = sign == "="        ? NodeKind::equal
                               : sign == "!="     ? NodeKind::not_equal

@@ -34,6 +34,7 @@ constexpr NamedFact facts[] = {
     {"motion", BlockFact::motion, ValueType::word},
     {"verdict", BlockFact::verdict, ValueType::word},
     {"file", BlockFact::file, ValueType::word},
+    {"rule", BlockFact::rule, ValueType::word},
 };
 
 constexpr std::string_view motions[] = {"rapid", "feed", "arc", "cycle", "none"};
@@ -83,6 +84,7 @@ std::optional<Node> truth_named(const std::string& name) {
     if (is_in(verdicts, name)) return Node{.kind = NodeKind::judged, .type = truth, .text = name};
     if (is_in(severities, name))
         return Node{.kind = NodeKind::severity, .type = truth, .text = name};
+    if (name == "near") return Node{.kind = NodeKind::near, .type = truth};
     if (name == "finding") return Node{.kind = NodeKind::severity, .type = truth};
     if (core::default_severity(name))
         return Node{.kind = NodeKind::rule, .type = truth, .text = name};
@@ -98,6 +100,7 @@ std::vector<std::string> words_for(const Node& node) {
         return {std::begin(motions), std::end(motions)};
     if (node.kind == NodeKind::fact && node.fact == BlockFact::verdict)
         return {std::begin(verdicts), std::end(verdicts)};
+    if (node.kind == NodeKind::fact && node.fact == BlockFact::rule) return core::rule_names();
     const ModalEntry* entry = node.kind == NodeKind::control ? modal_entry(node.text) : nullptr;
     return entry ? words_of(*entry) : std::vector<std::string>{};
 }
@@ -109,6 +112,7 @@ std::vector<std::string> condition_names() {
     for (const std::string_view verdict : verdicts) names.emplace_back(verdict);
     for (const std::string_view severity : severities) names.emplace_back(severity);
     names.emplace_back("finding");
+    names.emplace_back("near");
     for (std::string& rule : core::rule_names()) names.push_back(std::move(rule));
     for (std::string& name : names_beginning("")) names.push_back(std::move(name));
     std::sort(names.begin(), names.end());

@@ -25,6 +25,7 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
     row.tool = result.tool;
     row.time = result.time;
     row.duration = result.duration;
+    row.removed = result.removed;
     row.is_known = true;
     row.is_judged = result.checked;
     row.verdict = result.verdict;
@@ -43,6 +44,31 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
     row.on_body = pair->on_body;
     row.witness_time = pair->time;
     return row;
+}
+
+BlockFacts facts_of(const BlockRow& row, size_t block) {
+    BlockFacts facts;
+    facts.block = block;
+    facts.line = row.line;
+    facts.depth = row.depth;
+    facts.text = row.text;
+    facts.file = row.file;
+    facts.motion = row.motion;
+    facts.tool = row.tool;
+    facts.removed = row.removed;
+    facts.duration = row.duration;
+    facts.time = row.time;
+    if (row.is_known) facts.verdict = row.verdict;
+    if (row.upper) {
+        facts.clearance = row.lower;
+        facts.upper = row.upper;
+        facts.allowance = row.allowance;
+        facts.margin = *row.lower - row.allowance.value_or(0.0);
+        facts.bodies = {row.part, row.body};
+    } else if (row.is_known && row.is_judged) {
+        facts.clearance = facts.upper = facts.margin = core::infinity;
+    }
+    return facts;
 }
 
 bool is_near(const BlockRow& row) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "app/session/check_run.h"
+#include "app/session/block_facts.h"
 #include "render/tool_path.h"
 
 namespace app::viewer {
@@ -18,6 +18,7 @@ struct BlockRow {
     std::optional<core::ToolNumber> tool; // in the spindle after it
     double time = 0.0;                    // of its start, seconds
     double duration = 0.0;                // seconds
+    double removed = 0.0;                 // mm3
     bool is_known = false;                // the check has been here; all below is empty until then
     bool is_judged = true;                // false: it moves, but nothing can be said of it
     core::Verdict verdict = core::Verdict::clear;
@@ -35,6 +36,10 @@ struct BlockRow {
 
 /// The row of a block that was checked.
 BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked);
+
+/// What a condition can ask of a row. Pairs other than the deciding one are not in it, nor findings
+/// (the window has them in a list of their own), nor anything of the control.
+BlockFacts facts_of(const BlockRow& row, size_t block);
 
 /// Whether anything moves in it.
 inline bool moves(const BlockRow& row) { return row.motion != core::BlockMotion::none; }

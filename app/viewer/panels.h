@@ -19,6 +19,7 @@ public:
 
 private:
     void draw_head(Frame& frame, const Area& area);
+    void draw_filter_note(Frame& frame);
     void draw_rows(Frame& frame);
     void draw_row(Frame& frame, size_t block, float width);
 };

@@ -39,6 +39,10 @@ void draw_shortcuts(Frame& frame) {
                  "surface goes to its line; a click beside a line number sets a breakpoint; drag "
                  "the timeline to scrub, "
                  "turn the wheel there to zoom.");
+    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+                 "Filter and breakpoints take conditions: clearance < 1 and rapid; T3 or T4; near; "
+                 "error; rule = near-miss; \"clamp-1\"; line > 200; ~ \"G81\". Other words are "
+                 "looked for in the lines.");
 }
 
 void draw_settings(Frame& frame) {

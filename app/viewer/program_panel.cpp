@@ -142,8 +142,20 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
     model.filter_wants_focus = false;
     const std::string hint = std::string(frame.fonts.icon(Icon::search))
-                             + "  Filter: text, T3, rapid, clr<1 \xE2\x80\xA6";
+                             + "  Filter: text, T3, clearance < 1 \xE2\x80\xA6";
     if (ImGui::InputTextWithHint("##filter", hint.c_str(), &model.filter_text)) apply_filter(model);
+    draw_filter_note(frame);
+}
+
+/// How the filter was understood, where that is not what it says.
+void ProgramPanel::draw_filter_note(Frame& frame) {
+    const RowFilter& filter = frame.model.filter;
+    if (!filter.refusal().empty())
+        wrapped_text(frame.fonts.small, frame.look.color(Role::violation), filter.refusal());
+    if (!filter.wanted_text().empty())
+        wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+                     fmt::format("{} lines with the text \"{}\"", frame.model.filtered.size(),
+                                 filter.wanted_text()));
 }
 
 void ProgramPanel::draw_row(Frame& frame, size_t block, float width) {
@@ -173,7 +185,7 @@ void ProgramPanel::draw_rows(Frame& frame) {
     ViewModel& model = frame.model;
     const float width = ImGui::GetContentRegionAvail().x;
     const float height = frame.px(20);
-    const bool filtering = !RowFilter(model.filter_text).empty();
+    const bool filtering = !model.filter.empty();
     const size_t count = filtering ? model.filtered.size() : model.rows.size();
     if (model.list_follows) {
         size_t rank = model.cursor.block;

@@ -1,98 +1,82 @@
 #include "app/viewer/row_filter.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "app/session/condition_words.h"
+#include "app/session/value_text.h"
 
 namespace app::viewer {
 namespace {
 
-std::string small_letters(std::string_view text) {
-    std::string small(text);
-    for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return small;
-}
+using FindingsOfBlock = std::map<size_t, std::vector<const core::Finding*>>;
 
-std::optional<double> number_in(std::string_view text) {
-    double value = 0.0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
-
-bool compares(double a, std::string_view sign, double b) {
-    if (sign == "<") return a < b;
-    if (sign == "<=") return a <= b;
-    if (sign == ">") return a > b;
-    return a >= b;
-}
-
-/// What `clr<1` says of a row; empty when the word is no comparison of clearances.
-std::optional<bool> comparison(std::string_view word, const BlockRow& row) {
-    for (const std::string_view name : {"clearance", "clr"}) {
-        if (!word.starts_with(name)) continue;
-        word.remove_prefix(name.size());
-        size_t signs = 0;
-        while (signs < word.size()
-               && (word[signs] == '<' || word[signs] == '>' || word[signs] == '='))
-            ++signs;
-        const auto limit = number_in(word.substr(signs));
-        if (signs == 0 || !limit || word[0] == '=') return {};
-        if (!row.lower) return false;
-        return compares(*row.lower, word.substr(0, signs), *limit);
+/// Whether a text that is no condition was meant as one: it compares, joins, or has nothing but
+/// words of the language.
+bool is_meant_as_condition(const std::string& text) {
+    if (text.find_first_of("<>=~&|") != std::string::npos) return true;
+    std::istringstream words(lowered(text));
+    std::string word;
+    bool only_names = true;
+    while (words >> word) {
+        if (word == "and" || word == "or" || word == "not") return true;
+        only_names = only_names && truth_named(word);
     }
-    return {};
+    return only_names;
 }
 
-std::optional<bool> state(std::string_view word, const BlockRow& row) {
-    if (word == "violation") return is_offending(row);
-    if (word == "near") return is_near(row);
-    if (word == "finding") return row.worst >= core::Severity::warning;
-    if (word == "undecided") return row.verdict == core::Verdict::undecided;
-    if (word == "clear") return row.is_known && moves(row) && !is_offending(row) && !is_near(row);
-    for (const auto motion : {core::BlockMotion::rapid, core::BlockMotion::feed,
-                              core::BlockMotion::arc, core::BlockMotion::cycle})
-        if (word == core::name_of(motion)) return row.motion == motion;
-    return {};
+FindingsOfBlock by_block(const std::vector<core::Finding>& findings) {
+    FindingsOfBlock sorted;
+    for (const core::Finding& finding : findings)
+        if (finding.block) sorted[core::value_of(*finding.block)].push_back(&finding);
+    return sorted;
 }
 
-std::optional<bool> tool(std::string_view word, const BlockRow& row) {
-    if (word.size() < 2 || word[0] != 't') return {};
-    const auto number = number_in(word.substr(1));
-    if (!number) return {};
-    return row.tool && core::value_of(*row.tool) == static_cast<int32_t>(*number);
-}
-
-bool is_in(std::string_view word, const BlockRow& row) {
-    for (const std::string& text : {row.text, row.part, row.body})
-        if (small_letters(text).find(word) != std::string::npos) return true;
-    return false;
-}
-
-bool is_true(std::string_view word, const BlockRow& row) {
-    if (const auto said = comparison(word, row)) return *said;
-    if (const auto said = state(word, row)) return *said;
-    if (const auto said = tool(word, row)) return *said;
-    return is_in(word, row);
+std::string trimmed(const std::string& text) {
+    const size_t begin = text.find_first_not_of(" \t");
+    if (begin == std::string::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
 }
 
 } // namespace
 
-RowFilter::RowFilter(std::string_view text) {
-    std::string word;
-    for (const char c : small_letters(text) + ' ') {
-        if (c != ' ') {
-            word += c;
-            continue;
-        }
-        if (!word.empty() && word != "and") words_.push_back(word);
-        word.clear();
+RowFilter::RowFilter(const std::string& text) {
+    const std::string wanted = trimmed(text);
+    if (wanted.empty()) return;
+    auto condition = Condition::read(wanted);
+    if (condition && !condition->asks_control()) {
+        condition_ = *std::move(condition);
+    } else if (condition) {
+        refusal_ = fmt::format("Only the control knows {}, and the list does not keep it. Shift+F9 "
+                               "stops where it is so; ~ \"{}\" finds it in the lines.",
+                               condition->control_value(), wanted);
+    } else if (is_meant_as_condition(wanted)) {
+        refusal_ =
+            fmt::format("Column {}: {}", condition.error().where.column, condition.error().message);
+    } else {
+        wanted_ = lowered(wanted);
     }
 }
 
-bool RowFilter::holds(const BlockRow& row) const {
-    return std::all_of(words_.begin(), words_.end(),
-                       [&](const std::string& word) { return is_true(word, row); });
+std::vector<size_t> RowFilter::passed(const std::vector<BlockRow>& rows,
+                                      const std::vector<core::Finding>& findings) const {
+    std::vector<size_t> through;
+    if (empty()) return through;
+    const bool asks_findings = condition_ && condition_->wanted().findings;
+    const FindingsOfBlock known = asks_findings ? by_block(findings) : FindingsOfBlock{};
+    const auto holds = [&](size_t block) {
+        if (!condition_) return lowered(rows[block].text).find(wanted_) != std::string::npos;
+        BlockFacts facts = facts_of(rows[block], block);
+        if (const auto found = known.find(block); found != known.end())
+            facts.findings = found->second;
+        return condition_->holds(facts);
+    };
+    for (size_t block = 0; block < rows.size(); ++block)
+        if (holds(block)) through.push_back(block);
+    return through;
 }
 
 } // namespace app::viewer

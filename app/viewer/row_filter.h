@@ -1,28 +1,38 @@
 #pragma once
 
-#include <string_view>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "app/session/condition.h"
 #include "app/viewer/block_row.h"
 
 namespace app::viewer {
 
-/// Which blocks the list shows: words that must all be true, as in `T3 rapid clr<1`.
+/// Which blocks the list shows: those of which a condition is true, as breakpoints have it
+/// (`clearance < 1 and rapid`, `T3`, `rule = near-miss`), or those whose line has a text (`G81`).
 ///
-///   clr<1 clr<=1 clr>1 clr>=1   clearance (also clearance<1)
-///   T3                          the tool in the spindle
-///   rapid feed arc cycle        motion
-///   violation near clear undecided finding
-///   anything else               is in the text of the line, or a part's or body's name
+/// What cannot be read as a condition, and has none of its signs and words, is such a text.
 class RowFilter {
 public:
     RowFilter() = default;
-    explicit RowFilter(std::string_view text);
+    explicit RowFilter(const std::string& text);
 
-    bool empty() const { return words_.empty(); }
-    bool holds(const BlockRow& row) const;
+    /// Whether it lets all rows through, because nothing was written or it was refused.
+    bool empty() const { return !condition_ && wanted_.empty(); }
+    /// What is wrong with the condition, or cannot be asked of rows; empty if nothing is.
+    const std::string& refusal() const { return refusal_; }
+    /// The text that lines must have; empty for a condition.
+    const std::string& wanted_text() const { return wanted_; }
+
+    /// The rows that it lets through, in order. `findings` are those about all rows.
+    std::vector<size_t> passed(const std::vector<BlockRow>& rows,
+                               const std::vector<core::Finding>& findings) const;
 
 private:
-    std::vector<std::string> words_; // small letters
+    std::optional<Condition> condition_;
+    std::string wanted_; // in small letters
+    std::string refusal_;
 };
 
 } // namespace app::viewer

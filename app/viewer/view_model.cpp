@@ -157,11 +157,8 @@ void say(ViewModel& model, const std::string& text, double now) {
 }
 
 void apply_filter(ViewModel& model) {
-    model.filtered.clear();
-    const RowFilter filter(model.filter_text);
-    if (filter.empty()) return;
-    for (size_t i = 0; i < model.rows.size(); ++i)
-        if (filter.holds(model.rows[i])) model.filtered.push_back(i);
+    model.filter = RowFilter(model.filter_text);
+    model.filtered = model.filter.passed(model.rows, model.findings);
 }
 
 std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block) {

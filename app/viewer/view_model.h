@@ -67,6 +67,7 @@ struct ViewModel {
     Cursor cursor;
     Playback playback;
     std::string filter_text;
+    RowFilter filter;             // as it was read
     std::vector<size_t> filtered; // rows that the filter lets through; only with a filter
     std::vector<Breakpoint> breakpoints;
     std::set<size_t> bookmarks;
