@@ -306,6 +306,10 @@ private:
     core::Result<Node> named(const ConditionToken& token) const {
         std::optional<Node> truth = truth_named(token.text), value = value_named(token.text);
         const bool as_value = value && (is_compared_ || is_comparison(now()) || !truth);
+        // What is true or false has nothing taken from it: near-mis is a name, and a wrong one.
+        const bool has_tail =
+            !as_value && !token.whole.empty() && lowered(token.whole) != token.text;
+        if (has_tail) return unknown(token);
         std::optional<Node> node = as_value ? std::move(value) : std::move(truth);
         if (!node) return unknown(token);
         node->column = token.column;

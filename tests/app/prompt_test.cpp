@@ -228,7 +228,7 @@ TEST(Prompt, CompletesCommandsNamesAndTopics) {
     EXPECT_THAT(talk.prompt->completions("ne"), ElementsAre("next", "next-finding", "next-tool"));
     EXPECT_THAT(talk.prompt->completions("info wa"), ElementsAre("watchpoints"));
     EXPECT_THAT(talk.prompt->completions("until clear"), ElementsAre("clear", "clearance"));
-    EXPECT_THAT(talk.prompt->completions("b 23 if near"), ElementsAre("near-miss"));
+    EXPECT_THAT(talk.prompt->completions("b 23 if near"), ElementsAre("near", "near-miss"));
     EXPECT_THAT(talk.prompt->completions("break "), AllOf(Contains("T1"), Contains("finding")));
     EXPECT_THAT(talk.prompt->completions("set fixture "), ElementsAre("clamp-1"));
     EXPECT_THAT(talk.prompt->completions("p machine.x"), ElementsAre("machine.x"));
