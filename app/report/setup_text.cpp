@@ -1,28 +1,15 @@
 #include "app/report/setup_text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/report/text_layout.h"
+#include "app/setup/setup_tables.h"
 
 namespace app {
 namespace {
 
 constexpr const char* offset_keys[] = {"G54", "G55",       "G56",       "G57",      "G58",
                                        "G59", "\"G59.1\"", "\"G59.2\"", "\"G59.3\""};
-
-/// A number as TOML has it, to the last bit; whole ones stay whole.
-std::string number(double value) { return fmt::format("{}", value); }
-
-std::string quoted(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        const bool control = static_cast<unsigned char>(c) < 0x20;
-        if (c == '"' || c == '\\') safe += '\\';
-        safe += control ? ' ' : c;
-    }
-    return "\"" + safe + "\"";
-}
 
 /// Lines of a comment; what a program says must not end it.
 std::string comment(const std::string& text) {
@@ -38,63 +25,16 @@ std::string comment(const std::string& text) {
     return commented;
 }
 
-std::string key(const char* name, double value) {
-    return fmt::format("{} = {}\n", name, number(value));
-}
-
-std::string key(const char* name, const std::optional<double>& value) {
-    return value ? key(name, *value) : std::string();
-}
-
-std::string cones(const char* name, const std::vector<core::ConeStep>& steps) {
-    std::vector<std::string> rows;
-    for (const core::ConeStep& s : steps)
-        rows.push_back(fmt::format("[{}, {}, {}]", number(s.lower_diameter),
-                                   number(s.upper_diameter), number(s.length)));
-    return rows.empty() ? "" : fmt::format("{} = [{}]\n", name, fmt::join(rows, ", "));
-}
-
-std::string outline(const core::ToolDescription& tool) {
-    std::vector<std::string> rows;
-    for (const auto& [r, z] : tool.outline)
-        rows.push_back(fmt::format("[{}, {}]", number(r), number(z)));
-    return rows.empty() ? "" : fmt::format("profile = [{}]\n", fmt::join(rows, ", "));
-}
-
-std::string tool_text(const core::ToolDescription& tool) {
-    std::string text = "\n[[tool]]\n";
-    text += fmt::format("number = {}\n", core::value_of(tool.number));
-    if (!tool.name.empty()) text += fmt::format("name = {}\n", quoted(tool.name));
-    text += fmt::format("shape = \"{}\"\n", core::name_of(tool.shape));
-    text += key("diameter", tool.diameter);
-    if (tool.flute_length > 0.0) text += key("flute_length", tool.flute_length);
-    text += key("corner_radius", tool.corner_radius) + key("point_deg", tool.point_deg)
-            + key("angle_deg", tool.angle_deg);
-    if (tool.tip_diameter > 0.0) text += key("tip_diameter", tool.tip_diameter);
-    text += outline(tool) + key("neck_diameter", tool.neck_diameter)
-            + key("neck_length", tool.neck_length) + key("pitch", tool.pitch)
-            + key("thread_deg", tool.thread_deg);
-    if (tool.teeth) text += fmt::format("teeth = {}\n", *tool.teeth);
-    text += cones("shank", tool.shank) + cones("holder", tool.holder);
-    if (tool.touched_off)
-        text += fmt::format("touched_off = {}     # the control counts this as its length, and the "
-                            "work offset fits; take it out to have the true length count\n",
-                            number(*tool.touched_off));
-    if (tool.cuts == core::SpindleDirection::counterclockwise)
-        text += "spindle = \"counterclockwise\"\n";
-    if (!tool.cuts_at_centre)
-        text += "cuts_at_centre = false\n" + key("centre_diameter", 2.0 * tool.centre_radius);
-    return text;
-}
-
 std::string program_text(const SetupFile& setup) {
     const gcode::Position& start = setup.environment.start;
     std::string text = "\n[program]\n";
     if (setup.dialect)
         text += fmt::format("dialect = \"{}\"\n", gcode::dialect(*setup.dialect).name);
     text += fmt::format("start = {{ X = {}, Y = {}, Z = {} }}     # machine coordinates\n",
-                        number(start[0].value_or(0.0)), number(start[1].value_or(0.0)),
-                        number(start[2].value_or(0.0)));
+                        toml_number(start[0].value_or(0.0)), toml_number(start[1].value_or(0.0)),
+                        toml_number(start[2].value_or(0.0)));
+    if (setup.environment.machine_unit == gcode::LengthUnit::inch) text += "unit = \"inch\"\n";
+    if (setup.environment.counts_smallest_steps) text += "no_decimal_point = \"steps\"\n";
     if (setup.environment.block_delete) text += "block_delete = true\n";
     if (setup.setup.tool_at_start)
         text += fmt::format("tool_at_start = {}\n", core::value_of(*setup.setup.tool_at_start));
@@ -113,7 +53,7 @@ std::string machine_text(const SetupFile& setup) {
         text += fmt::format("\n[[machine.axis]]{}\nname = \"{}\"\ndirection = {}\nhome = {}\n",
                             axis == 0 ? "     # add min, max and rapid (mm/min)" : "",
                             gcode::axis_letters[axis], directions[axis],
-                            number((*setup.environment.home)[axis]));
+                            toml_number((*setup.environment.home)[axis]));
     return text;
 }
 
@@ -122,19 +62,9 @@ std::string offsets_text(const SetupFile& setup) {
     for (size_t i = 0; i < std::size(offset_keys); ++i) {
         const gcode::AxisValues& origin = setup.environment.work_offsets[i];
         text += fmt::format("{} = {{ X = {}, Y = {}, Z = {} }}\n", offset_keys[i],
-                            number(origin[0]), number(origin[1]), number(origin[2]));
+                            toml_number(origin[0]), toml_number(origin[1]), toml_number(origin[2]));
     }
     return text;
-}
-
-std::string stock_text(const SetupFile& setup) {
-    const auto* box = std::get_if<core::SolidBox>(&setup.setup.stock.shape);
-    if (!box) return {};
-    const core::Vec3 low = box->box.min, high = box->box.max;
-    return fmt::format("\n[stock]     # two corners\nbox = [[{}, {}, {}], [{}, {}, {}]]\nframe = "
-                       "\"G54\"\n",
-                       number(low.x), number(low.y), number(low.z), number(high.x), number(high.y),
-                       number(high.z));
 }
 
 std::string rules_text(const SetupFile& setup) {
@@ -154,9 +84,12 @@ std::string setup_text(const SetupFile& setup, const std::string& program) {
                                  "fixtures, and check the program against it.");
     text += "#\n";
     for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
-    text += fmt::format("\nmesh_size = {}\n", number(setup.setup.mesh_size));
-    text += program_text(setup) + machine_text(setup) + offsets_text(setup) + stock_text(setup);
-    for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_text(tool.description);
+    text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));
+    if (setup.setup.allowance)
+        text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
+    text += program_text(setup) + machine_text(setup) + offsets_text(setup)
+            + stock_table(setup.setup.stock, "G54");
+    for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_table(tool.description);
     return text + rules_text(setup);
 }
 

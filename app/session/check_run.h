@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/session/stock_file.h"
-#include "app/setup/setup_file.h"
+#include "app/setup/setup_edits.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/sim/simulator.h"
 #include "gcode/interpreter.h"
@@ -80,6 +80,7 @@ struct CheckJob {
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace what the set-up says under [program]
+    SetupEdits edits = {};       // replace what the set-up says, or what would be inferred
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

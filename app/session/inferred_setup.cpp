@@ -156,7 +156,7 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
                         "is no stock, and only what the codes themselves tell is judged",
                         *turning);
         file.not_judged = why;
-    } else if (const auto line = line_that_asks_for_places(program)) {
+    } else if (const auto line = line_that_asks_for_places(program); line && file.needs_stock) {
         why =
             fmt::format("line {} asks where the axes stand, so what is done depends on where they "
                         "were jogged: no stock is assumed",
@@ -166,7 +166,8 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     }
     file.setup.rules["missing-length-offset"] = core::Severity::off;
     file.setup.rules["tool-change-unsafe"] = core::Severity::off;
-    file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
+    if (file.needs_stock)
+        file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
     return why;
 }
 
@@ -191,9 +192,8 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
 /// ones a finer one.
 void choose_mesh_size(SetupFile& file) {
     constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
-    const auto* box = std::get_if<core::SolidBox>(&file.setup.stock.shape);
-    if (!file.is_inferred || !box) return;
-    const Vec3 size = box->box.size();
+    if (!file.is_inferred) return;
+    const Vec3 size = core::bounds(file.setup.stock).size();
     const double longest = std::max({size.x, size.y, size.z});
     const double fine = std::ceil(longest / least_cells / finest) * finest; // of a small stock
     file.setup.mesh_size =
@@ -248,7 +248,8 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         assume_handwork(file, first);
         about_stock = move_apart(file.environment, first);
     }
-    if (!file.needs_stock && tools.empty()) return {};
+    if (!file.needs_stock) choose_mesh_size(file);
+    if (!file.needs_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
     const auto place = file.is_inferred ? main_place(first) : std::nullopt;
     const ProgramSurvey seen = survey(program, file.environment, known, place);
@@ -264,6 +265,9 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
     std::vector<std::string> notes = put_tools(file, tools, first, deep);
+    for (size_t i = 0; i < tools.size(); ++i)
+        file.inferred_tools.insert_or_assign(tools[i].tool.number, notes[i]);
+    if (!about_stock.empty()) file.inferred_stock = about_stock.back();
     if (!file.not_judged.empty()) notes.clear(); // mills that turn nothing
     notes.insert(notes.end(), about_stock.begin(), about_stock.end());
     file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());

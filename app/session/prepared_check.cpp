@@ -82,16 +82,17 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     FEELER_TRY(check.file,
                job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
     SetupFile& file = check.file;
+    if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
-    check.stock_is_stated = !file.needs_stock && !file.is_inferred;
+    check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock);
     if (const auto whole = complete_setup(file, *check.program); !whole)
         return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
     run.setup = std::move(file.setup);
-    if (job.allowance) run.setup.allowance = job.allowance;
+    if (job.allowance && !job.edits.allowance) run.setup.allowance = job.allowance;
     run.setup.detail = job.detail;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;

@@ -265,6 +265,7 @@ void infer_stock(BodyContext& context) {
 
 void read_stock(TableReader& table, BodyContext& context) {
     const Placement placement = read_placement(table, context);
+    context.file.stock_frame = table.string("frame").value_or("G54");
     context.file.stock_margin = table.number("margin");
     if (context.file.stock_margin || has_no_shape(table))
         return read_envelope(table, context, placement);

@@ -26,6 +26,9 @@ struct SetupFile {
     std::string tool_table;                        // of the control, which knows diameters too
     bool needs_stock = false;                      // it is to be inferred from the program
     std::optional<double> stock_margin;            // round what is inferred
+    std::string stock_frame = "G54";               // that the stock's coordinates count in
+    std::map<core::ToolNumber, std::string> inferred_tools; // by what, in a sentence
+    std::string inferred_stock;                             // by what; empty: it is stated
     bool speed_by_hand = false;                    // M3 turns the spindle without an S
     bool allow_comments = false;                   // (feeler: allow RULE) in the program counts
     bool is_inferred = false;                      // no file: everything is

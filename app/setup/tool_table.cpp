@@ -42,7 +42,10 @@ void read_centre(TableReader& table, core::ToolDescription& tool) {
         tool.centre_radius = 0.5 * diameter.value_or(usual_centre * tool.diameter);
 }
 
-void note_what_is_open(const core::ToolDescription& tool, std::vector<std::string>& notes) {
+} // namespace
+
+std::vector<std::string> notes_on(const core::ToolDescription& tool) {
+    std::vector<std::string> notes;
     const int number = core::value_of(tool.number);
     if (tool.holder.empty())
         notes.push_back(fmt::format(
@@ -56,9 +59,8 @@ void note_what_is_open(const core::ToolDescription& tool, std::vector<std::strin
         notes.push_back(fmt::format("tool {} has no pitch: it cuts as the cylinder round its "
                                     "crests, so the threads are gone after it",
                                     number));
+    return notes;
 }
-
-} // namespace
 
 void read_tool(TableReader& table, BodyContext& context) {
     SetupFile& file = context.file;
@@ -86,7 +88,7 @@ void read_tool(TableReader& table, BodyContext& context) {
         table.refuse("number", fmt::format("= {} is there twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
-    note_what_is_open(tool, file.assumptions);
+    for (std::string& note : notes_on(tool)) file.assumptions.push_back(std::move(note));
 }
 
 void read_length_offset(TableReader& table, SetupFile& file) {

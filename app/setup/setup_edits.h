@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/setup/setup_file.h"
+
+namespace app {
+
+/// A tool as a person says that it is.
+struct StatedTool {
+    core::ToolDescription tool;
+    std::set<std::string> stated; // keys of [[tool]] that the person has said; the rest was known
+};
+
+/// What a person states in place of what a set-up says, or of what was inferred without one.
+struct SetupEdits {
+    std::optional<core::Solid> stock; // box or cylinder, in the frame of the set-up's stock
+    std::map<core::ToolNumber, StatedTool> tools;
+    std::optional<double> allowance;
+    std::optional<core::ToolNumber> tool_at_start; // where the program cuts before it calls one
+
+    bool empty() const { return !stock && tools.empty() && !allowance; }
+};
+
+/// What is wrong with a field of an edit.
+struct EditRefusal {
+    std::optional<core::ToolNumber> tool; // empty: it is about the stock or the allowance
+    std::string key;                      // of the set-up: box, cylinder, allowance, flute_length;
+                                          // empty: it is about the tool as a whole
+    std::string why;
+};
+
+/// Everything that keeps edits from being made, in the order of the fields.
+std::vector<EditRefusal> refusals_of(const SetupEdits& edits);
+
+/// Puts edits into a set-up that was read or begun, before what is missing is inferred: what is
+/// stated is not inferred, and all else is inferred with regard to it.
+///
+/// Errors: the first of refusals_of. Nothing has changed then.
+core::Result<void> apply(const SetupEdits& edits, SetupFile& file);
+
+} // namespace app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/dbm/solid.h"
+#include "core/sim/tool_description.h"
+
+namespace app {
+
+/// A number as TOML has it, to the last bit; whole ones stay whole.
+std::string toml_number(double value);
+
+/// A text as TOML has it; control characters become blanks.
+std::string toml_text(std::string_view text);
+
+/// A `[[tool]]` that is read as this tool, every number to its last bit.
+std::string tool_table(const core::ToolDescription& tool);
+
+/// A `[stock]` that is read as this box or cylinder; empty for a mesh, which has a file of its own.
+std::string stock_table(const core::Solid& stock, std::string_view frame);
+
+} // namespace app
