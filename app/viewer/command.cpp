@@ -76,6 +76,8 @@ constexpr KeyBinding bindings[] = {
     {C::section, G::show, key::of('X'), 0, "X", "Section through the closest pair"},
     {C::measure, G::show, key::of('M'), 0, "M", "Measure between two clicks"},
 
+    {C::edit_setup, G::window, key::of('E'), 0, "E", "Edit the set-up: stock, tools, allowance"},
+    {C::edit_setup, G::window, key::of('S'), control, "Ctrl+S", "Save it as a file"},
     {C::theme, G::window, key::of('T'), 0, "T", "Dark or light"},
     {C::units, G::window, key::of('I'), 0, "I", "mm or inch"},
     {C::larger, G::window, key::equal, control, "Ctrl++", "Everything larger"},

@@ -66,6 +66,7 @@ enum class Command : uint8_t {
     open,
     reload,
     what_if,
+    edit_setup,
     shortcuts,
     close_popup,
     quit

@@ -205,6 +205,9 @@ void draw_assumptions(Frame& frame) {
                      "file here to replace it.");
     else
         value_row(frame, "File", program->setup, 50.0);
+    if (ImGui::Button("Edit and save \xE2\x80\xA6", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+        frame.perform(Command::edit_setup);
+    tip(frame, tip_of(Command::edit_setup));
     for (const std::string& words : program->assumptions) {
         text(frame.fonts.small, frame.look.color(Role::dim), "\xC2\xB7");
         ImGui::SameLine(0, frame.px(6));

@@ -263,6 +263,9 @@ void perform(ViewModel& model, Command command, double now) {
     case Command::what_if:
         open_popup(model, Popup::what_if);
         break;
+    case Command::edit_setup:
+        open_popup(model, Popup::setup);
+        break;
     case Command::shortcuts:
         open_popup(model, Popup::shortcuts);
         break;

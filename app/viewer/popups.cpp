@@ -85,6 +85,8 @@ const char* title_of(Popup popup) {
         return "Breakpoints";
     case Popup::settings:
         return "Settings";
+    case Popup::setup:
+        return "Set-up";
     case Popup::none:
         break;
     }
@@ -239,9 +241,11 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
     if (model.popup == Popup::none) return;
     const bool is_wide = model.popup == Popup::shortcuts;
+    const bool is_form = model.popup == Popup::setup;
     ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
                             ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
+    if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.look.color(Role::panel, 0.98));
@@ -269,6 +273,9 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
         break;
     case Popup::settings:
         draw_settings(frame);
+        break;
+    case Popup::setup:
+        setup_.draw(frame);
         break;
     case Popup::none:
         break;
@@ -337,6 +344,9 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
                  "Mend the file and save it: it is read again by itself. Or drop another program "
                  "or set-up here.");
     ImGui::Dummy(ImVec2(0, frame.px(6)));
+    if (!model.edits.empty() && ImGui::Button("Take the set-up's changes back"))
+        frame.model.wanted_setup = SetupRequest{};
+    if (!model.edits.empty()) ImGui::SameLine();
     if (ImGui::Button("Read it again")) frame.perform(Command::reload);
     ImGui::SameLine();
     if (ImGui::Button("Open another")) frame.perform(Command::open);

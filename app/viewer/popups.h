@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/viewer/panel.h"
+#include "app/viewer/setup_popup.h"
 
 namespace app::viewer {
 
@@ -21,6 +21,7 @@ private:
 
     std::string line_, path_, condition_;
     Popup shown_ = Popup::none;
+    SetupPopup setup_;
     // of what-ifs
     size_t fixture_ = 0;
     double length_ = 0.0, table_length_ = 0.0, allowance_ = 0.0, by_[3] = {0.0, 0.0, 0.0};

@@ -46,6 +46,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.changes, later.changes);
     take(news.failure, later.failure);
     take(news.refusal, later.refusal);
+    take(news.saved, later.saved);
     take(news.stopped, later.stopped);
     news.share = later.share;
     news.is_recorded = later.is_recorded;

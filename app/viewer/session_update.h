@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/debug_session.h"
+#include "app/session/setup_sheet.h"
 #include "app/viewer/block_row.h"
 #include "app/viewer/place_view.h"
 #include "render/tool_path.h"
@@ -15,6 +16,8 @@ struct OpenedProgram {
     bool is_inferred = false;
     bool counts_blocks = false; // its lines begin with the numbers of their blocks, without N
     std::shared_ptr<const SceneSetup> scene;
+    std::shared_ptr<const SetupSheet> sheet; // what of the set-up can be edited
+    std::string proposed_path;               // where the set-up is saved if nobody says otherwise
 };
 
 /// Rows that are new or have changed: they replace those from `first` on.
@@ -45,6 +48,13 @@ struct ShowRequest {
     bool at_end = true; // else as the block finds it
 };
 
+/// A set-up that was to be saved.
+struct SetupSaved {
+    std::string path;
+    std::optional<core::Error> refusal;
+    bool exists = false; // it was refused because the file is there
+};
+
 /// Where a walk ended.
 struct WalkEnd {
     size_t block = 0; // the block before which it stands
@@ -64,8 +74,9 @@ struct SessionUpdate {
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
     std::optional<core::Error> failure;              // the program could not be opened
     std::optional<std::string> refusal;              // of a request, in a sentence
-    std::optional<core::Error> stopped;              // the program could not be run to its end
-    double share = 0.0;                              // of the program that is checked
+    std::optional<SetupSaved> saved;
+    std::optional<core::Error> stopped; // the program could not be run to its end
+    double share = 0.0;                 // of the program that is checked
     bool is_recorded = false;
     bool is_busy = false; // with opening or walking
 

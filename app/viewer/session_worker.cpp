@@ -64,6 +64,10 @@ void SessionWorker::take_back() {
     post([](WorkerSession& session) { session.take_back(); });
 }
 
+void SessionWorker::save_setup(const SaveRequest& request) {
+    post([request](WorkerSession& session) { session.save_setup(request); });
+}
+
 SessionUpdate SessionWorker::take() {
     const std::lock_guard lock(mutex_);
     SessionUpdate news = std::move(news_);

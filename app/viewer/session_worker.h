@@ -36,6 +36,7 @@ public:
     /// From the place before a block on.
     void change(const WhatIf& change, size_t block);
     void take_back();
+    void save_setup(const SaveRequest& request);
 
     /// What is new since the last call.
     SessionUpdate take();

@@ -145,6 +145,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     model.share = news.share;
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
+    if (news.saved) model.saved = news.saved;
     if (news.refusal) say(model, *news.refusal, now);
     if (is_first) resume(model);
     if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.share);

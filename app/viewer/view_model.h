@@ -35,7 +35,15 @@ enum class Popup : uint8_t {
     open_file,
     what_if,
     breakpoint,
-    settings
+    settings,
+    setup
+};
+
+/// What the window is to do with the set-up.
+struct SetupRequest {
+    SetupEdits edits;
+    std::string save_path = {}; // empty: only check with the edits
+    bool may_replace = false;
 };
 
 /// Two places clicked, and the way between them.
@@ -59,6 +67,8 @@ struct ViewModel {
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const PlaceView> place;
     std::vector<std::string> changes;
+    SetupEdits edits;                // of the set-up, that the program was opened with
+    std::optional<SetupSaved> saved; // the last answer to a wish to save the set-up
     std::optional<core::Error> failure, stopped;
     double share = 0.0;
     bool is_recorded = false, is_busy = false;
@@ -95,6 +105,7 @@ struct ViewModel {
     bool breakpoints_changed = false;
     std::vector<std::string> watches; // expressions
     bool watches_changed = false;
+    std::optional<SetupRequest> wanted_setup;
     std::string wanted_path; // of a program, set-up or mesh that was dropped or typed
 
     // what the window is to do

@@ -92,6 +92,7 @@ public:
     void drop(const std::vector<std::string>& paths);
     void damage() { frames_ = 3; }
     void open_job();
+    void do_setup(const SetupRequest& request);
 
 private:
     void update();
@@ -99,6 +100,7 @@ private:
     void feed_keys();
     void rebuild_fonts();
     void save_picture();
+    void work_with_saved();
     void remember_place();
     void set_title();
     double wanted_scale() const;
@@ -146,7 +148,32 @@ void Window::open_job() {
     worker_.set_breakpoints(model.breakpoints);
     worker_.open(*job_.check);
     files_.set({job_.check->program, job_.check->setup});
+    model.edits = job_.check->edits;
     damage();
+}
+
+void Window::do_setup(const SetupRequest& request) {
+    if (!job_.check) return;
+    CheckJob edited = *job_.check;
+    edited.edits = request.edits;
+    damage();
+    if (!request.save_path.empty())
+        return worker_.save_setup({edited, request.save_path, request.may_replace, job_.write});
+    job_.check = edited;
+    open_job();
+    say(model, "The program is checked with the set-up as it stands now", glfwGetTime());
+}
+
+/// The window goes on with the file: what is saved is what is shown.
+void Window::work_with_saved() {
+    const std::string path = model.saved->path;
+    model.saved.reset();
+    if (model.popup == Popup::setup) model.popup = Popup::none;
+    if (!job_.check) return;
+    job_.check->setup = path;
+    job_.check->edits = {};
+    open_job();
+    say(model, "Saved " + path, glfwGetTime());
 }
 
 void Window::drop(const std::vector<std::string>& paths) {
@@ -170,6 +197,7 @@ void Window::drop(const std::vector<std::string>& paths) {
     if (has_program && !has_setup) check.setup.clear();
     if (has_program) model.camera_placed = false;
     if (has_program) model.breakpoints.clear();
+    check.edits = {};
     job_.check = check;
     open_job();
 }
@@ -233,6 +261,8 @@ void Window::update() {
         }
         if (now < model.message_until + watch_interval) damage();
     }
+    if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
+    if (model.saved && !model.saved->refusal) work_with_saved();
     if (send_requests(model, worker_)) damage();
     if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
@@ -242,11 +272,15 @@ void Window::type(int code, bool is_down) {
 }
 
 /// ImGui 1.86 knows of each key only whether it is down in a frame. One that is pressed and
-/// released between two frames gets a frame for each.
+/// released between two frames gets a frame for each; a modifier that goes up behind a key is down
+/// as long as that one is new.
 void Window::feed_keys() {
     ImGuiIO& io = ImGui::GetIO();
     std::set<int> changed;
-    while (!keys_.empty() && changed.insert(keys_.front().first).second) {
+    bool has_press = false;
+    while (!keys_.empty() && (keys_.front().second || !has_press)
+           && changed.insert(keys_.front().first).second) {
+        has_press = has_press || keys_.front().second;
         io.KeysDown[keys_.front().first] = keys_.front().second;
         keys_.pop_front();
     }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "app/session/check_run.h"
+#include "app/report/saved_setup.h"
 
 namespace app::viewer {
 
@@ -12,6 +12,7 @@ struct WindowJob {
     std::optional<CheckJob> check;       // empty: the welcome screen
     std::filesystem::path settings_file; // read at the start, written at the end; empty: neither
     std::filesystem::path pictures;      // folder that F12 saves into
+    FileWriter write;                    // how set-ups are saved
 };
 
 /// Opens the window and stays until it is closed.

@@ -1,6 +1,7 @@
 #include "app/viewer/worker_session.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "app/session/block_runner.h"
 #include "app/viewer/program_track.h"
@@ -25,6 +26,9 @@ OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     opened.assumptions = check.run.assumptions;
     opened.is_inferred = job.setup.empty();
     opened.scene = make_scene_setup(check.run.setup);
+    opened.proposed_path = proposed_setup_path(job);
+    opened.sheet =
+        std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup, job.edits));
     return opened;
 }
 
@@ -228,6 +232,19 @@ void WorkerSession::take_back() {
     if (!session_ || session_->changes().empty()) return;
     if (const auto back = session_->take_back(); !back) return refuse(back.error());
     follow_anew();
+}
+
+void WorkerSession::save_setup(const SaveRequest& request) {
+    SetupSaved saved{request.path, {}, false};
+    const auto done =
+        app::save_setup(request.job, request.path, request.may_replace, request.write);
+    if (!done) {
+        std::error_code ignored; // of a name that no file can have, which the refusal tells of
+        saved.refusal = done.error();
+        saved.exists = !request.may_replace && std::filesystem::exists(request.path, ignored);
+    }
+    news_.saved = std::move(saved);
+    news_.has_news = true;
 }
 
 void WorkerSession::follow_anew() {

@@ -1,9 +1,18 @@
 #pragma once
 
+#include "app/report/saved_setup.h"
 #include "app/viewer/session_publisher.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
+
+/// The set-up of a job that is to be put into a file.
+struct SaveRequest {
+    CheckJob job;
+    std::string path;
+    bool may_replace = false;
+    FileWriter write;
+};
 
 /// What the worker does, all in its thread: a debugging session and what is made of it for the
 /// window.
@@ -27,6 +36,7 @@ public:
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
     void change(const WhatIf& change, size_t block);
     void take_back();
+    void save_setup(const SaveRequest& request);
 
     SessionUpdate take_news();
 
