@@ -35,8 +35,10 @@ ExitCode view(const CheckArguments& arguments) {
     }
     viewer::WindowJob job;
     if (!arguments.program.empty()) job.check = *std::move(check);
-    if (const auto folder = user_folder("XDG_CONFIG_HOME", ".config"); !folder.empty())
+    if (const auto folder = user_folder("XDG_CONFIG_HOME", ".config"); !folder.empty()) {
         job.settings_file = folder / "feeler" / "view.toml";
+        job.notes_file = folder / "feeler" / "notes.toml";
+    }
     job.write = write_output;
     job.pictures = pictures_folder(arguments.program);
     const auto shown = viewer::run_window(job);

@@ -34,6 +34,10 @@ enum class Command : uint8_t {
     go_to_line,
     toggle_bookmark,
     next_bookmark,
+    show_findings,
+    next_stretch,
+    previous_stretch,
+    write_note,
     filter,
     frame_witness,
     frame_all,
@@ -67,6 +71,7 @@ enum class Command : uint8_t {
     reload,
     what_if,
     edit_setup,
+    save_setup,
     shortcuts,
     close_popup,
     quit

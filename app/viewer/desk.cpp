@@ -54,8 +54,9 @@ void Desk::draw_body(Frame& frame, const Area& area) {
     const Area view{area.x + left, area.y + top, std::max(area.width - left - right, 16.0F),
                     middle};
     place(frame, toolbar_, "toolbar", {area.x, area.y, area.width, top}, ImVec2(0, 0));
-    place(frame, program_, "program", {area.x, area.y + top, left, middle},
-          ImVec2(frame.px(12), frame.px(10)));
+    Panel& list = model.shows_findings ? static_cast<Panel&>(findings_) : program_;
+    place(frame, list, model.shows_findings ? "findings" : "program",
+          {area.x, area.y + top, left, middle}, ImVec2(frame.px(12), frame.px(10)));
     place(frame, scene_, "view", view, ImVec2(0, 0));
     place(frame, inspector_, "inspector", {view.x + view.width, area.y + top, right, middle},
           ImVec2(frame.px(12), frame.px(10)), true);

@@ -24,6 +24,7 @@ private:
 
     ToolbarPanel toolbar_;
     ProgramPanel program_;
+    FindingsPanel findings_;
     ScenePanel scene_;
     InspectorPanel inspector_;
     TimelinePanel timeline_;

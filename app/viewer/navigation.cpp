@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "gcode/program_text.h"
 
@@ -116,6 +117,57 @@ void go_to_bookmark(ViewModel& model) {
     if (model.bookmarks.empty()) return;
     const auto next = model.bookmarks.upper_bound(model.cursor.block);
     go_to(model, next == model.bookmarks.end() ? *model.bookmarks.begin() : *next);
+}
+
+void go_to_stretch(ViewModel& model, const StretchPlace& place) {
+    model.playback.running = false;
+    model.selected = place;
+    go_to_witness(model, model.groups[place.group].stretches[place.stretch].worst);
+}
+
+bool step_stretch(ViewModel& model, bool forward) {
+    const auto next = stretch_beside(model.groups, selected_stretch(model), forward);
+    if (next) go_to_stretch(model, *next);
+    return next.has_value();
+}
+
+std::optional<StretchPlace> selected_stretch(const ViewModel& model) {
+    const size_t block = model.cursor.block;
+    if (model.selected && model.selected->group < model.groups.size()) {
+        const auto& stretches = model.groups[model.selected->group].stretches;
+        const size_t index = model.selected->stretch;
+        if (index < stretches.size() && stretches[index].first <= block
+            && block <= stretches[index].last)
+            return model.selected;
+    }
+    return stretch_at(model.groups, block);
+}
+
+void show_findings(ViewModel& model, bool shown) {
+    model.shows_findings = shown;
+    model.list_follows = true;
+}
+
+std::string notes_key(const ViewModel& model) {
+    if (!model.program) return {};
+    std::error_code failure; // where there is no folder to begin from the path stays as it is
+    const auto path = std::filesystem::absolute(model.program->program, failure);
+    return failure ? model.program->program : path.lexically_normal().string();
+}
+
+std::string note_at(const ViewModel& model, const StretchPlace& place) {
+    if (!model.program) return {};
+    const FindingGroup& group = model.groups[place.group];
+    return note_on(model.notes, notes_key(model), group,
+                   model.rows[group.stretches[place.stretch].first]);
+}
+
+void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text) {
+    if (!model.program) return;
+    const FindingGroup& group = model.groups[place.group];
+    write_note(model.notes, notes_key(model), group,
+               model.rows[group.stretches[place.stretch].first], text);
+    model.notes_changed = true;
 }
 
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text) {

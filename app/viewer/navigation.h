@@ -25,6 +25,19 @@ bool go_to_offending(ViewModel& model, bool forward);
 
 void go_to_bookmark(ViewModel& model);
 
+/// To the worst block of a stretch of findings.
+void go_to_stretch(ViewModel& model, const StretchPlace& place);
+/// To the stretch behind or before the one selected, as the list has them; whether there is one.
+bool step_stretch(ViewModel& model, bool forward);
+/// The stretch that the list marks: the one gone to, else the first one that holds the block.
+std::optional<StretchPlace> selected_stretch(const ViewModel& model);
+/// Shows the findings in place of the lines, or the lines again.
+void show_findings(ViewModel& model, bool shown);
+/// By what notes know the program: its path from the root.
+std::string notes_key(const ViewModel& model);
+std::string note_at(const ViewModel& model, const StretchPlace& place);
+void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text);
+
 /// The first block of a line ("188") or N number ("N1880") from the cursor on, then from the
 /// beginning.
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text);

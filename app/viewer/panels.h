@@ -24,6 +24,24 @@ private:
     void draw_row(Frame& frame, size_t block, float width);
 };
 
+/// What was found, grouped by rule and pair of bodies, with what a person has written on it.
+class FindingsPanel : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+
+private:
+    void draw_group(Frame& frame, size_t index, const std::optional<StretchPlace>& selected);
+    void draw_stretch(Frame& frame, const StretchPlace& place, bool is_selected);
+    void draw_note(Frame& frame, const StretchPlace& place);
+
+    std::optional<StretchPlace> scrolled_to_, noted_;
+    uint64_t typed_from_ = 0; // opening
+    std::string typed_;
+};
+
+/// The names of the two lists at the left, of which one is shown.
+void draw_list_tabs(Frame& frame);
+
 /// What is known of the current block: clearance, pair, state, findings; and of the program.
 class InspectorPanel : public Panel {
 public:

@@ -33,6 +33,17 @@ void find_offending(ViewModel& model, bool forward, double now) {
     say(model, model.is_recorded ? "There is no violation" : "No violation is known yet", now);
 }
 
+void step_findings(ViewModel& model, bool forward, double now) {
+    show_findings(model, true);
+    if (!step_stretch(model, forward)) say(model, "There is no other finding", now);
+}
+
+void begin_note(ViewModel& model, double now) {
+    if (!selected_stretch(model)) return say(model, "There is no finding here", now);
+    show_findings(model, true);
+    model.note_wants_focus = true;
+}
+
 void toggle_section(ViewModel& model) {
     if (model.section) return model.section.reset();
     render::SectionPlane plane;
@@ -115,6 +126,16 @@ bool walk(ViewModel& model, Command command, double now) {
         return true;
     case Command::next_bookmark:
         go_to_bookmark(model);
+        return true;
+    case Command::show_findings:
+        show_findings(model, !model.shows_findings);
+        return true;
+    case Command::next_stretch:
+    case Command::previous_stretch:
+        step_findings(model, command == Command::next_stretch, now);
+        return true;
+    case Command::write_note:
+        begin_note(model, now);
         return true;
     case Command::toggle_bookmark:
         toggle_bookmark(model);
@@ -265,6 +286,10 @@ void perform(ViewModel& model, Command command, double now) {
         break;
     case Command::edit_setup:
         open_popup(model, Popup::setup);
+        break;
+    case Command::save_setup:
+        model.popup = Popup::setup;
+        model.wants_saving = true;
         break;
     case Command::shortcuts:
         open_popup(model, Popup::shortcuts);

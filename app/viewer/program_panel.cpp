@@ -120,7 +120,7 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
 
 void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
-    text(frame.fonts.strong, frame.look.color(Role::text), "Program");
+    draw_list_tabs(frame);
     const std::string counts = fmt::format("of {}", model.rows.size());
     const std::string bad =
         fmt::format("{} {}", frame.fonts.icon(Icon::warning), model.offending.size());
@@ -138,6 +138,7 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(Role::dim), counts);
 
+    ImGui::Dummy(ImVec2(0, frame.px(1)));
     ImGui::SetNextItemWidth(area.width - frame.px(24));
     if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
     model.filter_wants_focus = false;
@@ -154,8 +155,8 @@ void ProgramPanel::draw_filter_note(Frame& frame) {
         wrapped_text(frame.fonts.small, frame.look.color(Role::violation), filter.refusal());
     if (!filter.wanted_text().empty())
         wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                     fmt::format("{} lines with the text \"{}\"", frame.model.filtered.size(),
-                                 filter.wanted_text()));
+                     fmt::format("Blocks with the text \"{}\": {}", filter.wanted_text(),
+                                 frame.model.filtered.size()));
 }
 
 void ProgramPanel::draw_row(Frame& frame, size_t block, float width) {

@@ -1,7 +1,7 @@
 #include "app/viewer/setup_popup.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -216,6 +216,7 @@ void SetupPopup::draw(Frame& frame) {
         begin(sheet);
         path_ = model.program->proposed_path;
     }
+    if (std::exchange(frame.model.wants_saving, false)) is_saving_ = true;
     text(frame.fonts.text, frame.look.color(Role::dim),
          sheet->path.empty() ? "No set-up was given: all of this was inferred from the program. "
                                "State what you know better."

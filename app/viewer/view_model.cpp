@@ -19,6 +19,8 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.least.resize(0);
     model.bands.clear();
     model.findings.clear();
+    model.groups.clear();
+    model.selected.reset();
     model.offending.clear();
     model.filtered.clear();
     model.path = nullptr;
@@ -135,6 +137,8 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
         mark_rows(model);
         count_rows(model);
         apply_filter(model);
+        if (news.findings || !model.findings.empty())
+            model.groups = grouped(model.rows, model.findings);
     }
     if (news.path) model.path = news.path;
     if (news.place) model.place = news.place;

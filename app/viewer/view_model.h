@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "app/viewer/finding_note.h"
 #include "app/viewer/row_filter.h"
 #include "app/viewer/session_update.h"
 #include "app/viewer/settings.h"
@@ -62,7 +63,8 @@ struct ViewModel {
     MinimumTree least;
     std::vector<ToolBand> bands;
     std::vector<core::Finding> findings;
-    std::vector<size_t> offending; // blocks, in order
+    std::vector<FindingGroup> groups; // of them
+    std::vector<size_t> offending;    // blocks, in order
     size_t near_count = 0;
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const PlaceView> place;
@@ -81,6 +83,9 @@ struct ViewModel {
     std::vector<size_t> filtered; // rows that the filter lets through; only with a filter
     std::vector<Breakpoint> breakpoints;
     std::set<size_t> bookmarks;
+    std::vector<FindingNote> notes;            // of all programs
+    std::optional<StretchPlace> selected = {}; // in the list of findings
+    bool shows_findings = false, note_wants_focus = false;
     Settings settings;
     TimelineRange range;
     bool follows_timeline = true; // the whole program, as it grows
@@ -106,9 +111,11 @@ struct ViewModel {
     std::vector<std::string> watches; // expressions
     bool watches_changed = false;
     std::optional<SetupRequest> wanted_setup;
-    std::string wanted_path; // of a program, set-up or mesh that was dropped or typed
+    bool wants_saving = false; // the popup is to ask for a file
+    std::string wanted_path;   // of a program, set-up or mesh that was dropped or typed
 
     // what the window is to do
+    bool notes_changed = false;
     bool wants_picture = false, wants_reload = false, wants_quit = false;
 
     bool has_rows() const { return !rows.empty(); }

@@ -100,6 +100,7 @@ private:
     void feed_keys();
     void rebuild_fonts();
     void save_picture();
+    void keep_notes();
     void work_with_saved();
     void remember_place();
     void set_title();
@@ -244,6 +245,17 @@ void Window::save_picture() {
     damage();
 }
 
+void Window::keep_notes() {
+    if (job_.notes_file.empty() || !model.program) return;
+    std::error_code ignored; // the writing tells of it
+    std::filesystem::create_directories(job_.notes_file.parent_path(), ignored);
+    const std::vector<FindingNote> kept = notes_in(read_text(job_.notes_file).value_or(""));
+    model.notes = merged(kept, model.notes, notes_key(model));
+    const auto written = job_.write(job_.notes_file, text_of(model.notes));
+    if (!written)
+        say(model, "The note could not be kept: " + written.error().message, glfwGetTime());
+}
+
 void Window::update() {
     const double now = glfwGetTime();
     SessionUpdate news = worker_.take();
@@ -264,6 +276,7 @@ void Window::update() {
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
     if (send_requests(model, worker_)) damage();
+    if (std::exchange(model.notes_changed, false)) keep_notes();
     if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
@@ -422,6 +435,7 @@ core::Result<void> run_window(const WindowJob& job) {
     FEELER_TRY(render::Renderer renderer, render::Renderer::make());
     const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
     shown->model.settings = settings;
+    shown->model.notes = notes_in(read_text(job.notes_file).value_or(""));
     listen_to_keys(window.get());
     glfwSetWindowUserPointer(window.get(), shown.get());
     shown->run();

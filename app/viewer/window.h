@@ -11,6 +11,7 @@ namespace app::viewer {
 struct WindowJob {
     std::optional<CheckJob> check;       // empty: the welcome screen
     std::filesystem::path settings_file; // read at the start, written at the end; empty: neither
+    std::filesystem::path notes_file;    // what is written on findings; empty: nowhere
     std::filesystem::path pictures;      // folder that F12 saves into
     FileWriter write;                    // how set-ups are saved
 };

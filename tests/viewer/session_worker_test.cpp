@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/commands/output.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/session_worker.h"
 #include "tests/support/scoped_folder.h"
@@ -196,6 +197,43 @@ TEST(SessionWorker, EndsAtAnyMoment) {
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
         worker.show({20, false});
     }
+}
+
+TEST(SessionWorker, ChecksWithAnEditedSetupAndSavesIt) {
+    const test_support::ScopedFolder folder;
+    app::CheckJob job;
+    job.program = folder.write("p.nc", "G21 G90 G54\nT1 M6\nS8000 M3\nG43 H1 Z5\nG0 X0 Y0\n"
+                                       "G1 Z-3 F200\nX40\nG0 Z5\nM30\n");
+    Watcher watcher;
+    watcher.open(job);
+    ASSERT_TRUE(watcher.record());
+    const auto sheet = watcher.model.program->sheet;
+    ASSERT_TRUE(sheet);
+    ASSERT_EQ(sheet->tools.size(), 1u);
+    go_to(watcher.model, 4);
+    watcher.model.bookmarks = {3};
+
+    app::SetupSheet wanted = *sheet;
+    wanted.tools[0].tool.diameter = 12.0;
+    job.edits = app::edits_between(*sheet, wanted, {});
+    watcher.open(job);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.opening == 2; }));
+    ASSERT_TRUE(watcher.record());
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.program->sheet != nullptr; }));
+    EXPECT_EQ(watcher.model.cursor.block, 4u);
+    EXPECT_EQ(watcher.model.bookmarks, (std::set<size_t>{3}));
+    const app::SetupSheet& edited = *watcher.model.program->sheet;
+    EXPECT_EQ(edited.tools[0].stated, (std::set<std::string>{"diameter"}));
+    EXPECT_EQ(edited.tools[0].tool.diameter, 12.0);
+
+    SaveRequest request{job, folder / "p.toml", false, app::write_output};
+    watcher.worker().save_setup(request);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
+    EXPECT_FALSE(watcher.model.saved->refusal);
+    watcher.model.saved.reset();
+    watcher.worker().save_setup(request);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
+    EXPECT_TRUE(watcher.model.saved->refusal && watcher.model.saved->exists);
 }
 
 } // namespace

@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include "app/viewer/finding_note.h"
+
+namespace {
+
+using namespace app::viewer;
+
+FindingGroup group_of(const char* rule) {
+    FindingGroup group;
+    group.rule = rule;
+    group.pair = {"holder", "clamp-1"};
+    return group;
+}
+
+BlockRow row_in(uint32_t line, const char* code) {
+    BlockRow row;
+    row.line = line;
+    row.text = code;
+    return row;
+}
+
+TEST(FindingNotes, AreKnownAgainWhenLinesWerePutInBefore) {
+    std::vector<FindingNote> notes;
+    write_note(notes, "/a.nc", group_of("collision"), row_in(44, "Y75."), "raise it");
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("collision"), row_in(44, "Y75.")), "raise it");
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("collision"), row_in(51, "Y75.")), "raise it");
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("collision"), row_in(44, "Y76.")), "");
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("near-miss"), row_in(44, "Y75.")), "");
+    EXPECT_EQ(note_on(notes, "/b.nc", group_of("collision"), row_in(44, "Y75.")), "");
+}
+
+TEST(FindingNotes, OfLinesThatReadTheSameTheNearestOneCounts) {
+    std::vector<FindingNote> notes;
+    write_note(notes, "/a.nc", group_of("collision"), row_in(10, "Y75."), "first");
+    write_note(notes, "/a.nc", group_of("collision"), row_in(90, "Y75."), "second");
+    EXPECT_EQ(notes.size(), 2u);
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("collision"), row_in(20, "Y75.")), "first");
+    EXPECT_EQ(note_on(notes, "/a.nc", group_of("collision"), row_in(70, "Y75.")), "second");
+    write_note(notes, "/a.nc", group_of("collision"), row_in(10, "Y75."), "");
+    EXPECT_EQ(notes.size(), 1u);
+}
+
+TEST(FindingNotes, ComeBackFromTheirFileAsTheyWere) {
+    std::vector<FindingNote> notes;
+    write_note(notes, "/a b/\"q\".nc", group_of("collision"), row_in(44, "(SAY \"X\" \\) Y75."),
+               "raise \xC3\xBC \\ \"clamp\"");
+    write_note(notes, "/b.nc", group_of("near-miss"), row_in(1, "G0"), "fine");
+    EXPECT_EQ(notes_in(text_of(notes)), notes);
+    EXPECT_TRUE(notes_in("[[note]\nnonsense").empty());
+    EXPECT_TRUE(notes_in("note = 5\n[x]\n").empty());
+    EXPECT_TRUE(notes_in("[[note]]\nprogram = 5\ntext = \"a\"\n").empty());
+}
+
+TEST(FindingNotes, OfOtherProgramsStay) {
+    std::vector<FindingNote> kept, ours;
+    write_note(kept, "/a.nc", group_of("collision"), row_in(1, "G0"), "old");
+    write_note(kept, "/b.nc", group_of("collision"), row_in(1, "G0"), "of another window");
+    write_note(ours, "/a.nc", group_of("collision"), row_in(1, "G0"), "new");
+    const auto all = merged(kept, ours, "/a.nc");
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(note_on(all, "/a.nc", group_of("collision"), row_in(1, "G0")), "new");
+    EXPECT_EQ(note_on(all, "/b.nc", group_of("collision"), row_in(1, "G0")), "of another window");
+}
+
+} // namespace
