@@ -16,11 +16,11 @@ namespace {
 using render::Role;
 
 void draw_shortcuts(Frame& frame) {
-    constexpr std::array columns = {CommandGroup::walk, CommandGroup::stops, CommandGroup::look,
-                                    CommandGroup::show, CommandGroup::window};
+    constexpr std::array columns = {CommandGroup::walk, CommandGroup::look, CommandGroup::show,
+                                    CommandGroup::stops, CommandGroup::window};
     if (!ImGui::BeginTable("keys", 3)) return;
     for (const CommandGroup group : columns) {
-        if (group != CommandGroup::show && group != CommandGroup::stops) ImGui::TableNextColumn();
+        if (group != CommandGroup::show && group != CommandGroup::window) ImGui::TableNextColumn();
         text(frame.fonts.strong, frame.look.color(Role::accent), title_of(group));
         for (const KeyBinding& binding : key_bindings()) {
             if (binding.group != group || binding.help[0] == 0) continue;

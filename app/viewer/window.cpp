@@ -1,11 +1,7 @@
 #include "app/viewer/window.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <deque>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <utility>
 
@@ -23,6 +19,7 @@
 #include "app/viewer/perform.h"
 #include "app/viewer/screen_picture.h"
 #include "app/viewer/session_worker.h"
+#include "app/viewer/window_files.h"
 
 namespace app::viewer {
 namespace {
@@ -64,18 +61,6 @@ struct Gui {
     }
 };
 
-core::Result<std::string> read_text(const std::filesystem::path& path) {
-    std::ifstream file(path);
-    if (!file) return core::fail(core::ErrorCode::io, "there is no such file");
-    return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
-bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
-}
-
 class Window {
 public:
     Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
@@ -100,7 +85,6 @@ private:
     void feed_keys();
     void rebuild_fonts();
     void save_picture();
-    void keep_notes();
     void work_with_saved();
     void remember_place();
     void set_title();
@@ -178,27 +162,9 @@ void Window::work_with_saved() {
 }
 
 void Window::drop(const std::vector<std::string>& paths) {
-    CheckJob check = job_.check.value_or(CheckJob{});
-    const std::string setup_before = check.setup;
-    bool has_program = false, has_setup = false;
-    for (const std::string& path : paths) {
-        if (has_ending(path, {".stl", ".obj", ".ply", ".off"})) {
-            say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", glfwGetTime());
-        } else if (has_ending(path, {".toml"})) {
-            check.setup = path;
-            has_setup = true;
-        } else {
-            check.program = path;
-            has_program = true;
-        }
-    }
     damage();
-    if (!has_program && !has_setup) return;
-    if (check.program.empty()) return say(model, "Drop the program as well", glfwGetTime());
-    if (has_program && !has_setup) check.setup.clear();
-    if (has_program) model.camera_placed = false;
-    if (has_program) model.breakpoints.clear();
-    check.edits = {};
+    const auto check = with_dropped(job_.check.value_or(CheckJob{}), paths, model, glfwGetTime());
+    if (!check) return;
     job_.check = check;
     open_job();
 }
@@ -245,17 +211,6 @@ void Window::save_picture() {
     damage();
 }
 
-void Window::keep_notes() {
-    if (job_.notes_file.empty() || !model.program) return;
-    std::error_code ignored; // the writing tells of it
-    std::filesystem::create_directories(job_.notes_file.parent_path(), ignored);
-    const std::vector<FindingNote> kept = notes_in(read_text(job_.notes_file).value_or(""));
-    model.notes = merged(kept, model.notes, notes_key(model));
-    const auto written = job_.write(job_.notes_file, text_of(model.notes));
-    if (!written)
-        say(model, "The note could not be kept: " + written.error().message, glfwGetTime());
-}
-
 void Window::update() {
     const double now = glfwGetTime();
     SessionUpdate news = worker_.take();
@@ -276,7 +231,8 @@ void Window::update() {
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
     if (send_requests(model, worker_)) damage();
-    if (std::exchange(model.notes_changed, false)) keep_notes();
+    if (std::exchange(model.notes_changed, false))
+        keep_notes(model, job_.notes_file, job_.write, now);
     if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
@@ -348,10 +304,7 @@ void Window::run() {
             glfwWaitEventsTimeout(watch_interval);
     }
     remember_place();
-    if (job_.settings_file.empty()) return;
-    std::error_code ignored; // there is nobody left to be told
-    std::filesystem::create_directories(job_.settings_file.parent_path(), ignored);
-    std::ofstream(job_.settings_file) << text_of(model.settings);
+    keep_settings(model.settings, job_.settings_file);
 }
 
 Window& window_of(GLFWwindow* window) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/finding_note.h"
+#include "app/commands/output.h"
+#include "app/viewer/window_files.h"
+#include "tests/support/scoped_folder.h"
 
 namespace {
 
@@ -61,6 +63,39 @@ TEST(FindingNotes, OfOtherProgramsStay) {
     ASSERT_EQ(all.size(), 2u);
     EXPECT_EQ(note_on(all, "/a.nc", group_of("collision"), row_in(1, "G0")), "new");
     EXPECT_EQ(note_on(all, "/b.nc", group_of("collision"), row_in(1, "G0")), "of another window");
+}
+
+TEST(FindingNotes, AreKeptBesideThoseOfOthers) {
+    const test_support::ScopedFolder folder;
+    const std::string path = folder / "new/notes.toml";
+    ViewModel model;
+    OpenedProgram opened;
+    opened.program = "/a.nc";
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    write_note(model.notes, "/a.nc", group_of("collision"), row_in(1, "G0"), "mine");
+    keep_notes(model, path, app::write_output, 0.0);
+    EXPECT_EQ(notes_in(*read_text(path)), model.notes);
+    opened.program = "/b.nc";
+    ViewModel other;
+    other.program = std::make_shared<const OpenedProgram>(opened);
+    write_note(other.notes, "/b.nc", group_of("collision"), row_in(1, "G0"), "yours");
+    keep_notes(other, path, app::write_output, 0.0);
+    EXPECT_EQ(other.notes.size(), 2u);
+    EXPECT_EQ(notes_in(*read_text(path)).size(), 2u);
+}
+
+TEST(DroppedFiles, OfAnotherProgramTakeNoEditsAlong) {
+    ViewModel model;
+    app::CheckJob job;
+    job.program = "a.nc";
+    job.setup = "s.toml";
+    job.edits.allowance = 3.0;
+    EXPECT_FALSE(with_dropped(job, {"clamp.STL"}, model, 0.0));
+    EXPECT_FALSE(with_dropped({}, {"s.toml"}, model, 0.0));
+    const auto other = with_dropped(job, {"b.nc"}, model, 0.0);
+    EXPECT_TRUE(other && other->setup.empty() && other->edits.empty());
+    const auto with_setup = with_dropped(job, {"t.TOML"}, model, 0.0);
+    EXPECT_TRUE(with_setup && with_setup->program == "a.nc" && with_setup->setup == "t.TOML");
 }
 
 } // namespace

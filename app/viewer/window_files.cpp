@@ -1,0 +1,71 @@
+#include "app/viewer/window_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+
+#include "app/viewer/navigation.h"
+
+namespace app::viewer {
+namespace {
+
+bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
+}
+
+} // namespace
+
+core::Result<std::string> read_text(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    if (!file) return core::fail(core::ErrorCode::io, "there is no such file");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
+                                     ViewModel& model, double now) {
+    bool has_program = false, has_setup = false;
+    for (const std::string& path : paths) {
+        if (has_ending(path, {".stl", ".obj", ".ply", ".off"})) {
+            say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", now);
+        } else if (has_ending(path, {".toml"})) {
+            check.setup = path;
+            has_setup = true;
+        } else {
+            check.program = path;
+            has_program = true;
+        }
+    }
+    if (!has_program && !has_setup) return {};
+    if (check.program.empty()) {
+        say(model, "Drop the program as well", now);
+        return {};
+    }
+    if (has_program && !has_setup) check.setup.clear();
+    if (has_program) model.camera_placed = false;
+    if (has_program) model.breakpoints.clear();
+    check.edits = {};
+    return check;
+}
+
+void keep_settings(const Settings& settings, const std::filesystem::path& path) {
+    if (path.empty()) return;
+    std::error_code ignored; // there is nobody left to be told
+    std::filesystem::create_directories(path.parent_path(), ignored);
+    std::ofstream(path) << text_of(settings);
+}
+
+void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
+                double now) {
+    if (path.empty() || !model.program) return;
+    std::error_code ignored; // the writing tells of it
+    std::filesystem::create_directories(path.parent_path(), ignored);
+    model.notes = merged(notes_in(read_text(path).value_or("")), model.notes, notes_key(model));
+    const auto written = write(path, text_of(model.notes));
+    if (!written) say(model, "The note could not be kept: " + written.error().message, now);
+}
+
+} // namespace app::viewer
