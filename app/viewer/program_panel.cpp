@@ -138,7 +138,6 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(Role::dim), counts);
 
-    ImGui::Dummy(ImVec2(0, frame.px(1)));
     ImGui::SetNextItemWidth(area.width - frame.px(24));
     if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
     model.filter_wants_focus = false;
