@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <histedit.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "app/commands/interrupt.h"
@@ -17,6 +18,7 @@ namespace app {
 namespace {
 
 constexpr int longest_history = 2000;
+constexpr unsigned char end_of_input = 'D' - '@'; // Ctrl-D
 
 /// The beginning that all names share.
 std::string common_beginning(const std::vector<std::string>& names) {
@@ -64,7 +66,8 @@ int LineReader::Editor::read(wchar_t& character) {
             unsigned char byte = 0;
             const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
             if (count < 0) continue;
-            character = byte;
+            // What was typed as Ctrl-D during a walk comes as 0 when the terminal changes its mode.
+            character = byte == 0 ? end_of_input : byte;
             return static_cast<int>(count);
         }
         goes_on = session.record_for(slice);
@@ -107,6 +110,8 @@ LineReader::Editor::Editor(Prompt& its_prompt, DebugSession& its_session)
     ::el_set(line, EL_CLIENTDATA, this);
     ::el_set(line, EL_PROMPT, ask);
     ::el_set(line, EL_EDITOR, "emacs");
+    // Otherwise Ctrl-C takes away what poll has just promised, and the read waits for the next key.
+    ::el_set(line, EL_SETTY, "-d", "+noflsh", nullptr);
     ::el_set(line, EL_HIST, ::history, history);
     ::el_set(line, EL_GETCFN, read_one);
     ::el_set(line, EL_ADDFN, "complete", "Complete the word", complete_one);
@@ -147,9 +152,12 @@ LineReader::~LineReader() {
 std::optional<std::string> LineReader::next() {
     while (true) {
         int length = 0;
+        // By itself it shows the prompt first: a Ctrl-D that comes at once would be lost.
+        ::el_set(editor_->line, EL_PREP_TERM, 1);
         const char* read = ::el_gets(editor_->line, &length);
         if (was_interrupted()) {
             forget_interrupt();
+            ::tcflush(STDIN_FILENO, TCIFLUSH);
             ::el_reset(editor_->line);
             fmt::print("\n");
             continue;

@@ -92,5 +92,49 @@ TEST(Debug, CompletesRepeatsAndKeepsItsHistoryAtATerminal) {
                 HasSubstr("clearance"));
 }
 
+/// Some 40,000 blocks: seconds of work.
+constexpr const char* long_loop = "G21 G90 G17 G54\nT1 M6\nM3 S2000\nG43 H1 Z5.\n#1=0\n"
+                                  "WHILE[#1LT9000]DO1\n#1=#1+1\nG1 X10. Y10. F900.\n"
+                                  "X60. Z[-#1*0.001]\nEND1\nM30\n";
+
+std::vector<std::string> debug_words(const Files& files, const std::string& text) {
+    const std::string file = files.folder.write("loop.nc", text);
+    return {FEELER_BINARY, "debug", file, "--setup", files.setup, "--mesh-size", "1"};
+}
+
+TEST(Debug, IsNotEndedByControlC) {
+    const Files files;
+    Terminal terminal(debug_words(files, long_loop), files.folder.path());
+    terminal.until("(feeler) ");
+    terminal.type("steppp\x03"); // drops the line
+    terminal.until("(feeler) ");
+    terminal.type("step\n");
+    EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("line 2"));
+    terminal.type("until line = 11\n");
+    terminal.until(" blocks, "); // of the progress: it has begun
+    terminal.type("\x03");
+    EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("interrupted"));
+    terminal.type("back\n");
+    EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("block "));
+    terminal.type("quit\n");
+    EXPECT_EQ(terminal.status(), 0);
+}
+
+TEST(Debug, EndsWithControlDAtOnceOrAfterAWalk) {
+    const Files files;
+    {
+        Terminal terminal(debug_words(files, program), files.folder.path());
+        terminal.until("(feeler) ");
+        terminal.type("\x04");
+        EXPECT_EQ(terminal.status(), 0);
+    }
+    Terminal terminal(debug_words(files, long_loop), files.folder.path());
+    terminal.until("(feeler) ");
+    terminal.type("until line = 11\n");
+    terminal.until(" blocks, ");
+    terminal.type("\x04"); // while nobody reads
+    EXPECT_EQ(terminal.status(), 0);
+}
+
 } // namespace
 } // namespace app_test

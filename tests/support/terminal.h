@@ -49,8 +49,8 @@ public:
 
     /// What is on the screen up to and with this text; all of it where that does not come in time.
     std::string until(const std::string& text) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-        while (std::chrono::steady_clock::now() < end) {
+        const auto end = Clock::now() + patience;
+        while (Clock::now() < end) {
             if (const size_t at = screen_.find(text); at != std::string::npos) {
                 const std::string seen = screen_.substr(0, at + text.size());
                 screen_.erase(0, at + text.size());
@@ -61,9 +61,11 @@ public:
         return "never '" + text + "' but: " + screen_;
     }
 
-    /// How the program ended, when it has done so.
+    /// How the program ended; -1 where it does not end in time.
     int status() {
-        while (more()) continue;
+        const auto end = Clock::now() + patience;
+        while (more())
+            if (Clock::now() > end) return -1;
         int status = -1;
         ::waitpid(child_, &status, 0);
         child_ = -1;
@@ -71,6 +73,9 @@ public:
     }
 
 private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::seconds patience{60};
+
     /// Reads what there is; false when the program has closed its side.
     bool more() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
