@@ -6,6 +6,14 @@
 
 namespace app::viewer {
 
+/// Whether a path has the ending of a mesh, or of a set-up.
+bool is_mesh_file(const std::string& path);
+bool is_setup_file(const std::string& path);
+
+/// The set-up and the files it names: meshes, and the machine with its own. They are found even
+/// where the set-up cannot be read as a whole.
+std::vector<std::string> files_of_setup(const std::string& setup);
+
 /// Files that are looked at now and then, to see whether somebody has saved them again.
 class FileWatch {
 public:

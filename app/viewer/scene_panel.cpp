@@ -67,6 +67,25 @@ std::string place_text(const ViewModel& model) {
                        clock_text(last.time + last.duration));
 }
 
+/// Why the program goes no further, where nobody can overlook it.
+void draw_stop(const Frame& frame, ImDrawList& list, const Area& area) {
+    if (!frame.model.stopped) return;
+    const core::Error& error = *frame.model.stopped;
+    const std::string words =
+        fmt::format("{}  Line {} could not be run, nothing behind it is checked: {}",
+                    frame.fonts.icon(Icon::warning), error.where.line, error.message);
+    ImFont* const font = frame.fonts.text;
+    const float x = frame.px(11), y = frame.px(7);
+    const ImVec2 corner(area.x + frame.px(14), area.y + frame.px(52));
+    const float beside_axes = area.width - frame.px(128) - 2 * x;
+    const float room = std::max(beside_axes, frame.px(200));
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, room, words.c_str());
+    list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
+                       frame.look.color(Role::violation), frame.px(5));
+    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, IM_COL32(255, 255, 255, 255),
+                 words.c_str(), nullptr, room);
+}
+
 std::string words_of(const ViewModel& model, const BlockRow& row) {
     if (row.verdict == core::Verdict::collision) return "collision";
     return length_text(model, *row.lower) + " " + length_unit(model);
@@ -253,6 +272,7 @@ void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewp
     draw_measure(frame, area, size);
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)}, place_text(model));
+    draw_stop(frame, list, area);
     std::string words;
     if (frame.now < model.message_until) words = model.message;
     if (model.is_busy && !model.place)

@@ -1,6 +1,7 @@
 #include "app/viewer/window.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <set>
 #include <utility>
@@ -132,7 +133,9 @@ void Window::open_job() {
     if (!job_.check) return;
     worker_.set_breakpoints(model.breakpoints);
     worker_.open(*job_.check);
-    files_.set({job_.check->program, job_.check->setup});
+    std::vector<std::string> files = files_of_setup(job_.check->setup);
+    files.push_back(job_.check->program);
+    files_.set(std::move(files));
     model.edits = job_.check->edits;
     damage();
 }
@@ -173,7 +176,8 @@ void Window::press(int code, int modifiers) {
     damage();
     const auto command = command_of(code, modifiers);
     if (!command) return;
-    const bool is_typing = ImGui::GetIO().WantTextInput;
+    // The wish for text outlives its field by two frames.
+    const bool is_typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
     const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
     const bool moves_text = code >= key::enter && code <= key::end;
     if (is_typing && (is_plain || moves_text)) return;
@@ -195,6 +199,7 @@ void Window::set_title() {
             title +=
                 fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
                             model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
+        if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
         title += " - feeler";
     }
     if (title == title_) return;

@@ -1,23 +1,12 @@
 #include "app/viewer/window_files.h"
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
-#include <initializer_list>
 #include <iterator>
 
+#include "app/viewer/file_watch.h"
 #include "app/viewer/navigation.h"
 
 namespace app::viewer {
-namespace {
-
-bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
-}
-
-} // namespace
 
 core::Result<std::string> read_text(const std::filesystem::path& path) {
     std::ifstream file(path);
@@ -29,9 +18,9 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
                                      ViewModel& model, double now) {
     bool has_program = false, has_setup = false;
     for (const std::string& path : paths) {
-        if (has_ending(path, {".stl", ".obj", ".ply", ".off"})) {
+        if (is_mesh_file(path)) {
             say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", now);
-        } else if (has_ending(path, {".toml"})) {
+        } else if (is_setup_file(path)) {
             check.setup = path;
             has_setup = true;
         } else {

@@ -1,12 +1,16 @@
 #include <fstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/viewer/file_watch.h"
 
 namespace {
 
+using app::viewer::files_of_setup;
 using app::viewer::FileWatch;
+using testing::EndsWith;
+using testing::UnorderedElementsAre;
 
 class FileWatchTest : public testing::Test {
 protected:
@@ -39,6 +43,32 @@ TEST_F(FileWatchTest, WaitsForAFileThatWasTakenAwayOrEmptied) {
     write("G1 X3 Y5\n");
     EXPECT_FALSE(watch.has_changed());
     EXPECT_TRUE(watch.has_changed());
+}
+
+TEST_F(FileWatchTest, IsNotHeldUpByAFileThatWasNeverThere) {
+    FileWatch watch;
+    watch.set({path_, path_ + ".none"});
+    write("G1 X1\nG1 X2\n");
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_TRUE(watch.has_changed());
+    std::ofstream(path_ + ".none") << "it comes";
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_TRUE(watch.has_changed());
+    std::filesystem::remove(path_ + ".none");
+}
+
+TEST(FilesOfSetup, AreAllThatItAndItsMachineName) {
+    const std::string folder = testing::TempDir();
+    std::ofstream(folder + "feeler_watched.toml")
+        << "frame = \"G54\"\n[machine]\nfile = 'feeler_machine.toml'\n"
+           "[[fixture]]\nmesh = \"a/clamp.stl\" # not \"b.nc\"\n[[[broken\nmesh = \"C.STL\"\n";
+    std::ofstream(folder + "feeler_machine.toml") << "mesh = \"table.obj\"\n";
+    EXPECT_THAT(files_of_setup(folder + "feeler_watched.toml"),
+                UnorderedElementsAre(EndsWith("feeler_watched.toml"),
+                                     EndsWith("feeler_machine.toml"), EndsWith("a/clamp.stl"),
+                                     EndsWith("C.STL"), EndsWith("table.obj")));
+    std::filesystem::remove(folder + "feeler_watched.toml");
+    std::filesystem::remove(folder + "feeler_machine.toml");
 }
 
 } // namespace

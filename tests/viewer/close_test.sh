@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Closes the real window at many moments of a long check: it ends at once, with status 0, and
+# nothing is said. Under the address sanitizer that also means that nothing is used after its end and
+# nothing of ours leaks. Arguments: the program feeler, the folder of assets, a folder for pictures
+# (kept), drop_files. FEELER_CLOSE_BLOCKS: length of the program.
+set -euo pipefail
+feeler=$1 assets=$2 pictures=$3 drop_files=$4
+# shellcheck source=tests/viewer/screen.sh
+source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
+
+# A raster over a plate, some 60,000 blocks.
+raster() {
+    printf 'G21 G90 G17 G54\nT1 M6\nM3 S9000\nG43 H1 Z20.\nG0 X0. Y0.\nG1 Z-1. F3000.\n'
+    awk -v blocks="$1" 'BEGIN {
+        for (i = 0; i < blocks; ++i) {
+            row = int(i / 200); x = i % 200; if (row % 2) x = 199 - x
+            printf "X%.2f Y%.2f Z%.3f\n", x / 2, row * 0.3, -1 - ((i * 7919) % 100) / 200
+        } }'
+    printf 'G0 Z20.\nM30\n'
+}
+raster "${FEELER_CLOSE_BLOCKS:-60000}" >"$work/raster.nc"
+raster 300 >"$work/short.nc"
+cat >"$work/raster.toml" <<'TOML'
+mesh_size = 0.5
+[stock]
+box = [[0, 0, -20], [100, 100, 0]]
+frame = "G54"
+[offsets]
+G54 = { X = -350, Y = -200, Z = -420 }
+[[tool]]
+number = 1
+shape = "ball"
+diameter = 6
+flute_length = 22
+shank = [[6, 6, 23]]
+holder = [[32, 40, 30]]
+TOML
+
+open_raster() { open_window "$work/raster.nc" --setup "$work/raster.toml"; }
+close() {
+    press ctrl+q
+    ended "$1"
+}
+running() { kill -0 "$view" 2>/dev/null || die "the window is still there: $1"; }
+
+for seconds in 0 0.1 0.3 1 3; do
+    open_raster
+    sleep "$seconds"
+    close "$seconds s after it was opened"
+done
+
+open_raster
+expect 'the path of all blocks is there' 'of [0-9]{4,}\)'
+picture 01-checking
+press bracketright bracketright bracketright bracketright bracketright space
+expect 'it plays while it is checked' 'block [1-9][0-9]+ of'
+picture 02-playing
+close 'while it plays and is checked'
+
+open_raster
+expect 'is open' 'block 0 of'
+press End
+close 'on the way to the last block'
+
+open_raster
+expect 'is open' 'block 0 of'
+press n
+close 'while it looks for the next violation'
+
+open_raster
+expect 'is open' 'block 0 of'
+for _ in 1 2 3 4; do
+    press ctrl+r
+    sleep 0.2
+done
+running 'read again and again'
+close 'while it is read again'
+
+open_raster
+expect 'is open' 'block 0 of'
+printf '(ONE MORE)\n' >>"$work/raster.nc"
+sleep 1.5
+running 'the file has changed'
+press Right Right
+close 'after the file has changed'
+
+open_raster
+expect 'is open' 'block 0 of'
+"$drop_files" "$window" 700 400 "$work/short.nc" "$work/raster.toml"
+expect 'another program takes the place of one that is checked' 'short.nc, line .* of 30[0-9]\)'
+"$drop_files" "$window" 700 400 "$work/raster.nc" "$work/raster.toml"
+close 'after two drops'
+
+printf 'passed\n'

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Files that change under the real window, and files that cannot be read: a program, a set-up and a
+# mesh, each explained, each opened again once it is mended. Arguments: the program feeler, the folder
+# of assets, a folder for pictures (kept).
+set -euo pipefail
+feeler=$1 assets=$2 pictures=$3
+# shellcheck source=tests/viewer/screen.sh
+source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
+
+cp -r "$assets/programs" "$assets/setups" "$assets/machines" "$assets/meshes" "$work"
+program=$work/programs/clamped_plate_low.nc setup=$work/setups/clamped_plate.toml
+mesh=$(find "$work/meshes" -name "$(grep -o '[a-z_]*\.stl' "$setup" | head -1)")
+for file in "$program" "$setup" "$mesh"; do cp "$file" "$file.good"; done
+
+# broken FILE WHAT PICTURE: the file has just been spoilt; it is mended when that was explained.
+broken() {
+    expect "$2 is explained" 'could not be opened'
+    picture "$3"
+    (($(of_color "$3" '#FF5A36') > 20)) || die "$2 is explained in the colour of violations"
+    cp "$1.good" "$1"
+    expect "$2 is opened again when it is mended" 'clamped_plate_low.nc, line'
+}
+
+open_window "$program" --setup "$setup"
+expect 'opens' 'line 2 \(block 0 of 45'
+press g
+sleep 0.5
+xdotool type 30
+press Return
+expect 'G goes to a line' 'line 30 \(block 25'
+press F9
+press Home
+expect 'Home' 'block 0 of'
+press n
+expect 'N' 'line 44 \(block 38'
+press 2
+xdotool mousemove 720 30
+picture 01-before
+
+# The last line but one changes: place, camera and breakpoint stay.
+sed -i 's/^M30$/G4 P0.2\nM30/' "$program"
+expect 'a saved program is read again, at the same place' 'line 44 \(block 38 of 46, violation\)'
+sleep 6 # until the message is gone
+picture 02-after
+convert "$pictures/01-before.png" -crop 760x600+380+110 "$work/before.png"
+convert "$pictures/02-after.png" -crop 760x600+380+110 "$work/after.png"
+(($(compare -metric AE "$work/before.png" "$work/after.png" null: 2>&1 || true) < 2000)) \
+    || die 'the camera stays'
+press Home
+expect 'Home' 'block 0 of'
+press F5
+expect 'the breakpoint stays' 'line 30 \(block 25'
+
+# A line above: the place is that of the same text, as far as it can be told.
+cp "$program.good" "$program"
+expect 'and again' 'block [0-9]+ of 45'
+
+printf 'G21\nG0 X1\nG1 [[[\n' >"$program"
+expect 'a program that stops half way says so' 'of 1\), stopped at line 3'
+picture 03-stopped
+(($(of_color 03-stopped '#FF5A36') > 5000)) || die 'where the program stops is shown loudly'
+printf 'GARBAGE[[[' >"$program"
+broken "$program" 'a corrupted program' 03-program
+head -c 4000 /dev/urandom >"$program"
+broken "$program" 'a program of random bytes' 04-random
+sed -i 's/^mesh_size.*/mesh_size = "much"/' "$setup"
+broken "$setup" 'a wrong value in the set-up' 05-setup
+printf '[[[\n' >"$setup"
+broken "$setup" 'a set-up that is no TOML' 06-toml
+head -c 700 "$mesh.good" >"$mesh"
+broken "$mesh" 'a mesh that is cut off' 07-mesh
+head -c 4000 /dev/urandom >"$mesh"
+broken "$mesh" 'a mesh of random bytes' 08-random-mesh
+rm "$program"
+sleep 1
+cp "$program.good" "$program"
+expect 'a program that was away for a while is back' 'clamped_plate_low.nc, line'
+
+press ctrl+q
+ended 'by Ctrl+Q'
+printf 'passed\n'

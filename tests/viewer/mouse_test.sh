@@ -1,0 +1,157 @@
+#!/usr/bin/env bash
+# What the mouse does in the real window: files dropped through the window system, breakpoints set in
+# the gutter, the timeline dragged, lines found by clicks on the path and on what was cut, a section.
+# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), drop_files.
+set -euo pipefail
+feeler=$1 assets=$2 pictures=$3 drop_files=$4
+# shellcheck source=tests/viewer/screen.sh
+source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
+
+# Three grooves along X in a plate: lines 7, 11 and 15 cut them.
+cat >"$work/grooves.nc" <<'NC'
+G21 G90 G17 G54
+T1 M6
+M3 S3000
+G43 H1 Z20.
+G0 X-10. Y20.
+G1 Z-5. F800.
+X110.
+G0 Z20.
+X-10. Y50.
+G1 Z-5.
+X110.
+G0 Z20.
+X-10. Y80.
+G1 Z-5.
+X110.
+G0 Z20.
+M30
+NC
+cat >"$work/grooves.toml" <<'TOML'
+mesh_size = 1.0
+[stock]
+box = [[0, 0, -20], [100, 100, 0]]
+frame = "G54"
+[offsets]
+G54 = { X = -350, Y = -200, Z = -420 }
+[[tool]]
+number = 1
+shape = "flat"
+diameter = 14
+flute_length = 22
+shank = [[14, 14, 23]]
+holder = [[32, 40, 30]]
+TOML
+
+drop() { "$drop_files" "$window" 700 400 "$@" || die "a drop of $* is taken"; }
+
+open_window
+picture 01-welcome
+drop "$work/grooves.nc" "$work/grooves.toml"
+expect 'a program and its set-up are opened by a drop' 'grooves.nc, line 1 \(block 0 of 16'
+picture 02-dropped
+
+# The list: rows of 20 pixels from y = 114 on; the gutter is left of x = 34.
+row_y() { printf '%s' $((104 + 20 * $1)); }
+click 22 "$(row_y 9)"
+[[ $(title) =~ 'block 0 of' ]] || die 'a click into the gutter does not move'
+picture 03-gutter
+press F5
+expect 'F5 stops at the line whose gutter was clicked' 'line 9 \(block 8 of'
+click 22 "$(row_y 9)"
+press Home
+expect 'Home' 'block 0 of'
+press F5
+expect 'a second click takes the breakpoint away' 'block 16 of 16'
+
+# The timeline: the bars of 17 blocks stand between x = 12 and x = 1428.
+bar_x() { printf '%s' $((12 + (1416 * (2 * $1 + 1)) / 34)); }
+xdotool mousemove "$(bar_x 14)" 800 mousedown 1
+expect 'a press on the timeline goes to its block' 'block 14 of'
+for block in 12 9 6 3; do
+    xdotool mousemove "$(bar_x $block)" 830
+    expect 'the timeline follows a drag to the left' "block $block of"
+done
+for block in 5 11; do
+    xdotool mousemove "$(bar_x $block)" 830
+    expect 'and to the right' "block $block of"
+done
+xdotool mouseup 1
+sleep 0.3
+xdotool mousemove "$(bar_x 2)" 830
+sleep 0.5
+[[ $(title) =~ 'block 11 of' ]] || die 'the timeline stays when the button is up'
+
+# The view: from the top, without perspective, tool and machine.
+press End
+expect 'End' 'block 16 of'
+xdotool mousemove 720 600
+press 1
+press p
+press shift+h
+press shift+m
+press a
+picture 04-top
+
+click 425 213
+expect 'a click on the path goes to its line' 'line 15 '
+click 425 582
+expect 'and on another stretch of it' 'line 7 '
+press End
+press shift+p
+click 800 425
+expect 'a click on the floor of a groove goes to the line that cut it' 'line 11 '
+picture 05-cut-by
+press End
+click 800 605
+expect 'and in another groove' 'line 7 '
+press End
+expect 'End' 'block 16 of'
+click 800 310
+picture 06-raw
+[[ $(title) =~ 'block 16 of' ]] || die 'a click on raw stock goes nowhere'
+
+# The section: a face in the stock's colour, hatched, where the half before it was.
+face='#99A3AE'
+press 0
+press a
+xdotool mousemove 720 30
+picture 07-whole
+press x
+picture 08-section
+[[ $(of_color 07-whole "$face") == 0 ]] || die 'there is no face without a section'
+(($(of_color 08-section "$face") > 10000)) || die 'a section shows a face'
+click 1000 500
+[[ $(title) =~ 'block 16 of' ]] || die 'what the section has taken away is not clicked'
+xdotool mousemove 720 30
+press Escape
+picture 09-whole
+[[ $(of_color 09-whole "$face") == 0 ]] || die 'Escape ends the section'
+
+# The camera: a drag turns, the wheel goes nearer, and neither moves the place.
+xdotool mousemove 900 600 mousedown 2
+for x in 850 800 750; do xdotool mousemove "$x" 560 sleep 0.05; done
+xdotool mouseup 2 mousemove 720 30
+picture 10-turned
+(($(differing 09-whole 10-turned) > 20000)) || die 'a drag turns the view'
+xdotool mousemove 760 500 click 4 click 4 mousemove 720 30
+picture 11-nearer
+(($(differing 10-turned 11-nearer) > 20000)) || die 'the wheel goes nearer'
+[[ $(title) =~ 'block 16 of' ]] || die 'the camera does not move the place'
+
+# Another program by a drop, and what is dropped in vain.
+cp "$assets/programs/clamped_plate_low.nc" "$work/plate.nc"
+sed 's/^X110\.$/&\n(TWICE)/' "$work/grooves.nc" >"$work/a program with blanks.nc"
+drop "$work/plate.nc"
+expect 'another program is opened by a drop' 'plate.nc, line'
+picture 12-another
+drop "$work/a%20program%20with%20blanks.nc"
+expect 'a name with blanks is understood' 'a program with blanks.nc, line'
+printf 'solid\nendsolid\n' >"$work/part.stl"
+drop "$work/part.stl"
+picture 13-mesh
+[[ $(title) =~ 'with blanks.nc, line' ]] || die 'a mesh opens nothing'
+
+press ctrl+q
+ended 'by Ctrl+Q'
+printf 'passed\n'
