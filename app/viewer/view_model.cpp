@@ -10,9 +10,21 @@
 namespace app::viewer {
 namespace {
 
+/// What was said of one program says nothing of another.
+void forget_place(ViewModel& model) {
+    model.resume.reset();
+    model.cursor = {};
+    model.bookmarks.clear();
+    model.section.reset();
+    model.measuring.places.clear();
+    model.follows_timeline = true;
+    model.camera_placed = false;
+}
+
 /// Another program, or the same one read again: what a person has said of it stays.
 void start_anew(ViewModel& model, uint64_t opening) {
     if (model.opening != 0 && model.has_rows()) model.resume = model.row();
+    if (std::exchange(model.opens_another, false)) forget_place(model);
     model.opening = opening;
     model.program = nullptr;
     model.rows.clear();

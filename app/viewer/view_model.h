@@ -94,6 +94,7 @@ struct ViewModel {
     std::optional<size_t> hovered;    // block that was pointed at when the last frame was drawn
     std::optional<size_t> pointed_at; // in this one
     std::optional<BlockRow> resume;   // where to go on when the program has been read again
+    bool opens_another = false;       // the next opening is of another program
     std::optional<render::SectionPlane> section;
     Measuring measuring;
     Popup popup = Popup::none;

@@ -16,6 +16,7 @@ core::Result<std::string> read_text(const std::filesystem::path& path) {
 
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
                                      ViewModel& model, double now) {
+    const std::string before = check.program;
     bool has_program = false, has_setup = false;
     for (const std::string& path : paths) {
         if (is_mesh_file(path)) {
@@ -34,8 +35,10 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
         return {};
     }
     if (has_program && !has_setup) check.setup.clear();
-    if (has_program) model.camera_placed = false;
-    if (has_program) model.breakpoints.clear();
+    if (check.program != before) {
+        model.opens_another = true;
+        model.breakpoints.clear();
+    }
     check.edits = {};
     return check;
 }

@@ -143,10 +143,10 @@ picture 11-nearer
 cp "$assets/programs/clamped_plate_low.nc" "$work/plate.nc"
 sed 's/^X110\.$/&\n(TWICE)/' "$work/grooves.nc" >"$work/a program with blanks.nc"
 drop "$work/plate.nc"
-expect 'another program is opened by a drop' 'plate.nc, line'
+expect 'another program is opened by a drop, at its beginning' 'plate.nc, line 2 \(block 0 of'
 picture 12-another
 drop "$work/a%20program%20with%20blanks.nc"
-expect 'a name with blanks is understood' 'a program with blanks.nc, line'
+expect 'a name with blanks is understood' 'a program with blanks.nc, line 1 \(block 0 of'
 printf 'solid\nendsolid\n' >"$work/part.stl"
 drop "$work/part.stl"
 picture 13-mesh

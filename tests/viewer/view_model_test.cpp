@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include "app/viewer/navigation.h"
+#include "tests/viewer/rows.h"
+
+namespace viewer_test {
+namespace {
+
+using namespace app::viewer;
+
+/// The same rows under another opening, with lines from `first_line` on.
+SessionUpdate opening_again(const ViewModel& model, uint32_t first_line) {
+    SessionUpdate news;
+    news.opening = model.opening + 1;
+    news.rows.rows = model.rows;
+    for (size_t i = 0; i < news.rows.rows.size(); ++i)
+        news.rows.rows[i].line = static_cast<uint32_t>(first_line + i);
+    news.is_recorded = news.has_news = true;
+    return news;
+}
+
+ViewModel looked_at() {
+    ViewModel model = model_of(std::vector<BlockRow>(20, row_with(5.0)));
+    go_to(model, 7);
+    model.bookmarks.insert(3);
+    toggle_breakpoint(model, 12);
+    model.section = render::SectionPlane{};
+    model.camera.distance = 77.0;
+    model.camera_placed = true;
+    return model;
+}
+
+TEST(ViewModel, KeepsWhatWasSaidOfAProgramThatIsReadAgain) {
+    ViewModel model = looked_at();
+    const uint32_t line = model.row().line;
+    take_in(model, opening_again(model, 8), 0.0); // two lines fewer before it
+    EXPECT_EQ(model.row().line, line);
+    EXPECT_EQ(model.cursor.block, 9U);
+    EXPECT_EQ(model.bookmarks.size(), 1U);
+    EXPECT_EQ(model.breakpoints.size(), 1U);
+    EXPECT_TRUE(model.section);
+    EXPECT_TRUE(model.camera_placed);
+    EXPECT_EQ(model.camera.distance, 77.0);
+}
+
+TEST(ViewModel, KeepsThePlaceWhileAFileCannotBeRead) {
+    ViewModel model = looked_at();
+    SessionUpdate broken;
+    broken.opening = model.opening + 1;
+    broken.failure = core::Error{core::ErrorCode::io, {}, "it is gone"};
+    broken.has_news = true;
+    SessionUpdate mended = opening_again(model, 10);
+    ++mended.opening;
+    take_in(model, std::move(broken), 0.0);
+    EXPECT_TRUE(model.failure);
+    EXPECT_FALSE(model.has_rows());
+    take_in(model, std::move(mended), 0.0);
+    EXPECT_FALSE(model.failure);
+    EXPECT_EQ(model.cursor.block, 7U);
+}
+
+TEST(ViewModel, BeginsAnotherProgramAtItsBeginning) {
+    ViewModel model = looked_at();
+    model.opens_another = true;
+    take_in(model, opening_again(model, 10), 0.0);
+    EXPECT_EQ(model.cursor.block, 0U);
+    EXPECT_TRUE(model.bookmarks.empty());
+    EXPECT_FALSE(model.section);
+    EXPECT_FALSE(model.camera_placed);
+    EXPECT_FALSE(model.opens_another);
+}
+
+} // namespace
+} // namespace viewer_test
