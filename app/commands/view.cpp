@@ -27,7 +27,13 @@ std::filesystem::path pictures_folder(const std::string& program) {
     return std::filesystem::path(program).parent_path();
 }
 
-ExitCode view(const CheckArguments& arguments) {
+struct Options {
+    CheckArguments what;
+    std::string frame_log;
+};
+
+ExitCode view(const Options& options) {
+    const CheckArguments& arguments = options.what;
     auto check = job_of(arguments);
     if (!check) {
         print_error(check.error());
@@ -41,6 +47,7 @@ ExitCode view(const CheckArguments& arguments) {
     }
     job.write = write_output;
     job.pictures = pictures_folder(arguments.program);
+    job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);
     if (shown) return ExitCode::clear;
     fmt::print(stderr, "feeler: {}; feeler shot {} --worst -o picture.png needs none\n",
@@ -51,10 +58,12 @@ ExitCode view(const CheckArguments& arguments) {
 } // namespace
 
 void add_view(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<CheckArguments>();
+    const auto options = std::make_shared<Options>();
     CLI::App& command =
         *cli.add_subcommand("view", "Step through a program in a window and see it");
-    add_check_arguments(command, *options)->description("NC program; it can also be dropped in");
+    add_check_arguments(command, options->what)
+        ->description("NC program; it can also be dropped in");
+    command.add_option("--frame-log", options->frame_log)->group(""); // for measuring
     command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 

@@ -1,6 +1,8 @@
 #include "app/viewer/settings.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -81,6 +83,19 @@ std::string text_of(const Settings& s) {
         s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y, s.maximised, s.list_width,
         s.inspector_width, s.timeline_height, shown.stock, shown.fixtures, shown.tool,
         shown.machine, shown.path, shown.witness, shown.holder_xray);
+}
+
+Settings read_settings(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) return {};
+    return settings_in(std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
+void write_settings(const Settings& settings, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    std::error_code ignored;
+    std::filesystem::create_directories(file.parent_path(), ignored);
+    std::ofstream(file) << text_of(settings);
 }
 
 } // namespace app::viewer

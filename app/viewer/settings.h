@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/base/result.h"
@@ -48,5 +49,12 @@ constexpr double least_scale = 0.6, largest_scale = 3.0;
 Settings settings_in(const std::string& text);
 
 std::string text_of(const Settings& settings);
+
+/// Those that were remembered; the usual ones where there is no file.
+Settings read_settings(const std::filesystem::path& file);
+
+/// Remembers them, with the folder they are in. Nobody is told where that fails. Without a path
+/// nothing is written.
+void write_settings(const Settings& settings, const std::filesystem::path& file);
 
 } // namespace app::viewer

@@ -14,6 +14,7 @@
 
 #include "app/viewer/desk.h"
 #include "app/viewer/file_watch.h"
+#include "app/viewer/frame_log.h"
 #include "app/viewer/imgui_backends.h"
 #include "app/viewer/key_codes.h"
 #include "app/viewer/navigation.h"
@@ -35,6 +36,8 @@ static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
 /// How often files are looked at, and how long the window sleeps at most, seconds.
 constexpr double watch_interval = 0.4;
 constexpr double frame_time = 1.0 / 60.0;
+/// What the view of a block mostly takes: after a step one frame is drawn and not two.
+constexpr double answer_time = 0.015;
 
 struct Glfw {
     bool is_open = glfwInit() == GLFW_TRUE;
@@ -65,9 +68,12 @@ struct Gui {
 class Window {
 public:
     Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
-        : job_(job), window_(window), gui_(window), desk_(std::move(renderer)), worker_([] {
-              glfwPostEmptyEvent();
-          }) {}
+        : job_(job),
+          window_(window),
+          gui_(window),
+          desk_(std::move(renderer)),
+          log_(job.frame_log),
+          worker_([] { glfwPostEmptyEvent(); }) {}
 
     ViewModel model;
 
@@ -99,8 +105,10 @@ private:
     std::string title_;
     std::optional<render::Theme> styled_;
     FileWatch files_;
+    FrameLog log_;
     std::deque<std::pair<int, bool>> keys_; // for ImGui
     double last_watch_ = 0.0, last_frame_ = 0.0;
+    bool asked_ = false;   // the worker has just been asked for something
     int frames_ = 3;       // still to draw: ImGui needs some until all is where it belongs
     SessionWorker worker_; // last: it ends first
 };
@@ -173,6 +181,7 @@ void Window::drop(const std::vector<std::string>& paths) {
 }
 
 void Window::press(int code, int modifiers) {
+    log_.key(code);
     damage();
     const auto command = command_of(code, modifiers);
     if (!command) return;
@@ -235,7 +244,10 @@ void Window::update() {
     }
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
-    if (send_requests(model, worker_)) damage();
+    if (send_requests(model, worker_)) {
+        asked_ = true;
+        damage();
+    }
     if (std::exchange(model.notes_changed, false))
         keep_notes(model, job_.notes_file, job_.write, now);
     if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
@@ -265,6 +277,7 @@ void Window::feed_keys() {
 }
 
 void Window::draw() {
+    log_.begin_frame();
     rebuild_fonts();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -283,6 +296,7 @@ void Window::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (model.wants_picture && std::exchange(model.wants_picture, false)) save_picture();
     glfwSwapBuffers(window_);
+    log_.end_frame(model);
 }
 
 void Window::remember_place() {
@@ -297,6 +311,10 @@ void Window::run() {
     open_job();
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
         update();
+        if (std::exchange(asked_, false) && !model.playback.running) {
+            glfwWaitEventsTimeout(answer_time);
+            update();
+        }
         if (frames_ > 0) {
             --frames_;
             draw();
@@ -385,8 +403,7 @@ OpenWindow make_window(const Settings& settings) {
 core::Result<void> run_window(const WindowJob& job) {
     const Glfw glfw;
     if (!glfw.is_open) return core::fail(core::ErrorCode::unsupported, "there is no display");
-    Settings settings;
-    if (const auto text = read_text(job.settings_file)) settings = settings_in(*text);
+    const Settings settings = read_settings(job.settings_file);
     const OpenWindow window = make_window(settings);
     if (!window)
         return core::fail(core::ErrorCode::unsupported, "there is no OpenGL 3.3 for a window here");

@@ -14,6 +14,7 @@ struct WindowJob {
     std::filesystem::path notes_file;    // what is written on findings; empty: nowhere
     std::filesystem::path pictures;      // folder that F12 saves into
     FileWriter write;                    // how set-ups are saved
+    std::filesystem::path frame_log;     // where frames are written down; empty: nowhere
 };
 
 /// Opens the window and stays until it is closed.
