@@ -79,6 +79,15 @@ TEST(Navigation, ViolationsAreVisitedAtTheirClosestMomentAndRoundAgain) {
     EXPECT_EQ(model.cursor.block, 7U);
 }
 
+TEST(Navigation, BlocksThatCannotBeDecidedAreVisitedLikeViolations) {
+    std::vector<BlockRow> rows(4, row_with(5.0));
+    rows[2].verdict = core::Verdict::undecided;
+    rows[2].worst = core::Severity::error; // of the finding that says so
+    ViewModel model = model_of(rows);
+    EXPECT_TRUE(go_to_offending(model, true));
+    EXPECT_EQ(model.cursor.block, 2U);
+}
+
 TEST(Navigation, AsksTheWorkerWhileTheCheckStillRuns) {
     ViewModel model = ten_blocks();
     model.is_recorded = false;
