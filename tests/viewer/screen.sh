@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # A screen of its own with the real window on it, for the tests that drive it as a person would. To
 # be sourced, after `feeler`, `assets` and `pictures` are set: the program, the folder of assets, a
-# folder for pictures (kept).
+# folder for pictures (kept). FEELER_PATIENCE: seconds that are waited for anything.
 
 : "${feeler:?}" "${assets:?}" "${pictures:?}"
 for command in Xvfb xdotool import; do
@@ -21,6 +21,7 @@ exec 3<>"$work/display" 2>/dev/null || true
 Xvfb -displayfd 3 -screen 0 "${screen_size:-1440x900}x24" -noreset 3>"$work/display" 2>/dev/null &
 screen=$!
 view='' window=''
+patience=$((10 * ${FEELER_PATIENCE:-30})) # tenths of a second that are waited for anything
 cleanup() {
     [[ -z $view ]] || kill "$view" 2>/dev/null || true
     kill "$screen" 2>/dev/null || true
@@ -46,7 +47,7 @@ title() { xdotool getwindowname "$window" 2>/dev/null || true; }
 open_window() {
     "$feeler" view "$@" 2>"$work/errors" &
     view=$!
-    for _ in $(seq "${patience:-300}"); do
+    for _ in $(seq "$patience"); do
         window=$(xdotool search --onlyvisible --name feeler 2>/dev/null | head -1 || true)
         [[ -n $window ]] && return
         kill -0 "$view" 2>/dev/null || break
@@ -57,7 +58,7 @@ open_window() {
 
 # ended: the window has been told to close, and does so in time, with status 0 and no word said.
 ended() {
-    for _ in $(seq "${patience:-300}"); do
+    for _ in $(seq "$patience"); do
         kill -0 "$view" 2>/dev/null || break
         sleep 0.1
     done
@@ -71,7 +72,7 @@ ended() {
 
 # expect WHAT PATTERN: the title comes to match in time.
 expect() {
-    for _ in $(seq "${patience:-300}"); do
+    for _ in $(seq "$patience"); do
         [[ $(title) =~ $2 ]] && return
         sleep 0.1
     done
