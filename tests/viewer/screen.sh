@@ -43,9 +43,9 @@ die() {
 }
 title() { xdotool getwindowname "$window" 2>/dev/null || true; }
 
-# open_window WORDS...: feeler view with these words.
+# open_window WORDS...: feeler view with these words. FEELER_PRELOAD: a library loaded before it.
 open_window() {
-    "$feeler" view "$@" 2>"$work/errors" &
+    LD_PRELOAD=${FEELER_PRELOAD:-} "$feeler" view "$@" 2>"$work/errors" &
     view=$!
     for _ in $(seq "$patience"); do
         window=$(xdotool search --onlyvisible --name feeler 2>/dev/null | head -1 || true)
