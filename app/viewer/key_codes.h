@@ -11,6 +11,8 @@ constexpr int right = 262, left = 263, down = 264, up = 265;
 constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
 constexpr int f1 = 290;
 constexpr int keypad_0 = 320, keypad_subtract = 333, keypad_add = 334;
+constexpr int left_shift = 340, left_control = 341, left_alt = 342;
+constexpr int right_shift = 344, right_control = 345, right_alt = 346;
 
 /// Of a capital letter or a digit.
 constexpr int of(char c) { return c; }

@@ -93,7 +93,7 @@ Settings read_settings(const std::filesystem::path& file) {
 
 void write_settings(const Settings& settings, const std::filesystem::path& file) {
     if (file.empty()) return;
-    std::error_code ignored;
+    std::error_code ignored; // there is nobody left to be told
     std::filesystem::create_directories(file.parent_path(), ignored);
     std::ofstream(file) << text_of(settings);
 }

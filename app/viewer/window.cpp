@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
-#include <set>
 #include <utility>
 
 #include <epoxy/gl.h>
@@ -17,6 +15,7 @@
 #include "app/viewer/frame_log.h"
 #include "app/viewer/imgui_backends.h"
 #include "app/viewer/key_codes.h"
+#include "app/viewer/key_queue.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/perform.h"
 #include "app/viewer/screen_picture.h"
@@ -30,6 +29,7 @@ static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
               && key::escape == GLFW_KEY_ESCAPE && key::of('G') == GLFW_KEY_G
               && key::keypad_add == GLFW_KEY_KP_ADD && key::slash == GLFW_KEY_SLASH
               && key::left_bracket == GLFW_KEY_LEFT_BRACKET && key::end == GLFW_KEY_END
+              && key::left_control == GLFW_KEY_LEFT_CONTROL && key::right_alt == GLFW_KEY_RIGHT_ALT
               && mod::shift == GLFW_MOD_SHIFT && mod::control == GLFW_MOD_CONTROL
               && mod::alt == GLFW_MOD_ALT);
 
@@ -79,8 +79,7 @@ public:
 
     void run();
     void press(int code, int modifiers);
-    /// A key for ImGui, which sees it in one of the next frames.
-    void type(int code, bool is_down);
+    void type(int code, bool is_down) { keys_.add(code, is_down); }
     void drop(const std::vector<std::string>& paths);
     void damage() { frames_ = 3; }
     void open_job();
@@ -89,7 +88,6 @@ public:
 private:
     void update();
     void draw();
-    void feed_keys();
     void rebuild_fonts();
     void save_picture();
     void work_with_saved();
@@ -106,7 +104,7 @@ private:
     std::optional<render::Theme> styled_;
     FileWatch files_;
     FrameLog log_;
-    std::deque<std::pair<int, bool>> keys_; // for ImGui
+    KeyQueue keys_;
     double last_watch_ = 0.0, last_frame_ = 0.0;
     bool asked_ = false;   // the worker has just been asked for something
     int frames_ = 3;       // still to draw: ImGui needs some until all is where it belongs
@@ -253,35 +251,12 @@ void Window::update() {
     if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
-void Window::type(int code, bool is_down) {
-    if (code >= 0 && code < IM_ARRAYSIZE(ImGuiIO::KeysDown)) keys_.emplace_back(code, is_down);
-}
-
-/// ImGui 1.86 knows of each key only whether it is down in a frame. One that is pressed and
-/// released between two frames gets a frame for each; a modifier that goes up behind a key is down
-/// as long as that one is new.
-void Window::feed_keys() {
-    ImGuiIO& io = ImGui::GetIO();
-    std::set<int> changed;
-    bool has_press = false;
-    while (!keys_.empty() && (keys_.front().second || !has_press)
-           && changed.insert(keys_.front().first).second) {
-        has_press = has_press || keys_.front().second;
-        io.KeysDown[keys_.front().first] = keys_.front().second;
-        keys_.pop_front();
-    }
-    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
-    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
-    io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
-    if (!keys_.empty()) damage();
-}
-
 void Window::draw() {
     log_.begin_frame();
     rebuild_fonts();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    feed_keys();
+    if (keys_.feed(ImGui::GetIO())) damage();
     ImGui::NewFrame();
     desk_.draw(model, fonts_, glfwGetTime());
     set_title();
@@ -327,11 +302,17 @@ void Window::run() {
             glfwWaitEventsTimeout(watch_interval);
     }
     remember_place();
-    keep_settings(model.settings, job_.settings_file);
+    write_settings(model.settings, job_.settings_file);
 }
 
 Window& window_of(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+/// Whatever has happened, the window is drawn again.
+template <typename... What>
+void damage(GLFWwindow* window, What...) {
+    if (glfwGetWindowUserPointer(window)) window_of(window).damage();
 }
 
 void listen(GLFWwindow* window) {
@@ -339,27 +320,13 @@ void listen(GLFWwindow* window) {
         if (glfwGetWindowUserPointer(w))
             window_of(w).drop(std::vector<std::string>(paths, paths + count));
     });
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
-    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) {
-        if (glfwGetWindowUserPointer(w)) window_of(w).damage();
-    });
+    glfwSetCursorPosCallback(window, damage<double, double>);
+    glfwSetMouseButtonCallback(window, damage<int, int, int>);
+    glfwSetScrollCallback(window, damage<double, double>);
+    glfwSetCharCallback(window, damage<unsigned>);
+    glfwSetFramebufferSizeCallback(window, damage<int, int>);
+    glfwSetWindowRefreshCallback(window, damage<>);
+    glfwSetWindowFocusCallback(window, damage<int>);
 }
 
 /// In place of the one of ImGui's backend.

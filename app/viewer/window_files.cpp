@@ -43,13 +43,6 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     return check;
 }
 
-void keep_settings(const Settings& settings, const std::filesystem::path& path) {
-    if (path.empty()) return;
-    std::error_code ignored; // there is nobody left to be told
-    std::filesystem::create_directories(path.parent_path(), ignored);
-    std::ofstream(path) << text_of(settings);
-}
-
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
                 double now) {
     if (path.empty() || !model.program) return;

@@ -17,9 +17,6 @@ core::Result<std::string> read_text(const std::filesystem::path& path);
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
                                      ViewModel& model, double now);
 
-/// Keeps the settings as they are when the window is closed.
-void keep_settings(const Settings& settings, const std::filesystem::path& path);
-
 /// Keeps the notes of the program that is open, and takes in those that others have kept of theirs.
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
                 double now);
