@@ -99,9 +99,10 @@ BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
 }
 
 template <typename Act>
-void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& act) {
+void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole) {
     if (item.body != nullptr) return act(meshes_.of(item.body->mesh));
-    for (const auto& brick : frame.scene.stock) act(meshes_.of(SharedMesh(brick, &brick->mesh)));
+    for (const auto& brick : frame.scene.stock)
+        act(meshes_.of(SharedMesh(brick, whole ? &brick->mesh : &brick->drawn)));
 }
 
 void BodyPass::set_material(const ViewFrame& frame, const Item& item, bool glass) const {
@@ -157,7 +158,9 @@ void BodyPass::draw_cap(const ViewFrame& frame, const Item& item) {
     begin_counting();
     set_material(frame, item, false);
     set_section(faces_, section, item.pose);
-    for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); });
+    // What overlaps would be counted twice.
+    for_meshes(
+        frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); }, true);
     end_counting();
     const double reach = 0.51 * glm::length(item.box.size());
     const Vec3 middle =

@@ -39,7 +39,8 @@ private:
     void draw_edges(const ViewFrame& frame, const Item& item);
     void draw_cap(const ViewFrame& frame, const Item& item);
     template <typename Act>
-    void for_meshes(const ViewFrame& frame, const Item& item, const Act& act);
+    /// `whole`: of a stock every triangle, not what is drawn in their place.
+    void for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole = false);
 
     ShaderProgram faces_, edges_, caps_;
     GpuMeshes meshes_;

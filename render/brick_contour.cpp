@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/dbm/dual_cell.h"
+#include "render/flat_faces.h"
 
 namespace render {
 namespace {
@@ -15,6 +16,7 @@ using core::Vec3;
 constexpr int side = BrickWorkspace::side;
 constexpr size_t nodes = static_cast<size_t>(side) * side * side;
 constexpr int32_t nowhere = -1;
+static_assert(side == lattice_side);
 using Node = std::array<int, 3>;
 
 constexpr size_t row(int j, int k) {
@@ -106,6 +108,7 @@ private:
     std::vector<size_t> cells_; // those with pieces
     std::vector<int32_t> next_vertex_;
     StockBrick result_;
+    std::vector<LatticeQuad> quads_; // of the result
 };
 
 /// Marks the nodes that the lines along an axis hold.
@@ -292,6 +295,10 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
     result_.mesh.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
     result_.mesh.triangles.push_back({corners[k], corners[k + 2], corners[(k + 3) % 4]});
     result_.blocks.push_back(block_of(crossed));
+    const auto part = [](size_t n) { return static_cast<uint8_t>(n % side); };
+    quads_.push_back({static_cast<uint8_t>(axis),
+                      {part(node), part(node / side), part(node / (size_t{side} * side))},
+                      flat});
     for (const Vec3& place : places) result_.mesh.bounds.extend(place);
 }
 
@@ -351,6 +358,7 @@ StockBrick BrickContour::run() {
     make_cells();
     add_quads();
     add_creases();
+    result_.drawn = with_large_faces(result_.mesh, quads_);
     return std::move(result_);
 }
 

@@ -13,6 +13,7 @@ struct StockBrick {
 
     TriangleMesh mesh;            // not closed by itself; all bricks together are
     std::vector<uint32_t> blocks; // triangles 2 k and 2 k + 1 were cut by blocks[k], or are raw
+    TriangleMesh drawn;           // it looks the same and has fewer triangles
 };
 
 /// Those that hold any surface.
