@@ -1,0 +1,45 @@
+#include "hwsim/fixed_point.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace hwsim {
+namespace {
+
+double rounded(double steps, Rounding rounding) {
+    switch (rounding) {
+    case Rounding::down:
+        return std::floor(steps);
+    case Rounding::up:
+        return std::ceil(steps);
+    case Rounding::nearest:
+        break;
+    }
+    return std::round(steps);
+}
+
+} // namespace
+
+core::Result<int32_t> fixed(double length, Rounding rounding) {
+    // A product with a power of two is exact, so the only rounding is the one asked for.
+    const double steps = rounded(length * (1 << fraction_bits), rounding);
+    if (!(steps >= least_coordinate && steps <= greatest_coordinate))
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("a length of {} mm does not fit into the coprocessor's 24 "
+                                      "bits, which reach from {} to {} mm",
+                                      length, length_of(least_coordinate),
+                                      length_of(greatest_coordinate)));
+    return static_cast<int32_t>(steps);
+}
+
+core::Result<uint32_t> threshold(double distance, double sample_step) {
+    if (!(distance >= 0.0) || !(sample_step >= 0.0))
+        return core::fail(core::ErrorCode::invalid_value,
+                          "a distance to be kept and a step along a segment must be lengths of 0 "
+                          "or more");
+    FEELER_TRY(const int32_t steps, fixed(std::hypot(distance, 0.5 * sample_step), Rounding::up));
+    return static_cast<uint32_t>(steps);
+}
+
+} // namespace hwsim

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "hwsim/fixed_point.h"
+
+namespace hwsim {
+
+/// One beat of the memory: 512 bits. The last word is a check of all others and of the address, the
+/// one before it the epoch in which the line was written.
+struct alignas(64) Line {
+    static constexpr size_t words = 16;
+    static constexpr size_t epoch_word = 14;
+    static constexpr size_t check_word = 15;
+    std::array<uint32_t, words> word{};
+
+    bool operator==(const Line&) const = default;
+};
+
+/// CRC-32 (reversed polynomial edb88320) of the line's address and all words before the check word:
+/// every wrong bit, any two or three, every burst of 32, and a line from another address are seen.
+uint32_t check_of(const Line& line, uint32_t address);
+
+inline bool is_intact(const Line& line, uint32_t address) {
+    return line.word[Line::check_word] == check_of(line, address);
+}
+
+/// A box along the axes, closed.
+struct Box {
+    FixedVec min{}, max{};
+
+    void extend(const Box& b) {
+        for (size_t axis = 0; axis < 3; ++axis) {
+            min[axis] = std::min(min[axis], b.min[axis]);
+            max[axis] = std::max(max[axis], b.max[axis]);
+        }
+    }
+    bool operator==(const Box&) const = default;
+};
+
+/// Everything a coordinate can be.
+constexpr Box everywhere{{least_coordinate, least_coordinate, least_coordinate},
+                         {greatest_coordinate, greatest_coordinate, greatest_coordinate}};
+
+/// A point of a model with an extent: it reaches from `base` upwards by `run`, and sideways by
+/// `half`. In a model of the tool's side it is an upright cylinder of that radius, in one of the
+/// work's side an upright post whose square section has that half side. Both 0: a bare point.
+struct Record {
+    static constexpr int extent_bits = 20;
+    static constexpr int32_t greatest_extent = (1 << extent_bits) - 1;
+
+    FixedVec base{}; // x and y of the axis, z of the lower end
+    int32_t run = 0;
+    int32_t half = 0;
+
+    bool operator==(const Record&) const = default;
+};
+
+inline Box box_of(const Record& r) {
+    return {{r.base[0] - r.half, r.base[1] - r.half, r.base[2]},
+            {r.base[0] + r.half, r.base[1] + r.half, r.base[2] + r.run}};
+}
+
+/// What a node refers to: another node, a leaf of up to 32 records in consecutive lines, or
+/// nothing.
+struct Reference {
+    static constexpr uint32_t line_bits = 26;
+    static constexpr uint32_t leaf_flag = 0x8000'0000U;
+    static constexpr uint32_t most_records = 32;
+    static constexpr uint32_t none_word = 0x7FFF'FFFFU;
+
+    uint32_t word = none_word;
+
+    static constexpr Reference node(uint32_t line) { return {line}; }
+    static constexpr Reference leaf(uint32_t line, uint32_t count) {
+        return {leaf_flag | ((count - 1) << line_bits) | line};
+    }
+    constexpr bool is_none() const { return word == none_word; }
+    constexpr bool is_leaf() const { return (word & leaf_flag) != 0; }
+    constexpr uint32_t line() const { return word & ((1U << line_bits) - 1); }
+    constexpr uint32_t count() const { return ((word >> line_bits) & 0x1FU) + 1; }
+    bool operator==(const Reference&) const = default;
+};
+
+/// Two children and the boxes round them. The header of a model is a node whose first child is its
+/// root and whose second is none.
+struct Node {
+    std::array<Box, 2> box{};
+    std::array<Reference, 2> child{};
+
+    bool operator==(const Node&) const = default;
+};
+
+constexpr uint32_t records_per_line = 4;
+using Records = std::array<Record, records_per_line>;
+
+/// The lines that a leaf of so many records takes.
+constexpr uint32_t leaf_lines(uint32_t count) {
+    return (count + records_per_line - 1) / records_per_line;
+}
+
+/// A record is named by its line and its place in it.
+constexpr uint32_t record_name(uint32_t line, uint32_t place) {
+    return line * records_per_line + place;
+}
+
+/// Node:   words 0-8 the boxes, 24 bits a number (first box, then second; min x y z, max x y z),
+///         words 9-10 the references, 11-13 zero.
+/// Leaf:   words 0-13 four records of 112 bits: x, y, z (24 each), run, half (20 each).
+/// Bits count from the lowest of word 0; signed numbers are two's complement.
+Line packed(const Node& node, uint32_t epoch, uint32_t address);
+Line packed(const Records& records, uint32_t epoch, uint32_t address);
+Node node_in(const Line& line);
+Records records_in(const Line& line);
+
+inline uint32_t epoch_of(const Line& line) { return line.word[Line::epoch_word]; }
+
+} // namespace hwsim

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+
+#include "hwsim/segment.h"
+
+namespace hwsim {
+
+/// The registers, by byte address on a 32-bit bus (AXI4-Lite). Unless it says otherwise a register
+/// can only be read; writing it, or another address, does nothing. Pairs of words: low, then high;
+/// reading the low word keeps the high one for the next read.
+enum class Register : uint32_t {
+    identification = 0x000, // `identification_word`
+    version = 0x004,
+    elements = 0x008, // processing elements
+    threads = 0x00C,  // of each element
+    lines = 0x010,    // of memory
+    fifo_depth = 0x014,
+    control = 0x018,     // write: `ControlBit`
+    status = 0x01C,      // `StatusBit`
+    irq_pending = 0x020, // `IrqBit`; write 1 to clear
+    irq_enable = 0x024,  // read and write
+    heartbeat = 0x028,   // write anything: the host is alive
+    watchdog = 0x02C,    // read and write: cycles without a heartbeat that stop the device
+    fifo_used = 0x030,
+    permit_seq = 0x034,  // every segment up to this one may be entered
+    retired_seq = 0x038, // of the last entry that is finished: models it needed are needed no more
+    next_seq = 0x03C,    // read; write while stopped: the sequence number expected next
+
+    stop = 0x040,      // `Stop`: why there are no permits
+    stop_seq = 0x044,  // the segment that stopped the device
+    stop_line = 0x048, // the line of memory at fault
+    found_low = 0x050, // squared distance of the violation or of the last measurement
+    found_high = 0x054,
+    found_tool = 0x058, // names of the records of the pair
+    found_work = 0x05C,
+    found_sample = 0x060,
+    found_seq = 0x064,   // the segment it belongs to
+    found_valid = 0x068, // whether a pair was below the limit
+
+    segment = 0x080,      // write: `SegmentWord`, 0x080 .. 0x0BC
+    segment_push = 0x0C0, // write: takes the words above into the FIFO
+
+    counter = 0x100, // `Counter` number i at 0x100 + 8 i, pairs of words
+};
+
+constexpr uint32_t identification_word = 0x464C'5231; // "FLR1"
+constexpr uint32_t version_word = 1;
+
+enum ControlBit : uint32_t {
+    control_enable = 1U << 0, // searches run; without it segments wait
+    control_clear = 1U << 1,  // forgets the reason of a stop; the FIFO is empty from then on
+    control_reset = 1U << 2,  // as after power-up, the memory but for its contents
+};
+
+enum StatusBit : uint32_t {
+    status_enabled = 1U << 0,
+    status_stopped = 1U << 1, // nothing is permitted until the host clears it
+    status_idle = 1U << 2,    // no segment waits or is searched
+    status_fifo_full = 1U << 3,
+};
+
+enum IrqBit : uint32_t {
+    irq_permit = 1U << 0, // permit_seq has advanced
+    irq_stop = 1U << 1,
+    irq_measured = 1U << 2,
+};
+
+/// The words of a segment in the window at `Register::segment`, word i at + 4 i. Signed numbers are
+/// sign-extended to 32 bits; a coordinate that does not fit into 24 is out of range.
+enum class SegmentWord : uint32_t {
+    sequence = 0,
+    kind = 1,  // bits 0-7 SegmentKind, 8-15 log2_steps, 16-19 tool slot, 20-23 work slot, 31 last
+    start = 2, // x, y, z
+    end = 5,   // x, y, z
+    threshold = 8,
+    work_epoch = 9,
+    model_header = 10,
+    budget = 11,
+};
+constexpr uint32_t segment_words = 12;
+constexpr uint32_t model_slots = 16;
+
+using SegmentWords = std::array<uint32_t, segment_words>;
+
+SegmentWords words_of(const Segment& segment);
+
+/// The segment that the words say, and what is wrong with it: none, or out_of_range.
+struct DecodedSegment {
+    Segment segment;
+    Stop fault = Stop::none;
+};
+DecodedSegment segment_in(const SegmentWords& words);
+
+/// What the device counts, from reset on.
+enum class Counter : uint32_t {
+    cycles,
+    busy, // element-cycles in which at least one thread had a search
+    queries,
+    nodes,
+    splits,
+    box_tests,
+    pair_tests,
+    node_hits,
+    node_misses,
+    record_hits,
+    record_misses,
+    lines_read,    // from memory
+    lines_written, // by DMA
+    wait_memory,   // thread-cycles: for a line
+    wait_port,     // for a cache or a unit that another thread had
+    wait_retire,   // done, but an earlier segment is not
+    missed,        // permits after their budget
+    deepest,       // stack of any search
+    least_slack,   // cycles left of the budget, signed; the greatest number if none had one
+    longest,       // cycles of a query, push to permit
+};
+constexpr uint32_t counter_count = 20;
+constexpr uint64_t no_slack = 0x7FFF'FFFF'FFFF'FFFFULL;
+
+constexpr uint32_t address_of(Register r) { return static_cast<uint32_t>(r); }
+constexpr uint32_t address_of(Counter c) {
+    return address_of(Register::counter) + 8 * static_cast<uint32_t>(c);
+}
+
+} // namespace hwsim

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+
+#include "hwsim/fixed_point.h"
+#include "hwsim/memory_line.h"
+
+namespace hwsim {
+
+/// What an entry of the segment FIFO asks for.
+enum class SegmentKind : uint8_t {
+    permit = 0,  // is the tool at least this far from the work all the way? Counts for the permit
+    measure = 1, // how near does it come? Counts for nothing
+    model = 2,   // from here on slot `work_slot` holds the model at `model_header`
+};
+
+/// An entry of the segment FIFO. The tool model goes straight from `start` to `end`; it is looked
+/// at in 2^log2_steps + 1 samples, evenly spread, the first at the start and the last at the end.
+///
+/// Several entries with one sequence number are one segment of the path; the last one says so.
+struct Segment {
+    static constexpr uint8_t most_log2_steps = 12;
+
+    uint32_t sequence = 0;
+    SegmentKind kind = SegmentKind::permit;
+    uint8_t tool_slot = 0, work_slot = 0;
+    uint8_t log2_steps = 0;
+    bool last = true;
+    FixedVec start{}, end{};
+    uint32_t threshold = 0;    // T: refused if d2 < (T + rounding_reserve)^2
+    uint32_t work_epoch = 0;   // the epoch of the work's model that it is to be held against
+    uint32_t model_header = 0; // of kind model: the line of the header; its epoch is `work_epoch`
+    uint32_t budget = 0;       // cycles from the push until the permit is needed; 0: none
+
+    bool operator==(const Segment&) const = default;
+};
+
+/// Why the device does not permit, or none. Codes of the register `stop`.
+enum class Stop : uint8_t {
+    none = 0,
+    violation = 1,      // the tool comes too near
+    out_of_range = 2,   // a coordinate beyond 24 bits, or a word that says nothing
+    sequence = 3,       // a segment out of turn
+    fifo_overrun = 4,   // pushed while the FIFO was full
+    model_missing = 5,  // a slot that holds no model
+    model_changed = 6,  // the work's model is not of the epoch asked for
+    bad_check = 7,      // a line of memory with a wrong check word
+    bad_address = 8,    // a reference beyond the memory
+    stack_overflow = 9, // a search deeper than the stack
+    too_long = 10,      // a search of more cycles than allowed
+    memory_stalled = 11,
+    host_silent = 12, // no heartbeat
+};
+constexpr uint8_t stop_count = 13;
+
+/// How much a search did.
+struct SearchCounts {
+    uint32_t nodes = 0;      // lines of nodes opened
+    uint32_t splits = 0;     // of the way, in two
+    uint32_t box_tests = 0;  // of swept boxes against boxes
+    uint32_t pair_tests = 0; // of records against records
+    uint32_t deepest = 0;    // entries on the stack
+
+    bool operator==(const SearchCounts&) const = default;
+};
+
+/// The nearest pair of records of a query.
+struct Answer {
+    Stop stop = Stop::none;   // a fault, never a violation
+    uint32_t at_line = 0;     // of the fault
+    bool found = false;       // a pair is nearer than the limit
+    uint64_t squared = 0;     // its squared distance; the limit when none is found
+    uint32_t tool_record = 0; // names of the pair's records
+    uint32_t work_record = 0;
+    uint16_t sample = 0;
+    SearchCounts counts;
+
+    bool operator==(const Answer&) const = default;
+};
+
+/// A segment with the models that it is held against.
+struct Query {
+    Segment segment;
+    uint32_t tool_header = 0, work_header = 0; // lines
+    uint32_t tool_epoch = 0, work_epoch = 0;
+    uint64_t limit = 0; // pairs whose squared distance is below this count
+
+    bool operator==(const Query&) const = default;
+};
+
+/// The limit from which a search for this segment starts.
+constexpr uint64_t limit_of(const Segment& segment) {
+    return segment.kind == SegmentKind::measure ? beyond_all_squares
+                                                : squared_limit(segment.threshold);
+}
+
+} // namespace hwsim
