@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/dbm/cut_model.h"
+#include "core/distance/outer_model.h"
+#include "hwsim/memory_line.h"
+
+namespace hwsim {
+
+/// Columns of an outer model, and where their cells end: cell (i, j) is the rectangle from
+/// (x[i], y[j]) to (x[i + 1], y[j + 1]), and its intervals hold all heights at which the body may
+/// have a point over it.
+struct ColumnCells {
+    const core::ScanLines* columns = nullptr; // of the Z family
+    std::vector<double> x, y;
+};
+
+ColumnCells cells_of(const core::CutModel& stock);
+
+/// Errors: no columns along Z.
+core::Result<ColumnCells> cells_of(const core::OuterModel& model);
+
+/// Upright posts that hold the columns of one tile of the lines.
+///
+/// Result: equal columns side by side become one post. Posts stand out of the columns by two steps
+///         of rounding, and sideways by an eighth of the longer side of a cell more that is four
+///         times as long as wide.
+/// Errors: what does not fit into the device's numbers.
+core::Result<std::vector<Record>> posts_of_tile(const ColumnCells& cells, size_t tile);
+
+/// The posts of all tiles.
+core::Result<std::vector<Record>> posts_of(const ColumnCells& cells);
+
+} // namespace hwsim
