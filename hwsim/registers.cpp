@@ -41,7 +41,8 @@ DecodedSegment segment_in(const SegmentWords& words) {
               .budget = words[at(SegmentWord::budget)]};
     bool good = (kind & 0xFFU) <= static_cast<uint32_t>(SegmentKind::model)
                 && s.log2_steps <= Segment::most_log2_steps
-                && s.threshold <= static_cast<uint32_t>(greatest_coordinate);
+                && s.threshold <= static_cast<uint32_t>(greatest_coordinate)
+                && (!s.last || s.kind == SegmentKind::permit);
     for (size_t axis = 0; axis < 3; ++axis) {
         s.start[axis] = static_cast<int32_t>(words[at(SegmentWord::start) + axis]);
         s.end[axis] = static_cast<int32_t>(words[at(SegmentWord::end) + axis]);

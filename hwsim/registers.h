@@ -23,9 +23,9 @@ enum class Register : uint32_t {
     heartbeat = 0x028,   // write anything: the host is alive
     watchdog = 0x02C,    // read and write: cycles without a heartbeat that stop the device
     fifo_used = 0x030,
-    permit_seq = 0x034,  // every segment up to this one may be entered
-    retired_seq = 0x038, // of the last entry that is finished: models it needed are needed no more
-    next_seq = 0x03C,    // read; write while stopped: the sequence number expected next
+    permit_seq = 0x034, // every segment up to this one may be entered
+    retired = 0x038,    // entries finished since reset: models they needed are needed no more
+    next_seq = 0x03C,   // read; write while stopped: the sequence number expected next
 
     stop = 0x040,      // `Stop`: why there are no permits
     stop_seq = 0x044,  // the segment that stopped the device
@@ -85,7 +85,8 @@ using SegmentWords = std::array<uint32_t, segment_words>;
 
 SegmentWords words_of(const Segment& segment);
 
-/// The segment that the words say, and what is wrong with it: none, or out_of_range.
+/// The segment that the words say, and what is wrong with it: none, or out_of_range. Only an entry
+/// that asks for the permit can be the last of its segment.
 struct DecodedSegment {
     Segment segment;
     Stop fault = Stop::none;

@@ -36,6 +36,8 @@ std::optional<uint64_t> squared_gap(const Box& tool, const FixedVec& from, const
 struct Halves {
     std::array<SearchPair, 2> pair;
     std::array<bool, 2> there{};
+
+    bool operator==(const Halves&) const = default;
 };
 Halves halves_of_node(const SearchPair& pair, Division division, const Node& node);
 Halves halves_of_way(const SearchPair& pair);

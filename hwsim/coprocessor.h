@@ -1,0 +1,87 @@
+#pragma once
+
+#include "hwsim/permit_unit.h"
+#include "hwsim/search_element.h"
+#include "hwsim/segment_fifo.h"
+
+namespace hwsim {
+
+/// The header of the model that a slot holds.
+struct ModelSlot {
+    bool valid = false;
+    uint32_t header = 0, epoch = 0;
+
+    bool operator==(const ModelSlot&) const = default;
+};
+
+/// Sums over all searches that were retired.
+struct SearchSums {
+    uint64_t queries = 0, nodes = 0, splits = 0, box_tests = 0, pair_tests = 0;
+    uint32_t deepest = 0;
+
+    bool operator==(const SearchSums&) const = default;
+};
+
+/// What the host writes and reads directly.
+struct HostRegisters {
+    bool enabled = false;
+    uint32_t irq_pending = 0, irq_enable = 0;
+    uint32_t watchdog = 10'000'000; // cycles; 0: nobody watches
+    uint64_t heartbeat = 0;         // cycle of the last one
+    uint32_t high_word = 0;         // of the pair whose low word was read last
+    SegmentWords segment{};
+
+    bool operator==(const HostRegisters&) const = default;
+};
+
+/// An entry that was finished in the last cycle, for whoever looks on.
+struct Retired {
+    bool valid = false;
+    Segment segment;
+    Answer answer;
+    uint64_t pushed = 0; // cycle
+
+    bool operator==(const Retired&) const = default;
+};
+
+/// All that the device is at a cycle. A copy is a snapshot; put back, it goes on the same way.
+struct CoprocessorState {
+    uint64_t cycle = 0;
+    uint32_t run = 0; // counts stops
+    HostRegisters host;
+    SegmentFifo fifo;
+    PermitUnit permits;
+    std::array<ModelSlot, model_slots> slots{};
+    std::vector<SearchElement> elements;
+    MemoryUnit memory;
+    uint8_t next_element = 0; // is asked first for an idle thread
+    uint8_t next_request = 0; // may ask the memory first
+    SearchSums searched;
+    Retired retired;
+
+    bool operator==(const CoprocessorState&) const = default;
+};
+
+/// The device as it is after power-up: nothing is permitted, no model is there.
+CoprocessorState power_up(const DeviceConfig& config);
+
+/// One rising clock edge.
+void tick(CoprocessorState& state, const DeviceConfig& config);
+
+/// A read or write on the register bus between two edges; `address` in bytes, see Register.
+uint32_t read(CoprocessorState& state, const DeviceConfig& config, uint32_t address);
+void write(CoprocessorState& state, const DeviceConfig& config, uint32_t address, uint32_t value);
+
+/// Puts a line on its way into the memory; false if the queue is full or the address beyond it.
+bool store(CoprocessorState& state, uint32_t address, const Line& line);
+
+/// Stops the device, unless it is stopped: the reason is latched, and whatever waits or is under
+/// way is dropped.
+void halt(CoprocessorState& state, Stop reason, uint32_t sequence, uint32_t line = 0);
+
+/// The interrupt line.
+inline bool interrupt(const CoprocessorState& state) {
+    return (state.host.irq_pending & state.host.irq_enable) != 0;
+}
+
+} // namespace hwsim

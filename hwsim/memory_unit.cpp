@@ -1,0 +1,64 @@
+#include "hwsim/memory_unit.h"
+
+namespace hwsim {
+namespace {
+
+void answer_read(MemoryUnit& unit, uint64_t cycle) {
+    unit.response.request.valid = false;
+    if (unit.under_way.empty() || unit.under_way.front().cycle > cycle) return;
+    unit.response.request = unit.under_way.front().request;
+    unit.response.line = unit.lines[unit.response.request.address];
+    unit.under_way.pop();
+    ++unit.reads_done;
+}
+
+/// Reads go first unless the queue of writes is full.
+void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
+    unit.has_written = false;
+    if (unit.free_at > cycle) return;
+    const bool can_read = !unit.asked.empty() && !unit.under_way.full();
+    if (!unit.writes.empty() && (!can_read || unit.writes.full())) {
+        const MemoryUnit::Write& write = unit.writes.front();
+        unit.lines[write.address] = write.line;
+        unit.has_written = true;
+        unit.written = write.address;
+        unit.writes.pop();
+        ++unit.writes_done;
+        unit.free_at = cycle + config.cycles_per_line;
+    } else if (can_read) {
+        unit.under_way.push({unit.asked.front().request, cycle + config.memory_latency});
+        unit.asked.pop();
+        unit.free_at = cycle + config.cycles_per_line;
+    }
+}
+
+} // namespace
+
+MemoryUnit memory_unit(const DeviceConfig& config) {
+    MemoryUnit unit;
+    unit.lines.resize(config.memory_lines);
+    unit.asked = Ring<MemoryUnit::Pending>(config.memory_queue);
+    unit.under_way = Ring<MemoryUnit::Pending>(config.memory_queue);
+    unit.writes = Ring<MemoryUnit::Write>(config.write_queue);
+    return unit;
+}
+
+void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in) {
+    if (unit.stalled) {
+        unit.response.request.valid = false;
+        unit.has_written = false;
+    } else {
+        answer_read(unit, cycle);
+        use_port(unit, config, cycle);
+    }
+    if (in.valid) unit.asked.push({in, cycle});
+}
+
+bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
+    const auto late = [&](const Ring<MemoryUnit::Pending>& queue) {
+        return !queue.empty() && cycle > queue.front().cycle + config.memory_limit;
+    };
+    return late(unit.asked) || late(unit.under_way);
+}
+
+} // namespace hwsim

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "hwsim/device_config.h"
+#include "hwsim/ring.h"
+
+namespace hwsim {
+
+/// A line that an element wants to read.
+struct ReadRequest {
+    bool valid = false;
+    uint8_t element = 0, thread = 0;
+    uint32_t run = 0; // counts stops: what was asked before one is not for those after it
+    uint32_t address = 0;
+
+    bool operator==(const ReadRequest&) const = default;
+};
+
+/// A line that came, for the element that asked.
+struct ReadResponse {
+    ReadRequest request;
+    Line line;
+
+    bool operator==(const ReadResponse&) const = default;
+};
+
+/// The memory and its port: reads in order, each after the latency, lines no faster than the
+/// bandwidth; lines written by DMA go between them.
+struct MemoryUnit {
+    struct Pending {
+        ReadRequest request;
+        uint64_t cycle = 0; // when it was asked, then when the line is there
+        bool operator==(const Pending&) const = default;
+    };
+    struct Write {
+        uint32_t address = 0;
+        Line line;
+        bool operator==(const Write&) const = default;
+    };
+
+    std::vector<Line> lines;
+    Ring<Pending> asked, under_way;
+    Ring<Write> writes;
+    uint64_t free_at = 0; // the port
+    bool stalled = false; // answers nothing: a fault to be injected
+
+    ReadResponse response;    // output
+    bool has_written = false; // output: so caches forget the line
+    uint32_t written = 0;     // its address
+    uint64_t reads_done = 0, writes_done = 0;
+
+    bool operator==(const MemoryUnit&) const = default;
+};
+
+MemoryUnit memory_unit(const DeviceConfig& config);
+
+/// Whether a request can be taken in.
+inline bool accepts(const MemoryUnit& unit) { return !unit.asked.full(); }
+
+/// No line waits to be written, and caches know of those that were.
+inline bool is_written(const MemoryUnit& unit) { return unit.writes.empty() && !unit.has_written; }
+
+/// One rising clock edge.
+void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);
+
+/// Whether a request has waited longer than the limit.
+bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle);
+
+} // namespace hwsim

@@ -1,0 +1,15 @@
+#include "hwsim/segment_fifo.h"
+
+namespace hwsim {
+
+Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle) {
+    const DecodedSegment decoded = segment_in(words);
+    if (decoded.fault != Stop::none) return decoded.fault;
+    if (fifo.entries.full()) return Stop::fifo_overrun;
+    if (decoded.segment.sequence != fifo.next_sequence) return Stop::sequence;
+    fifo.entries.push({decoded.segment, cycle});
+    if (decoded.segment.last) ++fifo.next_sequence;
+    return Stop::none;
+}
+
+} // namespace hwsim

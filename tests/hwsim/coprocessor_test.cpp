@@ -1,0 +1,304 @@
+#include <gtest/gtest.h>
+
+#include "tests/hwsim/test_device.h"
+
+namespace hwsim {
+namespace {
+
+std::vector<Record> cloud(std::mt19937& rng, uint32_t count, int32_t reach) {
+    std::vector<Record> records;
+    for (uint32_t i = 0; i < count; ++i) records.push_back(random_record(rng, reach));
+    return records;
+}
+
+Segment random_way(std::mt19937& rng, int32_t reach) {
+    return random_segment(rng, reach, static_cast<uint8_t>(rng() % 7));
+}
+
+/// What the functional model says to a segment, the memory being as it is.
+Answer expected(const TestDevice& device, const Segment& segment) {
+    const ModelSlot& tool = device.state.slots[segment.tool_slot];
+    const ModelSlot& work = device.state.slots[segment.work_slot];
+    return search(device.state.memory.lines,
+                  {segment, tool.header, work.header, tool.epoch, work.epoch, limit_of(segment)},
+                  device.config.stack_depth);
+}
+
+/// Measures many segments on one device, and compares each answer with the functional model's.
+void expect_the_functional_answers(uint32_t seed, const DeviceConfig& config, int32_t reach) {
+    std::mt19937 rng(seed);
+    for (int round = 0; round < 20; ++round) {
+        TestDevice device(config);
+        device.set_models(cloud(rng, 1 + rng() % 60, reach), cloud(rng, rng() % 120, reach));
+        const bool measures = round % 2 == 0;
+        for (int i = 0; i < 40; ++i) {
+            const SegmentKind kind = measures ? SegmentKind::measure : SegmentKind::permit;
+            device.push_in_time(question(measures ? 1 : device.read(Register::next_seq),
+                                         random_way(rng, 2 * reach), rng() % 20, kind));
+            device.clock(rng() % 50);
+            if (device.has_status(status_stopped)) break;
+        }
+        ASSERT_TRUE(device.finish());
+        ASSERT_GT(device.retired.size(), 2U);
+        for (const Retired& r : device.retired)
+            if (r.segment.kind != SegmentKind::model) {
+                device.state.slots[0].valid = device.state.slots[1].valid = true;
+                ASSERT_EQ(r.answer, expected(device, r.segment));
+            }
+    }
+}
+
+TEST(Coprocessor, AnswersAsTheFunctionalModel) {
+    expect_the_functional_answers(1, small_config(), 100'000);
+}
+
+TEST(Coprocessor, AnswersAsTheFunctionalModelOnALattice) {
+    expect_the_functional_answers(2, small_config(), 4);
+}
+
+TEST(Coprocessor, AnswersTheSameHoweverItIsBuilt) {
+    for (const uint32_t threads : {1U, 5U})
+        for (const uint32_t latency : {1U, 70U}) {
+            DeviceConfig config = small_config();
+            config.threads = threads;
+            config.memory_latency = latency;
+            config.cycles_per_line = latency > 1 ? 4 : 1;
+            config.node_cache_lines = latency > 1 ? 1 : 64;
+            config.elements = threads == 1 ? 1 : 8;
+            expect_the_functional_answers(threads + latency, config, 30);
+        }
+}
+
+/// The permit goes up segment by segment, and only as far as the functional model allows.
+TEST(Coprocessor, PermitsInOrderWhatKeepsItsDistanceAndStopsAtWhatDoesNot) {
+    std::mt19937 rng(3);
+    int stopped = 0, permitted = 0;
+    for (int round = 0; round < 100; ++round) {
+        TestDevice device;
+        device.set_models(cloud(rng, 20, 1'000), cloud(rng, 20, 1'000));
+        std::vector<Segment> segments;
+        for (uint32_t k = 1; k <= 30; ++k) {
+            Segment way = random_way(rng, 1'000);
+            way.start[2] += 5'000, way.end[2] += rng() % 20 ? 5'000 : 1'500;
+            segments.push_back(question(k, way, 100));
+            if (device.has_status(status_stopped)) break;
+            device.push_in_time(segments.back());
+        }
+        ASSERT_TRUE(device.finish());
+        uint32_t allowed = 0;
+        const auto slots = device.state.slots;
+        while (allowed < segments.size() && !expected(device, segments[allowed]).found) ++allowed;
+        ASSERT_EQ(device.permitted(), allowed);
+        ASSERT_EQ(device.state.slots, slots);
+        permitted += static_cast<int>(allowed);
+        if (allowed == segments.size()) {
+            ASSERT_EQ(device.reason(), Stop::none);
+            continue;
+        }
+        ++stopped;
+        ASSERT_EQ(device.reason(), Stop::violation);
+        ASSERT_EQ(device.read(Register::stop_seq), allowed + 1);
+        const Answer answer = expected(device, segments[allowed]);
+        ASSERT_EQ(device.read(Register::found_low), static_cast<uint32_t>(answer.squared));
+        ASSERT_EQ(device.read(Register::found_high), answer.squared >> 32);
+        ASSERT_EQ(device.read(Register::found_tool), answer.tool_record);
+        ASSERT_EQ(device.read(Register::found_work), answer.work_record);
+        ASSERT_EQ(device.read(Register::found_sample), answer.sample);
+        ASSERT_EQ(device.read(Register::found_seq), allowed + 1);
+    }
+    EXPECT_GT(stopped, 20);
+    EXPECT_GT(permitted, 500);
+}
+
+TEST(Coprocessor, PermitsASegmentOnlyWhenItsLastQuerySaysYes) {
+    TestDevice device;
+    const Record near{{0, 0, 50}, 0, 0}, far{{0, 0, 5'000}, 0, 0};
+    device.set_models({{{0, 0, 0}, 0, 0}}, {far});
+    device.set_model(2, device.load({near}));
+    Segment first = question(1, {}, 100), second = question(1, {}, 100);
+    first.last = false;
+    second.work_slot = 2;
+    device.push(first);
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 0U);
+    device.push(second);
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 0U);
+    EXPECT_EQ(device.reason(), Stop::violation);
+    // The other way round: the refusal comes first.
+    device.write(Register::control, control_clear | control_enable);
+    device.set_models({{{0, 0, 0}, 0, 0}}, {near});
+    device.set_model(2, device.load({far}));
+    device.push(first);
+    device.push(second);
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 0U);
+}
+
+TEST(Coprocessor, RefusesAtOneStepLessThanTheReserveAllows) {
+    for (const int32_t apart : {102, 103}) {
+        TestDevice device;
+        device.set_models({{{0, 0, 0}, 0, 0}}, {{{apart, 0, 0}, 0, 0}});
+        device.push_in_time(question(1, {}, 100));
+        ASSERT_TRUE(device.finish());
+        EXPECT_EQ(device.permitted(), apart == 103 ? 1U : 0U);
+    }
+}
+
+TEST(Coprocessor, PermitsNothingAfterPowerUp) {
+    TestDevice device;
+    EXPECT_EQ(device.permitted(), 0U);
+    device.clock(1'000);
+    EXPECT_EQ(device.permitted(), 0U);
+    EXPECT_EQ(device.read(Register::identification), identification_word);
+}
+
+TEST(Coprocessor, WaitsUntilItIsEnabled) {
+    TestDevice device;
+    device.write(Register::control, 0);
+    device.set_models({{{0, 0, 0}, 0, 0}}, {{{5'000, 0, 0}, 0, 0}});
+    device.push(question(1, {}, 100));
+    device.clock(5'000);
+    EXPECT_EQ(device.permitted(), 0U);
+    device.write(Register::control, control_enable);
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 1U);
+}
+
+TEST(Coprocessor, HoldsEachSegmentAgainstTheModelAsItWillBeThen) {
+    TestDevice device;
+    const uint32_t before = device.load({{{50, 0, 0}, 0, 0}}, 8, 1);
+    device.set_model(0, device.load({{{0, 0, 0}, 0, 0}}, 8, 1));
+    device.set_model(1, before, 1);
+    // Two before the cut, two after it, one before the next.
+    const auto ask = [&](uint32_t epoch) {
+        Segment s = question(1, {}, 0, SegmentKind::measure);
+        s.work_epoch = epoch;
+        device.push_in_time(s);
+    };
+    ask(1), ask(1);
+    const uint32_t after = device.load({{{70, 0, 0}, 0, 0}}, 8, 2);
+    device.set_model(1, after, 2);
+    ask(2), ask(2);
+    device.set_model(1, device.load({{{90, 0, 0}, 0, 0}}, 8, 3), 3);
+    ask(3);
+    ASSERT_TRUE(device.finish());
+    std::vector<uint64_t> squared;
+    for (const Retired& r : device.retired)
+        if (r.segment.kind == SegmentKind::measure) squared.push_back(r.answer.squared);
+    EXPECT_EQ(squared, (std::vector<uint64_t>{2500, 2500, 4900, 4900, 8100}));
+}
+
+TEST(Coprocessor, RaisesItsInterruptsAndTakesThemBack) {
+    TestDevice device;
+    device.set_models({{{0, 0, 0}, 0, 0}}, {{{5'000, 0, 0}, 0, 0}});
+    device.push(question(1, {}, 100));
+    ASSERT_TRUE(device.finish());
+    EXPECT_FALSE(interrupt(device.state));
+    device.write(Register::irq_enable, irq_permit | irq_stop);
+    EXPECT_TRUE(interrupt(device.state));
+    device.write(Register::irq_pending, irq_permit);
+    EXPECT_FALSE(interrupt(device.state));
+    device.push(question(2, {}, 6'000));
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.read(Register::irq_pending), irq_stop);
+}
+
+TEST(Coprocessor, CountsWhatItDid) {
+    std::mt19937 rng(4);
+    TestDevice device;
+    device.set_models(cloud(rng, 50, 10'000), cloud(rng, 50, 10'000));
+    SearchCounts sum;
+    for (int i = 0; i < 30; ++i)
+        device.push_in_time(question(1, random_way(rng, 30'000), 0, SegmentKind::measure));
+    Segment late = question(1, {.start = {60'000, 0, 0}, .end = {60'000, 0, 0}}, 1);
+    late.budget = 5;
+    device.push_in_time(late);
+    ASSERT_TRUE(device.finish());
+    for (const Retired& r : device.retired) {
+        sum.nodes += r.answer.counts.nodes;
+        sum.splits += r.answer.counts.splits;
+        sum.pair_tests += r.answer.counts.pair_tests;
+        sum.deepest = std::max(sum.deepest, r.answer.counts.deepest);
+    }
+    EXPECT_EQ(device.read(Counter::cycles), device.state.cycle);
+    EXPECT_EQ(device.read(Counter::queries), 31U);
+    EXPECT_EQ(device.read(Counter::nodes), sum.nodes);
+    EXPECT_EQ(device.read(Counter::splits), sum.splits);
+    EXPECT_EQ(device.read(Counter::pair_tests), sum.pair_tests);
+    EXPECT_EQ(device.read(Counter::deepest), sum.deepest);
+    EXPECT_EQ(device.read(Counter::node_misses) + device.read(Counter::record_misses),
+              device.read(Counter::lines_read));
+    EXPECT_EQ(device.read(Counter::node_hits) + device.read(Counter::node_misses), sum.nodes);
+    EXPECT_EQ(device.read(Counter::lines_written), device.space.next);
+    EXPECT_EQ(device.read(Counter::missed), 1U);
+    EXPECT_LT(static_cast<int64_t>(device.read(Counter::least_slack)), 0);
+    EXPECT_EQ(static_cast<int64_t>(device.read(Counter::least_slack)),
+              5 - static_cast<int64_t>(device.read(Counter::longest)));
+}
+
+/// A device at work, one push every so many cycles.
+struct Work {
+    TestDevice device;
+    std::vector<Segment> segments;
+    size_t pushed = 0;
+
+    explicit Work(uint32_t seed) {
+        std::mt19937 rng(seed);
+        device.set_models(cloud(rng, 60, 3'000), cloud(rng, 90, 3'000));
+        for (int i = 0; i < 40; ++i)
+            segments.push_back(question(1, random_way(rng, 6'000), 0, SegmentKind::measure));
+    }
+    void step() {
+        if (device.state.cycle % 29 == 0 && pushed < segments.size()
+            && !device.has_status(status_fifo_full))
+            device.push(segments[pushed++]);
+        device.clock();
+    }
+};
+
+TEST(Coprocessor, TakesTheSameCyclesEveryTime) {
+    Work a(5), b(5);
+    for (int i = 0; i < 60'000; ++i) {
+        a.step();
+        b.step();
+    }
+    EXPECT_EQ(a.device.retired.size(), 42U);
+    EXPECT_EQ(a.device.state, b.device.state);
+}
+
+TEST(Coprocessor, GoesOnFromASnapshotAsItWentOn) {
+    std::mt19937 rng(6);
+    Work original(7);
+    std::vector<std::pair<Work, CoprocessorState>> others;
+    uint64_t next = 40;
+    while (original.device.retired.size() < 42) {
+        if (original.device.state.cycle >= next && others.size() < 40) {
+            Work other(8); // has been somewhere else
+            for (uint32_t i = rng() % 300; i > 0; --i) other.step();
+            others.emplace_back(other, original.device.state);
+            others.back().first.device.state = original.device.state;
+            others.back().first.segments = original.segments;
+            others.back().first.pushed = original.pushed;
+            next += 1 + rng() % 300;
+        }
+        original.step();
+    }
+    ASSERT_GT(others.size(), 10U);
+    for (auto& [other, from] : others) {
+        while (other.device.state.cycle < original.device.state.cycle) other.step();
+        ASSERT_EQ(other.device.state, original.device.state) << from.cycle;
+    }
+}
+
+TEST(DeviceConfig, IsRefusedWhereItCannotBeBuilt) {
+    EXPECT_TRUE(checked(DeviceConfig{}));
+    EXPECT_FALSE(checked({.elements = 0}));
+    EXPECT_FALSE(checked({.threads = 17}));
+    EXPECT_FALSE(checked({.stack_depth = 65}));
+    EXPECT_FALSE(checked({.node_cache_lines = 100}));
+    EXPECT_FALSE(checked({.memory_lines = 0}));
+}
+
+} // namespace
+} // namespace hwsim
