@@ -14,8 +14,12 @@ BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment
 }
 
 void tick(BoxUnit& unit, const BoxUnit::Output& in) {
-    for (size_t i = BoxUnit::latency - 1; i > 0; --i) unit.stage[i] = unit.stage[i - 1];
-    unit.stage[0] = in;
+    // An empty stage keeps its old contents but for `valid`.
+    if (in.valid)
+        unit.stage[unit.next] = in;
+    else
+        unit.stage[unit.next].valid = false;
+    unit.next = unit.next + 1 == BoxUnit::latency ? 0 : unit.next + 1;
 }
 
 } // namespace hwsim

@@ -4,12 +4,12 @@
 
 namespace hwsim {
 
-/// Tests both halves of a division: swept box against box, twice, as a pipeline.
+/// Tests both halves of a division: swept volume against box, twice, as a pipeline.
 ///
-/// Latency:    4 cycles: offsets, stretched boxes, gaps, squares and sum.
+/// Latency:    15 cycles: offsets, then those of the pair unit, for the arithmetic is the same.
 /// Throughput: one division a cycle, no stall.
 struct BoxUnit {
-    static constexpr size_t latency = 4;
+    static constexpr uint32_t latency = 15;
 
     struct Output {
         bool valid = false;
@@ -18,10 +18,12 @@ struct BoxUnit {
         std::array<uint64_t, 2> squared{};
         bool operator==(const Output&) const = default;
     };
-    /// The halves stay with their thread; only what is computed of them travels.
+    /// The halves stay with their thread; only what is computed of them travels. Stages move round
+    /// instead of their contents: `next` is where a question enters, and where the oldest leaves.
     std::array<Output, latency> stage{};
+    uint32_t next = 0;
 
-    const Output& output() const { return stage[latency - 1]; }
+    const Output& output() const { return stage[next]; }
     bool operator==(const BoxUnit&) const = default;
 };
 

@@ -40,6 +40,7 @@ void retire_first(CoprocessorState& s) {
     const Dispatched entry = s.permits.in_order.front();
     if (entry.searched) {
         release(s.elements[entry.element], entry.thread);
+        --s.searching;
         add(s.searched, answer->counts);
     }
     s.retired = {true, entry.segment, *answer, entry.pushed};
@@ -59,11 +60,14 @@ Stop fault_of_models(const CoprocessorState& s, const Segment& segment) {
 /// Gives a segment to an idle thread; false if there is none.
 bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry) {
     const size_t count = s.elements.size();
+    if (s.searching == count * s.elements[0].threads.size()) return false;
     for (size_t i = 0; i < count; ++i) {
-        const size_t number = (s.next_element + i) % count;
+        size_t number = s.next_element + i;
+        if (number >= count) number -= count;
         SearchElement& element = s.elements[number];
         const auto thread = idle_thread(element);
         if (!thread) continue;
+        ++s.searching;
         const ModelSlot& tool = s.slots[segment.tool_slot];
         const ModelSlot& work = s.slots[segment.work_slot];
         begin(element, *thread,
@@ -72,7 +76,7 @@ bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry
         entry.searched = true;
         entry.element = static_cast<uint8_t>(number);
         entry.thread = *thread;
-        s.next_element = static_cast<uint8_t>((number + 1) % count);
+        s.next_element = static_cast<uint8_t>(number + 1 == count ? 0 : number + 1);
         return true;
     }
     return false;
@@ -150,6 +154,7 @@ void halt(CoprocessorState& s, Stop reason, uint32_t sequence, uint32_t line) {
     ++s.run;
     s.fifo.entries.clear();
     for (SearchElement& element : s.elements) flush(element);
+    s.searching = 0;
     s.host.irq_pending |= irq_stop;
 }
 

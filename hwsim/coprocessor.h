@@ -54,6 +54,7 @@ struct CoprocessorState {
     std::array<ModelSlot, model_slots> slots{};
     std::vector<SearchElement> elements;
     MemoryUnit memory;
+    uint32_t searching = 0;   // threads that have a search
     uint8_t next_element = 0; // is asked first for an idle thread
     uint8_t next_request = 0; // may ask the memory first
     SearchSums searched;

@@ -55,6 +55,7 @@ uint64_t bits_from(const Line& line, unsigned at) {
 constexpr unsigned coordinate_bits = 24;
 constexpr unsigned record_bits = 3 * coordinate_bits + 2 * Record::extent_bits;
 constexpr size_t first_reference = 9;
+constexpr size_t first_radius = 11;
 
 int32_t coordinate_at(const Line& line, unsigned at) {
     return static_cast<int32_t>(static_cast<uint32_t>(bits_from(line, at)) << 8) >> 8;
@@ -90,11 +91,14 @@ uint32_t check_of(const Line& line, uint32_t address) {
 Line packed(const Node& node, uint32_t epoch, uint32_t address) {
     Line line;
     FieldWriter writer(line);
-    for (const Box& box : node.box) {
-        put(writer, box.min);
-        put(writer, box.max);
+    for (const Volume& volume : node.volume) {
+        put(writer, volume.box.min);
+        put(writer, volume.box.max);
     }
-    for (size_t i = 0; i < 2; ++i) line.word[first_reference + i] = node.child[i].word;
+    for (size_t i = 0; i < 2; ++i) {
+        line.word[first_reference + i] = node.child[i].word;
+        line.word[first_radius + i] = static_cast<uint32_t>(node.volume[i].radius);
+    }
     return sealed(line, epoch, address);
 }
 
@@ -112,8 +116,10 @@ Line packed(const Records& records, uint32_t epoch, uint32_t address) {
 Node node_in(const Line& line) {
     Node node;
     for (unsigned i = 0; i < 2; ++i) {
-        node.box[i].min = vector_at(line, i * 6 * coordinate_bits);
-        node.box[i].max = vector_at(line, (i * 6 + 3) * coordinate_bits);
+        Volume& volume = node.volume[i];
+        volume.box.min = vector_at(line, i * 6 * coordinate_bits);
+        volume.box.max = vector_at(line, (i * 6 + 3) * coordinate_bits);
+        volume.radius = static_cast<int32_t>(line.word[first_radius + i] & Record::greatest_extent);
         node.child[i] = {line.word[first_reference + i]};
     }
     return node;

@@ -44,6 +44,23 @@ struct Box {
 constexpr Box everywhere{{least_coordinate, least_coordinate, least_coordinate},
                          {greatest_coordinate, greatest_coordinate, greatest_coordinate}};
 
+/// What holds a part of a model: all points no farther than `radius`, on their level, from a box.
+/// Of the tool's side the box is round the axes of cylinders; of the work's side there is no
+/// radius.
+struct Volume {
+    Box box;
+    int32_t radius = 0;
+
+    void extend(const Volume& v) {
+        box.extend(v.box);
+        radius = std::max(radius, v.radius);
+    }
+    bool operator==(const Volume&) const = default;
+};
+
+/// Whose models these are.
+enum class Side : uint8_t { tool, work };
+
 /// A point of a model with an extent: it reaches from `base` upwards by `run`, and sideways by
 /// `half`. In a model of the tool's side it is an upright cylinder of that radius, in one of the
 /// work's side an upright post whose square section has that half side. Both 0: a bare point.
@@ -58,9 +75,15 @@ struct Record {
     bool operator==(const Record&) const = default;
 };
 
+/// The box round a record, whatever it stands for.
 inline Box box_of(const Record& r) {
     return {{r.base[0] - r.half, r.base[1] - r.half, r.base[2]},
             {r.base[0] + r.half, r.base[1] + r.half, r.base[2] + r.run}};
+}
+
+inline Volume volume_of(const Record& r, Side side) {
+    if (side == Side::work) return {box_of(r), 0};
+    return {{r.base, {r.base[0], r.base[1], r.base[2] + r.run}}, r.half};
 }
 
 /// What a node refers to: another node, a leaf of up to 32 records in consecutive lines, or
@@ -84,10 +107,10 @@ struct Reference {
     bool operator==(const Reference&) const = default;
 };
 
-/// Two children and the boxes round them. The header of a model is a node whose first child is its
+/// Two children and what holds them. The header of a model is a node whose first child is its
 /// root and whose second is none.
 struct Node {
-    std::array<Box, 2> box{};
+    std::array<Volume, 2> volume{};
     std::array<Reference, 2> child{};
 
     bool operator==(const Node&) const = default;
@@ -107,7 +130,7 @@ constexpr uint32_t record_name(uint32_t line, uint32_t place) {
 }
 
 /// Node:   words 0-8 the boxes, 24 bits a number (first box, then second; min x y z, max x y z),
-///         words 9-10 the references, 11-13 zero.
+///         words 9-10 the references, 11-12 the radii, 13 zero.
 /// Leaf:   words 0-13 four records of 112 bits: x, y, z (24 each), run, half (20 each).
 /// Bits count from the lowest of word 0; signed numbers are two's complement.
 Line packed(const Node& node, uint32_t epoch, uint32_t address);

@@ -77,8 +77,8 @@ core::Result<uint32_t> ModelWriter::add(const Node& node) {
 core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
     const auto count = static_cast<uint32_t>(records.size());
     FEELER_TRY(const LineRun run, taken(*this, leaf_lines(count)));
-    Branch leaf{Reference::leaf(run.first, count), box_of(records[0])};
-    for (const Record& record : records) leaf.box.extend(box_of(record));
+    Branch leaf{Reference::leaf(run.first, count), volume_of(records[0], side)};
+    for (const Record& record : records) leaf.volume.extend(volume_of(record, side));
     for (uint32_t i = 0; i < run.count; ++i) {
         Records four{};
         const auto part = records.subspan(i * records_per_line);
@@ -103,14 +103,15 @@ core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records,
 core::Result<Branch> add_above(ModelWriter& writer, const Branch& a, const Branch& b) {
     if (a.reference.is_none()) return b;
     if (b.reference.is_none()) return a;
-    FEELER_TRY(const uint32_t line, writer.add(Node{{a.box, b.box}, {a.reference, b.reference}}));
-    Branch above{Reference::node(line), a.box};
-    above.box.extend(b.box);
+    FEELER_TRY(const uint32_t line,
+               writer.add(Node{{a.volume, b.volume}, {a.reference, b.reference}}));
+    Branch above{Reference::node(line), a.volume};
+    above.volume.extend(b.volume);
     return above;
 }
 
 core::Result<uint32_t> add_header(ModelWriter& writer, const Branch& root) {
-    return writer.add(Node{{root.box, root.box}, {root.reference, Reference{}}});
+    return writer.add(Node{{root.volume, root.volume}, {root.reference, Reference{}}});
 }
 
 } // namespace hwsim

@@ -8,10 +8,10 @@
 
 namespace hwsim {
 
-/// A tree or a part of one, and the box round it. The box of none says nothing.
+/// A tree or a part of one, and what holds it. The volume of none says nothing.
 struct Branch {
     Reference reference;
-    Box box;
+    Volume volume;
 
     bool operator==(const Branch&) const = default;
 };
@@ -25,6 +25,7 @@ struct AddressedLine {
 /// Lines that are being made for the device: what is to be written, and the room it takes.
 struct ModelWriter {
     LineSpace* space = nullptr;
+    Side side = Side::work;
     uint32_t epoch = 0; // of all lines made
     std::vector<AddressedLine> lines;
     std::vector<LineRun> runs; // taken from the space, in order

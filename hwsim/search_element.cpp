@@ -16,6 +16,14 @@ struct Ports {
 
 constexpr uint32_t bit(uint32_t thread) { return 1U << thread; }
 
+/// std::popcount calls a library where the processor is not known to have it. For 16 bits.
+constexpr uint32_t count_of(uint32_t set) {
+    set = set - ((set >> 1) & 0x5555U);
+    set = (set & 0x3333U) + ((set >> 2) & 0x3333U);
+    set = (set + (set >> 4)) & 0x0F0FU;
+    return (set + (set >> 8)) & 0x1FU;
+}
+
 /// Puts a thread into the sets that its phase belongs to.
 void sort_in(SearchElement& e, uint32_t number) {
     const Phase phase = e.threads[number].phase;
@@ -136,8 +144,8 @@ SearchElement search_element(const DeviceConfig& config) {
 void tick(SearchElement& e, const DeviceConfig& config, const ElementInput& in) {
     if (e.busy != 0) {
         ++e.counts.busy;
-        e.counts.wait_retire += static_cast<uint64_t>(std::popcount(e.done));
-        e.counts.wait_memory += static_cast<uint64_t>(std::popcount(e.waiting));
+        e.counts.wait_retire += count_of(e.done);
+        e.counts.wait_memory += count_of(e.waiting);
         // What becomes ready in this cycle acts in the next.
         const uint32_t acting = e.acting;
         if (in.granted) e.request.valid = false;

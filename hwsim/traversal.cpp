@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 
+#include "hwsim/pair_distance.h"
+
 namespace hwsim {
 namespace {
 
@@ -10,6 +12,13 @@ int64_t longest_side(const Box& box) {
     for (size_t axis = 0; axis < 3; ++axis)
         longest = std::max(longest, int64_t{box.max[axis]} - box.min[axis]);
     return longest;
+}
+
+int64_t longest_side(const Volume& volume) {
+    const Box& box = volume.box;
+    const int64_t x = int64_t{box.max[0]} - box.min[0], y = int64_t{box.max[1]} - box.min[1];
+    return std::max(
+        {x + 2 * volume.radius, y + 2 * volume.radius, int64_t{box.max[2]} - box.min[2]});
 }
 
 int64_t longest_way(const FixedVec& from, const FixedVec& to) {
@@ -24,7 +33,7 @@ int64_t longest_way(const FixedVec& from, const FixedVec& to) {
 SearchPair first_pair(const Query& query) {
     return {.tool = Reference::node(query.tool_header),
             .work = Reference::node(query.work_header),
-            .tool_box = everywhere,
+            .tool_volume = {everywhere, 0},
             .work_box = everywhere,
             .first = 0,
             .last = static_cast<uint16_t>(1U << query.segment.log2_steps)};
@@ -32,29 +41,29 @@ SearchPair first_pair(const Query& query) {
 
 Division division_of(const SearchPair& pair, const Segment& segment) {
     const int64_t work = pair.work.is_leaf() ? -1 : longest_side(pair.work_box);
-    const int64_t tool = pair.tool.is_leaf() ? -1 : longest_side(pair.tool_box);
+    const int64_t tool = pair.tool.is_leaf() ? -1 : longest_side(pair.tool_volume);
     const int64_t way = longest_way(offset_at(segment, pair.first), offset_at(segment, pair.last));
     if (tool >= 0 && tool >= work && tool >= way) return Division::tool;
     if (work >= 0 && work >= way) return Division::work;
     return way > 0 ? Division::way : Division::none;
 }
 
-std::optional<uint64_t> squared_gap(const Box& tool, const FixedVec& from, const FixedVec& to,
+std::optional<uint64_t> squared_gap(const Volume& tool, const FixedVec& from, const FixedVec& to,
                                     const Box& work) {
-    uint64_t sum = 0;
+    std::array<int64_t, 3> gap{};
     for (size_t axis = 0; axis < 3; ++axis) {
-        const int64_t min = int64_t{tool.min[axis]} + std::min(from[axis], to[axis]);
-        const int64_t max = int64_t{tool.max[axis]} + std::max(from[axis], to[axis]);
-        if (!is_coordinate(min) || !is_coordinate(max)) return {};
-        const int64_t gap = std::max({work.min[axis] - max, min - work.max[axis], int64_t{0}});
-        sum += static_cast<uint64_t>(gap * gap);
+        const int64_t min = int64_t{tool.box.min[axis]} + std::min(from[axis], to[axis]);
+        const int64_t max = int64_t{tool.box.max[axis]} + std::max(from[axis], to[axis]);
+        const int64_t aside = axis == 2 ? 0 : tool.radius;
+        if (!is_coordinate(min - aside) || !is_coordinate(max + aside)) return {};
+        gap[axis] = std::max({work.min[axis] - max, min - work.max[axis], int64_t{0}});
     }
-    return sum;
+    return squared_distance(gap, tool.radius);
 }
 
 std::optional<uint64_t> squared_gap(const SearchPair& pair, const Segment& segment) {
-    return squared_gap(pair.tool_box, offset_at(segment, pair.first), offset_at(segment, pair.last),
-                       pair.work_box);
+    return squared_gap(pair.tool_volume, offset_at(segment, pair.first),
+                       offset_at(segment, pair.last), pair.work_box);
 }
 
 Halves halves_of_node(const SearchPair& pair, Division division, const Node& node) {
@@ -63,7 +72,10 @@ Halves halves_of_node(const SearchPair& pair, Division division, const Node& nod
         SearchPair& half = halves.pair[i];
         half = pair;
         (division == Division::work ? half.work : half.tool) = node.child[i];
-        (division == Division::work ? half.work_box : half.tool_box) = node.box[i];
+        if (division == Division::work)
+            half.work_box = node.volume[i].box;
+        else
+            half.tool_volume = node.volume[i];
         halves.there[i] = !node.child[i].is_none();
     }
     return halves;

@@ -9,7 +9,8 @@ namespace hwsim {
 /// A part of the tool over a part of the way against a part of the work: what the search divides.
 struct SearchPair {
     Reference tool, work;
-    Box tool_box, work_box;       // the tool's before it is moved
+    Volume tool_volume; // before it is moved
+    Box work_box;
     uint16_t first = 0, last = 0; // samples
     uint64_t squared = 0;         // no records of the two are nearer than this
 
@@ -27,9 +28,10 @@ SearchPair first_pair(const Query& query);
 /// way that leads nowhere; when nothing is left to divide, the records are compared.
 Division division_of(const SearchPair& pair, const Segment& segment);
 
-/// The box test: a bound of the squared distance of a box that goes from one offset to another and
-/// a box at rest; nothing if the moving box leaves the range of coordinates.
-std::optional<uint64_t> squared_gap(const Box& tool, const FixedVec& from, const FixedVec& to,
+/// The box test: a bound of the squared distance of a volume that goes from one offset to another
+/// and a box at rest; nothing if what moves leaves the range of coordinates. Never more than the
+/// squared distance of two records inside.
+std::optional<uint64_t> squared_gap(const Volume& tool, const FixedVec& from, const FixedVec& to,
                                     const Box& work);
 
 /// What comes of a division: two pairs, one if a child is missing. `squared` is not known yet.

@@ -162,8 +162,8 @@ TEST(Fault, AModelChangedInPlaceWhileSegmentsAreQueuedPermitsNothing) {
         device.clock(delay);
         const uint32_t before = device.permitted();
         device.space.next = 0;
-        device.load({tool}, 8, 2);
-        device.load(row_of_posts(), 8, 2);
+        device.load(Side::tool, {tool}, 8, 2);
+        device.load(Side::work, row_of_posts(), 8, 2);
         ASSERT_TRUE(device.finish());
         if (device.reason() == Stop::none) {
             EXPECT_EQ(device.permitted(), 5U); // from what the caches still hold of the old one
@@ -275,7 +275,7 @@ TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
     TestDevice device = working_device(config);
     // A node that is its own child, with a good check word.
     const uint32_t line = take(device.space, 1)->first;
-    const Box box{{0, 0, 0}, {9'000, 100, 0}};
+    const Volume box{{{0, 0, 0}, {9'000, 100, 0}}, 0};
     device.store({{line, packed(Node{{box, box}, {Reference::node(line), {}}}, 1, line)}});
     device.set_model(1, line);
     device.push(along_the_row(2));

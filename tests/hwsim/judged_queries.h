@@ -84,8 +84,8 @@ struct DeviceStock {
     }
 
     Answer ask(const Question& q) {
-        ModelWriter writer{.space = &space, .epoch = 0};
-        const Branch root = add_tree(writer, cylinders_round(q.body, 0.05).value(), 8).value();
+        ModelWriter writer{.space = &space, .side = Side::tool, .epoch = 0};
+        const Branch root = add_tree(writer, cylinders_round(q.body, 0.05).value(), 1).value();
         Query query{.tool_header = add_header(writer, root).value(),
                     .work_header = *model.header,
                     .work_epoch = model.epoch};

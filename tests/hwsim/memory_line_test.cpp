@@ -30,7 +30,7 @@ int32_t extent(std::mt19937& rng) {
 
 Node random_node(std::mt19937& rng) {
     Node node;
-    for (Box& box : node.box) box = {place(rng), place(rng)};
+    for (Volume& volume : node.volume) volume = {{place(rng), place(rng)}, extent(rng)};
     node.child[0] = Reference::leaf(rng() % (1U << Reference::line_bits), 1 + rng() % 32);
     node.child[1] = rng() % 2 == 0 ? Reference{} : Reference::node(rng() % (1U << 26));
     return node;
@@ -60,13 +60,14 @@ TEST(MemoryLine, GivesBackTheRecordsThatWerePutIn) {
 
 TEST(MemoryLine, HasItsBitsWhereTheLayoutSays) {
     Node node;
-    node.box[0].min = {1, 2, 3};
+    node.volume[0] = {{{1, 2, 3}, {}}, 77};
     node.child[0] = Reference::leaf(5, 16);
     const Line line = packed(node, 0, 0);
     EXPECT_EQ(line.word[0], 0x0200'0001U);
     EXPECT_EQ(line.word[1], 0x0003'0000U);
     EXPECT_EQ(line.word[9], 0xBC00'0005U);
     EXPECT_EQ(line.word[10], Reference::none_word);
+    EXPECT_EQ(line.word[11], 77U);
     Records records{};
     records[0] = {{-1, 0, 0}, 1, 2};
     const Line leaf = packed(records, 0, 0);

@@ -40,10 +40,9 @@ struct Scene {
     Query query;
 };
 
-inline uint32_t put_model(std::vector<Line>& memory, LineSpace& space,
-                          const std::vector<Record>& records, uint32_t leaf_size,
-                          uint32_t epoch = 1) {
-    ModelWriter writer{.space = &space, .epoch = epoch};
+inline uint32_t put_model(std::vector<Line>& memory, LineSpace& space, Side side,
+                          const std::vector<Record>& records, uint32_t leaf_size) {
+    ModelWriter writer{.space = &space, .side = side, .epoch = 1};
     Branch root;
     if (!records.empty()) root = add_tree(writer, records, leaf_size).value();
     const uint32_t header = add_header(writer, root).value();
@@ -57,11 +56,11 @@ inline Scene scene_of(std::vector<Record> tools, std::vector<Record> works, cons
     Scene scene{.memory = std::vector<Line>(lines), .tools = tools, .works = works};
     LineSpace space{.end = static_cast<uint32_t>(lines)};
     scene.query = {.segment = segment,
-                   .tool_header = put_model(scene.memory, space, tools, leaf_size),
+                   .tool_header = put_model(scene.memory, space, Side::tool, tools, leaf_size),
                    .tool_epoch = 1,
                    .work_epoch = 1,
                    .limit = limit};
-    scene.query.work_header = put_model(scene.memory, space, works, leaf_size);
+    scene.query.work_header = put_model(scene.memory, space, Side::work, works, leaf_size);
     return scene;
 }
 

@@ -25,9 +25,9 @@ public:
     SearchOracle(std::span<const Line> memory, const Query& query)
         : memory_(memory), query_(query) {
         answer.squared = query.limit;
-        visit({Reference::node(query.tool_header), everywhere},
-              {Reference::node(query.work_header), everywhere}, 0, 1 << query.segment.log2_steps,
-              0);
+        visit({Reference::node(query.tool_header), {everywhere, 0}},
+              {Reference::node(query.work_header), {everywhere, 0}}, 0,
+              1 << query.segment.log2_steps, 0);
     }
 
     Answer answer;
@@ -36,7 +36,7 @@ private:
     using Wide = int64_t;
     struct Part {
         Reference reference;
-        Box box;
+        Volume volume;
     };
     struct Half {
         Part tool, work;
@@ -47,8 +47,11 @@ private:
     static Wide size_of(const Part& part) {
         if (part.reference.is_leaf()) return -1;
         Wide size = 0;
-        for (size_t axis = 0; axis < 3; ++axis)
-            size = std::max<Wide>(size, Wide(part.box.max[axis]) - part.box.min[axis]);
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const Wide aside = axis < 2 ? 2 * part.volume.radius : 0;
+            size = std::max<Wide>(size, Wide(part.volume.box.max[axis]) - part.volume.box.min[axis]
+                                            + aside);
+        }
         return size;
     }
 
@@ -56,16 +59,31 @@ private:
 
     Wide gap_of(const Half& half) const {
         const FixedVec a = place(half.first), b = place(half.last);
-        Wide sum = 0;
+        std::array<Wide, 3> gap{};
         for (size_t axis = 0; axis < 3; ++axis) {
-            const Wide min = Wide(half.tool.box.min[axis]) + std::min(a[axis], b[axis]);
-            const Wide max = Wide(half.tool.box.max[axis]) + std::max(a[axis], b[axis]);
-            Wide gap = 0;
-            if (min > half.work.box.max[axis]) gap = min - half.work.box.max[axis];
-            if (max < half.work.box.min[axis]) gap = half.work.box.min[axis] - max;
-            sum += gap * gap;
+            const Box& tool = half.tool.volume.box;
+            const Box& work = half.work.volume.box;
+            const Wide min = Wide(tool.min[axis]) + std::min(a[axis], b[axis]);
+            const Wide max = Wide(tool.max[axis]) + std::max(a[axis], b[axis]);
+            if (min > work.max[axis]) gap[axis] = min - work.max[axis];
+            if (max < work.min[axis]) gap[axis] = work.min[axis] - max;
         }
-        return sum;
+        Wide level = gap[0] * gap[0] + gap[1] * gap[1];
+        if (half.tool.volume.radius > 0) {
+            const Wide beside = std::max<Wide>(least_root(level) - half.tool.volume.radius, 0);
+            level = beside * beside;
+        }
+        return level + gap[2] * gap[2];
+    }
+
+    /// The least number whose square is enough, by halving.
+    static Wide least_root(Wide square) {
+        Wide low = 0, high = Wide(1) << 25;
+        while (low < high) {
+            const Wide middle = (low + high) / 2;
+            (middle * middle >= square ? high : low) = middle + (middle * middle >= square ? 0 : 1);
+        }
+        return low;
     }
 
     void visit(const Part& tool, const Part& work, int first, int last, uint32_t waiting) {
@@ -86,7 +104,7 @@ private:
             const bool is_tool = of_tool >= of_work;
             const Node node = node_in(memory_[(is_tool ? tool : work).reference.line()]);
             for (size_t i = 0; i < 2; ++i) {
-                const Part part{node.child[i], node.box[i]};
+                const Part part{node.child[i], node.volume[i]};
                 if (part.reference.is_none()) continue;
                 halves.push_back({is_tool ? part : tool, is_tool ? work : part, first, last});
             }

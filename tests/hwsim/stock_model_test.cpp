@@ -22,7 +22,7 @@ struct Workshop {
         stock = world.uncut(h);
         model = stock_model(cells_of(stock));
         memory[2] = packed(Records{Record{{0, 0, 0}, 20'000, 9'000}}, 0, 2);
-        const Box box{{-9'000, -9'000, 0}, {9'000, 9'000, 20'000}};
+        const Volume box{{{0, 0, 0}, {0, 0, 20'000}}, 9'000};
         memory[tool_header] =
             packed(Node{{box, box}, {Reference::leaf(2, 1), Reference{}}}, 0, tool_header);
     }

@@ -75,8 +75,9 @@ struct TestDevice {
     }
 
     /// Brings a model into the memory, and returns its header.
-    uint32_t load(const std::vector<Record>& records, uint32_t leaf_size = 8, uint32_t epoch = 1) {
-        ModelWriter writer{.space = &space, .epoch = epoch};
+    uint32_t load(Side side, const std::vector<Record>& records, uint32_t leaf_size = 8,
+                  uint32_t epoch = 1) {
+        ModelWriter writer{.space = &space, .side = side, .epoch = epoch};
         Branch root;
         if (!records.empty()) root = add_tree(writer, records, leaf_size).value();
         const uint32_t header = add_header(writer, root).value();
@@ -93,8 +94,8 @@ struct TestDevice {
                       .model_header = header});
     }
     void set_models(const std::vector<Record>& tools, const std::vector<Record>& works) {
-        set_model(0, load(tools));
-        set_model(1, load(works));
+        set_model(0, load(Side::tool, tools));
+        set_model(1, load(Side::work, works));
     }
 };
 

@@ -53,8 +53,8 @@ TEST(BoxTest, IsNeverMoreThanTheDistanceOfWhatIsInside) {
         const Record tool = random_record(rng, reach), work = random_record(rng, reach);
         const Segment s = random_segment(rng, reach, 3);
         const uint32_t first = rng() % 5, last = first + rng() % 4;
-        const auto gap =
-            squared_gap(box_of(tool), offset_at(s, first), offset_at(s, last), box_of(work));
+        const auto gap = squared_gap(volume_of(tool, Side::tool), offset_at(s, first),
+                                     offset_at(s, last), box_of(work));
         ASSERT_TRUE(gap);
         for (uint32_t k = first; k <= last; ++k)
             ASSERT_LE(*gap, squared_distance(tool, offset_at(s, k), work));
@@ -64,7 +64,7 @@ TEST(BoxTest, IsNeverMoreThanTheDistanceOfWhatIsInside) {
 }
 
 TEST(BoxTest, SaysNothingBeyondTheRange) {
-    const Box box{{-10, -10, -10}, {10, 10, 10}};
+    const Volume box{{{-10, -10, -10}, {10, 10, 10}}, 0};
     const FixedVec here{0, 0, 0}, high{0, greatest_coordinate - 10, 0},
         higher{0, greatest_coordinate - 9, 0}, low{0, 0, least_coordinate + 10},
         lower{0, 0, least_coordinate + 9};
