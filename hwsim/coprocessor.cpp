@@ -37,24 +37,12 @@ void retire_first(CoprocessorState& s) {
     s.retired.valid = false;
     const std::optional<Answer> answer = first_answer(s);
     if (!answer) return;
-    const Dispatched entry = s.permits.in_order.front();
-    if (entry.searched) {
-        release(s.elements[entry.element], entry.thread);
+    const Dispatched& first = s.permits.in_order.front();
+    if (first.searched) {
+        release(s.elements[first.element], first.thread);
         --s.searching;
-        add(s.searched, answer->counts);
     }
-    s.retired = {true, entry.segment, *answer, entry.pushed};
-    const Retirement done = retire(s.permits, *answer, s.cycle);
-    if (done.permitted) s.host.irq_pending |= irq_permit;
-    if (done.measured) s.host.irq_pending |= irq_measured;
-    if (done.stopped != Stop::none) halt(s, done.stopped, entry.segment.sequence, answer->at_line);
-}
-
-Stop fault_of_models(const CoprocessorState& s, const Segment& segment) {
-    const ModelSlot& tool = s.slots[segment.tool_slot];
-    const ModelSlot& work = s.slots[segment.work_slot];
-    if (!tool.valid || !work.valid) return Stop::model_missing;
-    return work.epoch == segment.work_epoch ? Stop::none : Stop::model_changed;
+    retire_with(s, *answer);
 }
 
 /// Gives a segment to an idle thread; false if there is none.
@@ -68,11 +56,7 @@ bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry
         const auto thread = idle_thread(element);
         if (!thread) continue;
         ++s.searching;
-        const ModelSlot& tool = s.slots[segment.tool_slot];
-        const ModelSlot& work = s.slots[segment.work_slot];
-        begin(element, *thread,
-              {segment, tool.header, work.header, tool.epoch, work.epoch, limit_of(segment)},
-              s.cycle);
+        begin(element, *thread, query_of(s, segment), s.cycle);
         entry.searched = true;
         entry.element = static_cast<uint8_t>(number);
         entry.thread = *thread;
@@ -92,7 +76,7 @@ void dispatch(CoprocessorState& s) {
     Dispatched entry{.segment = segment, .pushed = first.pushed};
     if (segment.kind == SegmentKind::model) {
         if (!is_written(s.memory)) return;
-        s.slots[segment.work_slot] = {true, segment.model_header, segment.work_epoch};
+        take_model(s, segment);
     } else {
         entry.fault = fault_of_models(s, segment);
         if (entry.fault == Stop::none && !begin_search(s, segment, entry)) return;
@@ -156,6 +140,33 @@ void halt(CoprocessorState& s, Stop reason, uint32_t sequence, uint32_t line) {
     for (SearchElement& element : s.elements) flush(element);
     s.searching = 0;
     s.host.irq_pending |= irq_stop;
+}
+
+Stop fault_of_models(const CoprocessorState& s, const Segment& segment) {
+    const ModelSlot& tool = s.slots[segment.tool_slot];
+    const ModelSlot& work = s.slots[segment.work_slot];
+    if (!tool.valid || !work.valid) return Stop::model_missing;
+    return work.epoch == segment.work_epoch ? Stop::none : Stop::model_changed;
+}
+
+Query query_of(const CoprocessorState& s, const Segment& segment) {
+    const ModelSlot& tool = s.slots[segment.tool_slot];
+    const ModelSlot& work = s.slots[segment.work_slot];
+    return {segment, tool.header, work.header, tool.epoch, work.epoch, limit_of(segment)};
+}
+
+void take_model(CoprocessorState& s, const Segment& segment) {
+    s.slots[segment.work_slot] = {true, segment.model_header, segment.work_epoch};
+}
+
+void retire_with(CoprocessorState& s, const Answer& answer) {
+    const Dispatched entry = s.permits.in_order.front();
+    if (entry.segment.kind != SegmentKind::model) add(s.searched, answer.counts);
+    s.retired = {true, entry.segment, answer, entry.pushed};
+    const Retirement done = retire(s.permits, answer, s.cycle);
+    if (done.permitted) s.host.irq_pending |= irq_permit;
+    if (done.measured) s.host.irq_pending |= irq_measured;
+    if (done.stopped != Stop::none) halt(s, done.stopped, entry.segment.sequence, answer.at_line);
 }
 
 bool store(CoprocessorState& s, uint32_t address, const Line& line) {

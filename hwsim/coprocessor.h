@@ -80,6 +80,13 @@ bool store(CoprocessorState& state, uint32_t address, const Line& line);
 /// way is dropped.
 void halt(CoprocessorState& state, Stop reason, uint32_t sequence, uint32_t line = 0);
 
+/// What the emulator and the functional model do alike: what is wrong with the models of a segment,
+/// what is asked, a model for its slot, and what an answer to the first entry leads to.
+Stop fault_of_models(const CoprocessorState& state, const Segment& segment);
+Query query_of(const CoprocessorState& state, const Segment& segment);
+void take_model(CoprocessorState& state, const Segment& segment);
+void retire_with(CoprocessorState& state, const Answer& answer);
+
 /// The interrupt line.
 inline bool interrupt(const CoprocessorState& state) {
     return (state.host.irq_pending & state.host.irq_enable) != 0;

@@ -1,0 +1,247 @@
+#include "hwsim/driver.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "hwsim/tool_model.h"
+
+namespace hwsim {
+namespace {
+
+constexpr auto index_of(SlotNumber slot) { return static_cast<size_t>(slot); }
+
+uint32_t read(Driver& driver, Register r) { return driver.port.read(r); }
+void write(Driver& driver, Register r, uint32_t value) { driver.port.write(address_of(r), value); }
+
+bool is_stopped(Driver& driver) { return (read(driver, Register::status) & status_stopped) != 0; }
+
+void store(Driver& driver, const std::vector<AddressedLine>& lines) {
+    for (const AddressedLine& line : lines)
+        while (!driver.port.store(line.address, line.line)) driver.port.wait();
+}
+
+/// Gives back the lines of models that no search needs any more. Counts may wrap round.
+void reclaim(Driver& driver) {
+    if (driver.released.empty()) return;
+    const uint32_t retired = read(driver, Register::retired);
+    while (!driver.released.empty()
+           && static_cast<int32_t>(retired - driver.released.front().entries) >= 0) {
+        for (const LineRun& run : driver.released.front().runs) give_back(driver.space, run);
+        driver.released.pop_front();
+    }
+}
+
+/// Puts an entry into the FIFO when there is room. A stopped device takes nothing in.
+void push_entry(Driver& driver, const Segment& entry) {
+    uint32_t status = read(driver, Register::status);
+    while ((status & status_fifo_full) != 0 && (status & status_stopped) == 0) {
+        write(driver, Register::heartbeat, 1);
+        driver.port.wait();
+        status = read(driver, Register::status);
+    }
+    if ((status & status_stopped) != 0) return;
+    const SegmentWords words = words_of(entry);
+    for (uint32_t i = 0; i < segment_words; ++i)
+        driver.port.write(address_of(Register::segment) + 4 * i, words[i]);
+    write(driver, Register::segment_push, 1);
+    ++driver.entries;
+}
+
+void push_model(Driver& driver, SlotNumber slot) {
+    const Driver::Slot& model = driver.slots[index_of(slot)];
+    push_entry(driver, {.sequence = driver.next_sequence,
+                        .kind = SegmentKind::model,
+                        .work_slot = static_cast<uint8_t>(slot),
+                        .last = false,
+                        .work_epoch = model.epoch,
+                        .model_header = model.header});
+}
+
+/// A model that has been made: its lines go into the memory first, then it goes into a slot.
+core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace space,
+                                  const std::vector<AddressedLine>& lines) {
+    if (driver.slots.size() == model_slots)
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("the coprocessor holds no more than {} models", model_slots));
+    driver.space = std::move(space);
+    driver.slots.push_back(std::move(slot));
+    store(driver, lines);
+    const auto number = static_cast<SlotNumber>(driver.slots.size() - 1);
+    push_model(driver, number);
+    return number;
+}
+
+core::Result<FixedVec> place_of(const core::Vec3& p) {
+    FixedVec place{};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        FEELER_TRY(place[axis], fixed(p[static_cast<int>(axis)], Rounding::nearest));
+    }
+    return place;
+}
+
+/// The entry for one pair, but for its number and whether it is the last.
+core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
+                               const PairToKeep& pair) {
+    const auto holds = [&](SlotNumber slot, Side side) {
+        return index_of(slot) < driver.slots.size() && driver.slots[index_of(slot)].side == side;
+    };
+    if (!holds(pair.tool, Side::tool) || !holds(pair.work, Side::work))
+        return core::fail(core::ErrorCode::invalid_value,
+                          "a pair to keep apart needs a model of the tool's side and one of the "
+                          "work's");
+    if (!(path.sample_step > 0.0))
+        return core::fail(core::ErrorCode::invalid_value,
+                          "the step from sample to sample must be a length above 0");
+    Segment entry{.sequence = driver.next_sequence,
+                  .tool_slot = static_cast<uint8_t>(pair.tool),
+                  .work_slot = static_cast<uint8_t>(pair.work),
+                  .work_epoch = driver.slots[index_of(pair.work)].epoch,
+                  .budget = path.budget};
+    FEELER_TRY(entry.start, place_of(path.from));
+    FEELER_TRY(entry.end, place_of(path.to));
+    double step = glm::length(path.to - path.from);
+    for (; step > path.sample_step && entry.log2_steps < Segment::most_log2_steps; step *= 0.5)
+        ++entry.log2_steps;
+    FEELER_TRY(entry.threshold, threshold(pair.distance, step));
+    return entry;
+}
+
+core::Result<std::vector<Segment>> entries_of(const Driver& driver, const PathSegment& path) {
+    if (path.pairs.empty())
+        return core::fail(core::ErrorCode::invalid_value,
+                          "a segment is permitted by its pairs, and this one has none");
+    std::vector<Segment> entries;
+    for (const PairToKeep& pair : path.pairs) {
+        FEELER_TRY(const Segment entry, entry_of(driver, path, pair));
+        entries.push_back(entry);
+    }
+    return entries;
+}
+
+} // namespace
+
+double FoundPair::distance() const { return std::sqrt(static_cast<double>(squared)) * lsb; }
+
+core::Result<Driver> open_device(DevicePort port) {
+    Driver driver{.port = std::move(port)};
+    if (read(driver, Register::identification) != identification_word
+        || read(driver, Register::version) != version_word)
+        return core::fail(core::ErrorCode::unsupported,
+                          "what answers at the port is no coprocessor of this version");
+    write(driver, Register::control, control_reset);
+    driver.space.end = read(driver, Register::lines);
+    write(driver, Register::control, control_enable);
+    return driver;
+}
+
+core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& profile,
+                                   double tolerance) {
+    FEELER_TRY(std::vector<Record> records, cylinders_round(profile, tolerance));
+    return load_records(driver, Side::tool, std::move(records));
+}
+
+core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Record> records) {
+    LineSpace space = driver.space;
+    ModelWriter writer{.space = &space, .side = side, .epoch = 1};
+    Branch root;
+    if (!records.empty()) {
+        FEELER_TRY(root, add_tree(writer, std::move(records), driver.leaf_size));
+    }
+    FEELER_TRY(const uint32_t header, add_header(writer, root));
+    return new_slot(driver, {side, header, 1, {}}, std::move(space), writer.lines);
+}
+
+core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock) {
+    Driver::Slot slot{.stock = stock_model(cells_of(stock), driver.leaf_size)};
+    LineSpace space = driver.space;
+    FEELER_TRY(const StockUpdate done, update(*slot.stock, space, stock.columns));
+    slot.header = done.header;
+    slot.epoch = done.epoch;
+    return new_slot(driver, std::move(slot), std::move(space), done.lines);
+}
+
+core::Result<size_t> update_stock(Driver& driver, SlotNumber number, const core::CutModel& stock) {
+    reclaim(driver);
+    Driver::Slot& slot = driver.slots[index_of(number)];
+    FEELER_TRY(const StockUpdate done, update(*slot.stock, driver.space, stock.columns));
+    slot.header = done.header;
+    slot.epoch = done.epoch;
+    store(driver, done.lines);
+    push_model(driver, number);
+    driver.released.push_back({driver.entries, done.released});
+    return done.tiles;
+}
+
+core::Result<uint32_t> push(Driver& driver, const PathSegment& segment) {
+    FEELER_TRY(const std::vector<Segment> entries, entries_of(driver, segment));
+    for (size_t i = 0; i < entries.size(); ++i) {
+        Segment entry = entries[i];
+        entry.last = i + 1 == entries.size();
+        push_entry(driver, entry);
+    }
+    return driver.next_sequence++;
+}
+
+core::Result<std::optional<FoundPair>> measure(Driver& driver, const PathSegment& segment) {
+    FEELER_TRY(const std::vector<Segment> entries, entries_of(driver, segment));
+    std::optional<FoundPair> nearest;
+    for (Segment entry : entries) {
+        entry.kind = SegmentKind::measure;
+        entry.last = false;
+        push_entry(driver, entry);
+        if (wait_for_all(driver).stop != Stop::none) return std::optional<FoundPair>();
+        const std::optional<FoundPair> pair = found_pair(driver);
+        if (pair && (!nearest || pair->squared < nearest->squared)) nearest = pair;
+    }
+    return nearest;
+}
+
+DeviceReport report(Driver& driver) {
+    write(driver, Register::heartbeat, 1);
+    reclaim(driver);
+    DeviceReport now;
+    const uint32_t status = read(driver, Register::status);
+    now.idle = (status & status_idle) != 0;
+    if ((status & status_stopped) != 0) {
+        now.stop = static_cast<Stop>(read(driver, Register::stop));
+        now.stop_sequence = read(driver, Register::stop_seq);
+        now.stop_line = read(driver, Register::stop_line);
+    }
+    now.permitted = read(driver, Register::permit_seq);
+    return now;
+}
+
+DeviceReport wait_for_all(Driver& driver) {
+    DeviceReport now = report(driver);
+    while (!now.idle && now.stop == Stop::none) {
+        driver.port.wait();
+        now = report(driver);
+    }
+    return now;
+}
+
+std::optional<FoundPair> found_pair(Driver& driver) {
+    if (read(driver, Register::found_valid) == 0) return {};
+    FoundPair pair;
+    pair.squared = read(driver, Register::found_low);
+    pair.squared |= uint64_t{read(driver, Register::found_high)} << 32;
+    pair.tool_record = read(driver, Register::found_tool);
+    pair.work_record = read(driver, Register::found_work);
+    pair.sample = static_cast<uint16_t>(read(driver, Register::found_sample));
+    pair.sequence = read(driver, Register::found_seq);
+    return pair;
+}
+
+void recover(Driver& driver) {
+    if (!is_stopped(driver)) return;
+    write(driver, Register::control, control_clear | control_enable);
+    driver.next_sequence = read(driver, Register::next_seq);
+    // Nothing is under way any more, so nothing needs the models of before.
+    driver.entries = read(driver, Register::retired);
+    for (Driver::Released& old : driver.released) old.entries = driver.entries;
+    reclaim(driver);
+    for (size_t i = 0; i < driver.slots.size(); ++i) push_model(driver, static_cast<SlotNumber>(i));
+}
+
+} // namespace hwsim

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include "hwsim/driver.h"
+#include "tests/hwsim/judged_queries.h"
+
+namespace hwsim {
+namespace {
+
+const core::RevolvedProfile holder{{{4, 3, 14, 3, 0}, {14, 7, 18, 9, 0}, {18, 9, 40, 9, 0}}};
+const test_support::CutBox raw{{{-30, -25, -15}, {30, 25, 0}}, 0.0, {}};
+
+DeviceConfig bench_config() {
+    return {.elements = 2, .threads = 3, .fifo_depth = 8, .memory_lines = 1U << 15};
+}
+
+/// A job as a control would see it: segments, and cuts between them.
+struct Job {
+    struct Step {
+        PathSegment segment;
+        core::CutModel stock; // as it is when the machine gets there
+    };
+    std::vector<Step> steps;
+};
+
+Job random_job(uint32_t seed, SlotNumber tool, SlotNumber work, size_t count) {
+    std::mt19937 rng(seed);
+    Job job;
+    core::CutModel stock = raw.uncut(1.0);
+    const auto cutter = std::make_shared<core::Cutter>(
+        core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
+    core::Vec3 at(0, 0, -3);
+    while (job.steps.size() < count) {
+        PathSegment segment{.from = at};
+        at += test_support::random_point({{-4, -4, -0.6}, {4, 4, 0.55}}, rng);
+        at = glm::clamp(at, core::Vec3(-28, -23, -9), core::Vec3(28, 23, 3));
+        segment.to = at;
+        segment.pairs = {{tool, work, 1.0}};
+        job.steps.push_back({segment, stock});
+        core::cut(stock, {cutter, segment.from, segment.to});
+    }
+    return job;
+}
+
+/// Whether the functional model permits a step, on a stock made afresh.
+bool is_permitted(const Job::Step& step) {
+    DeviceStock device(step.stock);
+    Question q{holder, step.segment.from, step.segment.to, step.segment.pairs[0].distance, 0};
+    for (double s = glm::length(q.to - q.from); s > step.segment.sample_step; s *= 0.5)
+        ++q.log2_steps;
+    const Answer answer = device.ask(q);
+    EXPECT_EQ(answer.stop, Stop::none);
+    return !answer.found;
+}
+
+struct Outcome {
+    std::vector<bool> permitted;
+    std::vector<uint64_t> squared; // of violations
+    bool operator==(const Outcome&) const = default;
+};
+
+/// Drives a job, always some segments ahead of the answers; a step that is refused is left out.
+Outcome drive(Driver& driver, SlotNumber work, const Job& job) {
+    Outcome outcome;
+    size_t step = 0;
+    while (step < job.steps.size()) {
+        const size_t first = step;
+        const uint32_t base = driver.next_sequence;
+        for (; step < job.steps.size() && step < first + 12; ++step) {
+            EXPECT_TRUE(update_stock(driver, work, job.steps[step].stock));
+            EXPECT_EQ(push(driver, job.steps[step].segment).value(), base + (step - first));
+        }
+        const DeviceReport now = wait_for_all(driver);
+        const uint32_t count = now.permitted + 1 - base;
+        outcome.permitted.insert(outcome.permitted.end(), count, true);
+        step = first + count;
+        if (now.stop == Stop::none) continue;
+        EXPECT_EQ(now.stop, Stop::violation);
+        EXPECT_EQ(now.stop_sequence, now.permitted + 1);
+        outcome.permitted.push_back(false);
+        outcome.squared.push_back(found_pair(driver).value().squared);
+        ++step;
+        recover(driver);
+    }
+    return outcome;
+}
+
+Outcome drive_on(DevicePort port, uint32_t seed, size_t count) {
+    Driver driver = open_device(std::move(port)).value();
+    const SlotNumber tool = load_tool(driver, holder, 0.05).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    return drive(driver, work, random_job(seed, tool, work, count));
+}
+
+TEST(Driver, PermitsASegmentIfTheStockAsItIsThenAllowsIt) {
+    FunctionalDevice device = functional_device(bench_config()).value();
+    const Outcome outcome = drive_on(port_of(device), 1, 300);
+    const Job job = random_job(1, SlotNumber{0}, SlotNumber{1}, 300);
+    ASSERT_EQ(outcome.permitted.size(), job.steps.size());
+    int refused = 0;
+    for (size_t i = 0; i < job.steps.size(); ++i) {
+        ASSERT_EQ(outcome.permitted[i], is_permitted(job.steps[i])) << i;
+        refused += outcome.permitted[i] ? 0 : 1;
+    }
+    EXPECT_GT(refused, 20);
+    EXPECT_LT(refused, 280);
+}
+
+TEST(Driver, GetsTheSameFromTheEmulatorAsFromTheFunctionalModel) {
+    for (uint32_t seed = 2; seed < 4; ++seed) {
+        FunctionalDevice functional = functional_device(bench_config()).value();
+        EmulatedDevice emulated = emulated_device(bench_config()).value();
+        const Outcome expected = drive_on(port_of(functional), seed, 200);
+        EXPECT_EQ(drive_on(port_of(emulated), seed, 200), expected);
+        EXPECT_GT(emulated.state.cycle, 10'000U);
+    }
+}
+
+TEST(Driver, MeasuresWhatTheExactEngineDoes) {
+    FunctionalDevice device = functional_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const core::CutModel stock = raw.uncut(1.0);
+    const core::RevolvedProfile cylinder{{{0, 5, 12, 5, 0}}};
+    const SlotNumber tool = load_tool(driver, cylinder).value();
+    const SlotNumber work = load_stock(driver, stock).value();
+    std::mt19937 rng(5);
+    for (int i = 0; i < 200; ++i) {
+        const core::Vec3 from = test_support::random_point({{-60, -60, 1}, {60, 60, 30}}, rng);
+        const core::Vec3 to = test_support::random_point({{-60, -60, 1}, {60, 60, 30}}, rng);
+        const Question q{cylinder, from, to, 100.0, 0};
+        const double exact = exact_distance(q, stock).separation.lower;
+        const auto found = measure(driver, {from, to, {{tool, work, 0.0}}, 0.05}).value();
+        ASSERT_TRUE(found);
+        ASSERT_NEAR(found->distance(), std::max(exact, 0.0), 8 * lsb + 0.05 * 0.5);
+    }
+}
+
+TEST(Driver, GivesLinesBackWhenNothingReadsThemAnyMore) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    drive(driver, work, random_job(6, tool, work, 200));
+    const uint32_t before = driver.space.next;
+    drive(driver, work, random_job(7, tool, work, 400));
+    EXPECT_LT(driver.space.next, before + before / 2);
+    EXPECT_LT(driver.released.size(), 20U);
+}
+
+TEST(Driver, RefusesWhatItCannotSay) {
+    FunctionalDevice device = functional_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    const PathSegment good{{0, 0, 9}, {1, 0, 9}, {{tool, work, 1.0}}};
+    PathSegment bad = good;
+    bad.pairs.clear();
+    EXPECT_FALSE(push(driver, bad));
+    bad = good;
+    bad.to.x = 3000.0;
+    EXPECT_FALSE(push(driver, bad));
+    bad = good;
+    bad.to.x = std::nan("");
+    EXPECT_FALSE(push(driver, bad));
+    bad = good;
+    bad.pairs[0].distance = -1.0;
+    EXPECT_FALSE(push(driver, bad));
+    bad = good;
+    std::swap(bad.pairs[0].tool, bad.pairs[0].work);
+    EXPECT_FALSE(push(driver, bad));
+    bad = good;
+    bad.sample_step = 0.0;
+    EXPECT_FALSE(push(driver, bad));
+    EXPECT_EQ(report(driver).permitted, 0U);
+    EXPECT_EQ(push(driver, good).value(), 1U);
+    EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+}
+
+TEST(Driver, KeepsAsManyModelsAsThereAreSlots) {
+    FunctionalDevice device = functional_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    for (uint32_t i = 0; i < model_slots; ++i) EXPECT_TRUE(load_tool(driver, holder));
+    const uint32_t used = driver.space.next;
+    EXPECT_FALSE(load_tool(driver, holder));
+    EXPECT_EQ(driver.space.next, used);
+}
+
+TEST(Driver, DoesNotTakeAnythingForACoprocessor) {
+    EXPECT_FALSE(open_device({.read = [](Register) { return 0U; },
+                              .write = [](uint32_t, uint32_t) {},
+                              .store = [](uint32_t, const Line&) { return true; },
+                              .wait = [] {}}));
+}
+
+TEST(Driver, SaysWhenTheMemoryIsTooSmall) {
+    DeviceConfig config = bench_config();
+    config.memory_lines = 64;
+    FunctionalDevice device = functional_device(config).value();
+    Driver driver = open_device(port_of(device)).value();
+    const auto slot = load_stock(driver, raw.uncut(1.0));
+    ASSERT_FALSE(slot);
+    EXPECT_NE(slot.error().message.find("memory of 64 lines"), std::string::npos);
+    EXPECT_TRUE(driver.slots.empty());
+}
+
+/// A wrong bit while a job runs: nothing is permitted that should not be, and the job goes on.
+TEST(Driver, GoesOnAfterAWrongBit) {
+    std::mt19937 rng(8);
+    for (int round = 0; round < 30; ++round) {
+        EmulatedDevice device = emulated_device(bench_config()).value();
+        Driver driver = open_device(port_of(device)).value();
+        const SlotNumber tool = load_tool(driver, holder, 0.05).value();
+        const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+        const PathSegment above{{-20, 0, 1.2}, {20, 0, 1.2}, {{tool, work, 1.0}}};
+        const size_t hit = rng() % 2;
+        const uint32_t line = driver.slots[hit].header, bit = rng() % 512;
+        for (int wait = 0; wait < 2'000; ++wait) driver.port.wait(); // all lines are written
+        device.state.memory.lines[line].word[bit / 32] ^= 1U << (bit % 32);
+        EXPECT_EQ(push(driver, above).value(), 1U);
+        const DeviceReport now = wait_for_all(driver);
+        device.state.memory.lines[line].word[bit / 32] ^= 1U << (bit % 32);
+        EXPECT_EQ(now.stop, Stop::bad_check);
+        EXPECT_EQ(now.stop_line, line);
+        EXPECT_EQ(now.permitted, 0U);
+        recover(driver);
+        EXPECT_EQ(push(driver, above).value(), 1U);
+        EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+    }
+}
+
+} // namespace
+} // namespace hwsim
