@@ -146,7 +146,8 @@ core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Rec
     ModelWriter writer{.space = &space, .side = side, .epoch = 1};
     Branch root;
     if (!records.empty()) {
-        FEELER_TRY(root, add_tree(writer, std::move(records), driver.leaf_size));
+        FEELER_TRY(root,
+                   add_tree(writer, std::move(records), side == Side::tool ? 1 : driver.leaf_size));
     }
     FEELER_TRY(const uint32_t header, add_header(writer, root));
     return new_slot(driver, {side, header, 1, {}}, std::move(space), writer.lines);

@@ -31,8 +31,8 @@ struct Driver {
     std::vector<Slot> slots;
     std::deque<Released> released;
     uint32_t next_sequence = 1;
-    uint32_t entries = 0; // pushed since reset
-    uint32_t leaf_size = 1;
+    uint32_t entries = 0;   // pushed since reset
+    uint32_t leaf_size = 4; // of models of the work; those of tools have 1
 };
 
 /// One pair of bodies that must keep apart over a segment.

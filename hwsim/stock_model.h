@@ -21,7 +21,7 @@ struct StockModel {
     std::vector<Part> above;        // of the upper tree, in the order of its division
     std::optional<uint32_t> header; // none before the first update
     uint32_t epoch = 0;
-    uint32_t leaf_size = 8;
+    uint32_t leaf_size = 4;
 };
 
 /// What an update writes, and which lines are needed no more once everything before it is retired.
@@ -33,7 +33,7 @@ struct StockUpdate {
     size_t tiles = 0; // rebuilt
 };
 
-StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 8);
+StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
 
 /// Takes over the columns as they are now: makes the lines of all tiles that the columns do not
 /// share with those taken before, of what is above them, and of a new header. No line that the

@@ -193,12 +193,12 @@ TEST(Driver, DoesNotTakeAnythingForACoprocessor) {
 
 TEST(Driver, SaysWhenTheMemoryIsTooSmall) {
     DeviceConfig config = bench_config();
-    config.memory_lines = 64;
+    config.memory_lines = 16;
     FunctionalDevice device = functional_device(config).value();
     Driver driver = open_device(port_of(device)).value();
     const auto slot = load_stock(driver, raw.uncut(1.0));
     ASSERT_FALSE(slot);
-    EXPECT_NE(slot.error().message.find("memory of 64 lines"), std::string::npos);
+    EXPECT_NE(slot.error().message.find("memory of 16 lines"), std::string::npos);
     EXPECT_TRUE(driver.slots.empty());
 }
 

@@ -1,0 +1,239 @@
+// The tables of hwsim/README.md: what a device of so many parts does, in its own cycles, so that
+// they are the same on every machine. With --speed also how fast the emulator runs on this one.
+
+#include <ctime>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "hwsim/driver.h"
+#include "tests/support/raster_program.h"
+
+namespace {
+
+using core::Vec3;
+using hwsim::DeviceConfig;
+
+/// A tool over a stock, and where it goes.
+struct Scene {
+    const char* name;
+    core::RevolvedProfile body;
+    core::CutModel stock;
+    std::vector<hwsim::PathSegment> segments; // one after the other, without their pair
+    double keep = 1.0;                        // mm
+};
+
+core::CutModel block_of_stock(double h) {
+    return core::make_cut_model({core::SolidBox{{{-50, -50, -30}, {50, 50, 0}}}, 0.0}, h).value();
+}
+
+void cut(core::CutModel& stock, const core::RevolvedProfile& flutes, const Vec3& from,
+         const Vec3& to) {
+    core::cut(stock, {std::make_shared<core::Cutter>(core::make_cutter(flutes, 0.0)), from, to});
+}
+
+/// A holder 1.2 mm over a flat face, in steps of 0.5 mm.
+Scene facing(double h) {
+    Scene scene{"facing", {{{12, 20, 60, 20, 0}}}, block_of_stock(h), {}};
+    for (int i = 0; i < 400; ++i) {
+        const Vec3 from(-45 + 0.5 * (i % 180), -10.0 + i / 180, -10.8);
+        scene.segments.push_back({from, from + Vec3(0.5, 0, 0), {}});
+    }
+    return scene;
+}
+
+/// A collar of 25 mm in a round pocket of 29 mm, a millimetre from its wall nearly all round.
+Scene pocket(double h) {
+    Scene scene{"pocket", {{{0, 3, 20, 3, 0}, {20, 12.5, 60, 12.5, 0}}}, block_of_stock(h), {}};
+    cut(scene.stock, {{{0, 14.5, 40, 14.5, 0}}}, {0, 0, -25}, {0, 0, -25});
+    scene.keep = 0.5;
+    for (int i = 0; i < 400; ++i) {
+        const double a = 0.1 * i, b = 0.1 * (i + 1), r = 0.3;
+        scene.segments.push_back({{r * std::cos(a), r * std::sin(a), -23.5},
+                                  {r * std::cos(b), r * std::sin(b), -23.5},
+                                  {}});
+    }
+    return scene;
+}
+
+/// A slim shank above a ball that finishes a wavy surface, over what is finished already.
+Scene finishing(double h) {
+    Scene scene{"finishing", {{{4, 2.9, 30, 2.9, 0}, {30, 10, 60, 10, 0}}}, block_of_stock(h), {}};
+    const test_support::RasterProgram program = test_support::raster_program(1.0, 0.5);
+    const Vec3 shift = -Vec3(program.stock.center().x, program.stock.center().y, 0.0);
+    const core::RevolvedProfile ball = test_support::raster_ball();
+    for (const core::CutterSweep& sweep : test_support::sweeps_of(program, ball))
+        cut(scene.stock, ball, sweep.from + shift, sweep.to + shift);
+    scene.keep = 0.7;
+    for (size_t i = 0; i < 400; ++i) {
+        const size_t at = 5'000 + 17 * i;
+        scene.segments.push_back({program.places[at] + shift, program.places[at + 1] + shift, {}});
+    }
+    return scene;
+}
+
+struct Measured {
+    double cycles = 0.0;  // from permit to permit, the FIFO being kept full
+    double latency = 0.0; // from push to permit of a segment that is alone
+    double nodes = 0.0, pairs = 0.0, hits = 0.0, lines = 0.0; // a segment
+    double speed = 0.0; // cycles of the device in a second of this processor
+};
+
+using hwsim::Counter;
+
+/// A device with a scene in it.
+struct Bench {
+    hwsim::EmulatedDevice device;
+    hwsim::Driver driver;
+    std::vector<hwsim::PathSegment> segments;
+
+    Bench(const Scene& scene, const DeviceConfig& config, uint32_t leaf_size)
+        : device(hwsim::emulated_device(config).value()), segments(scene.segments) {
+        device.bus_cycles = 1;
+        device.state.host.watchdog = 0;
+        driver = hwsim::open_device(port_of(device)).value();
+        const auto tool = hwsim::load_tool(driver, scene.body).value();
+        driver.leaf_size = leaf_size;
+        const auto work = hwsim::load_stock(driver, scene.stock).value();
+        wait_for_all(driver);
+        for (hwsim::PathSegment& s : segments) s.pairs = {{tool, work, scene.keep}};
+    }
+
+    double counted(Counter counter) {
+        const uint64_t low = read(device.state, device.config, address_of(counter));
+        const uint64_t high = read(device.state, device.config, address_of(counter) + 4);
+        return static_cast<double>(low | high << 32);
+    }
+    uint64_t cycle() const { return device.state.cycle; }
+
+    /// Cycles a segment from the first push to the last permit.
+    double run() {
+        const uint64_t before = cycle();
+        for (const hwsim::PathSegment& s : segments) push(driver, s).value();
+        wait_for_all(driver);
+        return static_cast<double>(cycle() - before) / static_cast<double>(segments.size());
+    }
+
+    double run_alone() {
+        uint64_t cycles = 0;
+        for (const hwsim::PathSegment& s : segments) {
+            const uint32_t number = push(driver, s).value();
+            const uint64_t pushed = cycle();
+            while (device.state.permits.permit_sequence != number
+                   && device.state.permits.stopped == hwsim::Stop::none)
+                tick(device.state, device.config);
+            cycles += cycle() - pushed;
+        }
+        return static_cast<double>(cycles) / static_cast<double>(segments.size());
+    }
+};
+
+Measured measured(const Scene& scene, const DeviceConfig& config, uint32_t leaf_size = 4) {
+    Bench bench(scene, config, leaf_size);
+    Measured result{.latency = bench.run_alone()};
+    const uint64_t cycle = bench.cycle();
+    const std::clock_t begin = std::clock();
+    result.cycles = bench.run();
+    result.speed = static_cast<double>(bench.cycle() - cycle) * CLOCKS_PER_SEC
+                   / static_cast<double>(std::max<std::clock_t>(std::clock() - begin, 1));
+    if (report(bench.driver).stop != hwsim::Stop::none)
+        fmt::print(stderr, "{}: a segment was refused, so what follows says nothing\n", scene.name);
+    const double queries = bench.counted(Counter::queries);
+    result.nodes = bench.counted(Counter::nodes) / queries;
+    result.pairs = bench.counted(Counter::pair_tests) / queries;
+    result.lines = bench.counted(Counter::lines_read) / queries;
+    const double hits = bench.counted(Counter::node_hits);
+    result.hits = hits / std::max(hits + bench.counted(Counter::node_misses), 1.0);
+    return result;
+}
+
+/// One row: a name, then cycles a segment in each scene.
+template <typename Value>
+void row(const std::string& name, const std::vector<Scene>& scenes, const DeviceConfig& config,
+         uint32_t leaf_size, const Value& value) {
+    fmt::print("| {} |", name);
+    for (const Scene& scene : scenes)
+        fmt::print(" {} |", value(measured(scene, config, leaf_size)));
+    fmt::print("\n");
+}
+
+void head(const char* title, const std::vector<Scene>& scenes) {
+    fmt::print("\n| {} |", title);
+    for (const Scene& scene : scenes) fmt::print(" {} |", scene.name);
+    fmt::print("\n|---|");
+    for (size_t i = 0; i < scenes.size(); ++i) fmt::print("---|");
+    fmt::print("\n");
+}
+
+std::string both(const Measured& m) { return fmt::format("{:.0f} / {:.0f}", m.latency, m.cycles); }
+
+DeviceConfig bench_config() { return {.memory_lines = 1U << 19}; }
+
+void parts_table(const std::vector<Scene>& scenes) {
+    head("elements x threads: alone / one after the other", scenes);
+    for (const uint32_t elements : {1U, 2U, 4U, 8U, 16U})
+        for (const uint32_t threads : {1U, 4U, 8U}) {
+            if (threads != 4 && elements != 1 && elements != 8) continue;
+            DeviceConfig config = bench_config();
+            config.elements = elements;
+            config.threads = threads;
+            row(fmt::format("{} x {}", elements, threads), scenes, config, 4, both);
+        }
+}
+
+void memory_table(const std::vector<Scene>& scenes) {
+    head("memory: latency, cycles a line", scenes);
+    for (const auto& [latency, line] : {std::pair{10U, 1U}, {30U, 2U}, {60U, 2U}, {30U, 8U}}) {
+        DeviceConfig config = bench_config();
+        config.memory_latency = latency;
+        config.cycles_per_line = line;
+        row(fmt::format("{}, {}", latency, line), scenes, config, 4, both);
+    }
+    head("lines of node cache: cycles, hits", scenes);
+    for (const uint32_t lines : {16U, 64U, 256U, 1024U}) {
+        DeviceConfig config = bench_config();
+        config.node_cache_lines = lines;
+        row(fmt::format("{}", lines), scenes, config, 4, [](const Measured& m) {
+            return fmt::format("{:.0f}, {:.0f} %", m.cycles, 100.0 * m.hits);
+        });
+    }
+}
+
+void leaf_table(const std::vector<Scene>& scenes) {
+    head("records to a leaf of the work: cycles, nodes, pairs", scenes);
+    for (const uint32_t leaf : {1U, 2U, 4U, 8U, 16U})
+        row(fmt::format("{}", leaf), scenes, bench_config(), leaf, [](const Measured& m) {
+            return fmt::format("{:.0f}, {:.0f}, {:.0f}", m.cycles, m.nodes, m.pairs);
+        });
+}
+
+void speed_table(const std::vector<Scene>& scenes) {
+    head("elements: million cycles a second emulated", scenes);
+    for (const uint32_t elements : {1U, 4U, 8U}) {
+        DeviceConfig config = bench_config();
+        config.elements = elements;
+        row(fmt::format("{}", elements), scenes, config, 4,
+            [](const Measured& m) { return fmt::format("{:.1f}", m.speed / 1e6); });
+    }
+}
+
+} // namespace
+
+int main(int count, char** words) {
+    const double h = 0.5;
+    const std::vector<Scene> scenes{facing(h), pocket(h), finishing(h)};
+    if (count > 1 && std::string_view(words[1]) == "--speed") {
+        speed_table(scenes);
+        return 0;
+    }
+    head("what it is", scenes);
+    row("cycles, nodes, pairs, lines from memory", scenes, bench_config(), 4,
+        [](const Measured& m) {
+            return fmt::format("{:.0f}, {:.0f}, {:.0f}, {:.1f}", m.cycles, m.nodes, m.pairs,
+                               m.lines);
+        });
+    parts_table(scenes);
+    memory_table(scenes);
+    leaf_table(scenes);
+    return 0;
+}
