@@ -1,5 +1,6 @@
 #include "hwsim/driver.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -61,13 +62,18 @@ void push_model(Driver& driver, SlotNumber slot) {
 /// A model that has been made: its lines go into the memory first, then it goes into a slot.
 core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace space,
                                   const std::vector<AddressedLine>& lines) {
-    if (driver.slots.size() == model_slots)
+    const auto free = std::find_if(driver.slots.begin(), driver.slots.end(),
+                                   [](const Driver::Slot& old) { return old.is_free; });
+    if (free == driver.slots.end() && driver.slots.size() == model_slots)
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the coprocessor holds no more than {} models", model_slots));
     driver.space = std::move(space);
-    driver.slots.push_back(std::move(slot));
+    const auto number = static_cast<SlotNumber>(free - driver.slots.begin());
+    if (free == driver.slots.end())
+        driver.slots.push_back(std::move(slot));
+    else
+        *free = std::move(slot);
     store(driver, lines);
-    const auto number = static_cast<SlotNumber>(driver.slots.size() - 1);
     push_model(driver, number);
     return number;
 }
@@ -84,7 +90,8 @@ core::Result<FixedVec> place_of(const core::Vec3& p) {
 core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
                                const PairToKeep& pair) {
     const auto holds = [&](SlotNumber slot, Side side) {
-        return index_of(slot) < driver.slots.size() && driver.slots[index_of(slot)].side == side;
+        return index_of(slot) < driver.slots.size() && driver.slots[index_of(slot)].side == side
+               && !driver.slots[index_of(slot)].is_free;
     };
     if (!holds(pair.tool, Side::tool) || !holds(pair.work, Side::work))
         return core::fail(core::ErrorCode::invalid_value,
@@ -142,6 +149,7 @@ core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& 
 }
 
 core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Record> records) {
+    reclaim(driver);
     LineSpace space = driver.space;
     ModelWriter writer{.space = &space, .side = side, .epoch = 1};
     Branch root;
@@ -150,7 +158,7 @@ core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Rec
                    add_tree(writer, std::move(records), side == Side::tool ? 1 : driver.leaf_size));
     }
     FEELER_TRY(const uint32_t header, add_header(writer, root));
-    return new_slot(driver, {side, header, 1, {}}, std::move(space), writer.lines);
+    return new_slot(driver, {side, header, 1, writer.runs, {}}, std::move(space), writer.lines);
 }
 
 core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock) {
@@ -160,6 +168,14 @@ core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock)
     slot.header = done.header;
     slot.epoch = done.epoch;
     return new_slot(driver, std::move(slot), std::move(space), done.lines);
+}
+
+void unload(Driver& driver, SlotNumber number) {
+    Driver::Slot& slot = driver.slots[index_of(number)];
+    if (slot.is_free) return;
+    slot.is_free = true;
+    driver.released.push_back({driver.entries, std::move(slot.runs)});
+    reclaim(driver);
 }
 
 core::Result<size_t> update_stock(Driver& driver, SlotNumber number, const core::CutModel& stock) {
@@ -242,7 +258,8 @@ void recover(Driver& driver) {
     driver.entries = read(driver, Register::retired);
     for (Driver::Released& old : driver.released) old.entries = driver.entries;
     reclaim(driver);
-    for (size_t i = 0; i < driver.slots.size(); ++i) push_model(driver, static_cast<SlotNumber>(i));
+    for (size_t i = 0; i < driver.slots.size(); ++i)
+        if (!driver.slots[i].is_free) push_model(driver, static_cast<SlotNumber>(i));
 }
 
 } // namespace hwsim

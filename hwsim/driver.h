@@ -18,7 +18,9 @@ struct Driver {
     struct Slot {
         Side side = Side::work;
         uint32_t header = 0, epoch = 0;
-        std::optional<StockModel> stock; // of a model that is cut
+        std::vector<LineRun> runs;       // of a model that does not change
+        std::optional<StockModel> stock; // of one that is cut
+        bool is_free = false;
     };
     /// Lines that are needed until so many entries are retired.
     struct Released {
@@ -83,6 +85,10 @@ core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Rec
 
 /// Brings a stock in; to be updated when it is cut.
 core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock);
+
+/// Takes a model that does not change out of the device. Segments pushed before are still held
+/// against it; its slot may be given to another one.
+void unload(Driver& driver, SlotNumber slot);
 
 /// From the next segment on the stock is as it is now: changed tiles go by DMA, and the new epoch
 /// through the FIFO. Returns how many tiles.

@@ -182,6 +182,27 @@ TEST(Driver, KeepsAsManyModelsAsThereAreSlots) {
     const uint32_t used = driver.space.next;
     EXPECT_FALSE(load_tool(driver, holder));
     EXPECT_EQ(driver.space.next, used);
+    unload(driver, SlotNumber{5});
+    EXPECT_EQ(load_tool(driver, holder).value(), SlotNumber{5});
+    EXPECT_EQ(driver.space.next, used);
+}
+
+TEST(Driver, HoldsSegmentsAgainstAModelThatIsTakenOutBehindThem) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    const core::RevolvedProfile slim{{{9, 1, 20, 1, 0}}}, long_one{{{2, 1, 20, 1, 0}}};
+    for (uint32_t i = 0; i < 30; ++i) {
+        const bool is_last = i == 29;
+        const SlotNumber tool = load_tool(driver, is_last ? long_one : slim).value();
+        const PathSegment way{{-20, 0, -3}, {20, 0, -3}, {{tool, work, 1.0}}};
+        EXPECT_EQ(push(driver, way).value(), i + 1);
+        unload(driver, tool);
+        EXPECT_FALSE(push(driver, way));
+    }
+    const DeviceReport now = wait_for_all(driver);
+    EXPECT_EQ(now.permitted, 29U);
+    EXPECT_EQ(now.stop, Stop::violation);
 }
 
 TEST(Driver, DoesNotTakeAnythingForACoprocessor) {

@@ -269,6 +269,22 @@ TEST(Fault, AFullStackStopsTheDevice) {
     EXPECT_EQ(device.permitted(), 1U);
 }
 
+TEST(Fault, AStackAsDeepAsTheSearchIsEnoughAndNoLess) {
+    TestDevice device = working_device();
+    const auto depth = static_cast<uint32_t>(device.read(Counter::deepest));
+    ASSERT_GT(depth, 2U);
+    for (const uint32_t less : {0U, 1U}) {
+        DeviceConfig config = small_config();
+        config.stack_depth = depth - less;
+        TestDevice other(config);
+        other.set_models({tool}, row_of_posts());
+        other.push(along_the_row(1));
+        ASSERT_TRUE(other.finish());
+        EXPECT_EQ(other.permitted(), 1U - less);
+        EXPECT_EQ(other.reason(), less == 0 ? Stop::none : Stop::stack_overflow);
+    }
+}
+
 TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
     DeviceConfig config = small_config();
     config.search_limit = 50'000;
@@ -343,6 +359,23 @@ TEST(Fault, AStopForgetsWhatWasUnderWay) {
         ASSERT_EQ(device.reason(), Stop::violation);
         ASSERT_EQ(device.read(Register::found_low), 1'950U * 1'950U);
     }
+}
+
+TEST(Fault, ManyStopsLeaveEveryThreadFree) {
+    TestDevice device;
+    for (int round = 0; round < 10; ++round) {
+        device.set_models({tool}, row_of_posts());
+        for (uint32_t k = 1; k < 5; ++k) device.push_in_time(along_the_row(k));
+        device.clock(60);
+        device.push(along_the_row(99));
+        ASSERT_EQ(device.reason(), Stop::sequence);
+        for (const SearchElement& element : device.state.elements) ASSERT_EQ(element.busy, 0U);
+        device.write(Register::control, control_clear | control_enable);
+    }
+    device.set_models({tool}, row_of_posts());
+    device.push_in_time(along_the_row(1));
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 1U);
 }
 
 TEST(Fault, ResetIsAsAfterPowerUp) {
