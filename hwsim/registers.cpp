@@ -14,7 +14,7 @@ SegmentWords words_of(const Segment& segment) {
     words[at(SegmentWord::sequence)] = segment.sequence;
     words[at(SegmentWord::kind)] =
         static_cast<uint32_t>(segment.kind) | uint32_t{segment.log2_steps} << 8
-        | uint32_t{segment.tool_slot} << 16 | uint32_t{segment.work_slot} << 20
+        | uint32_t{segment.tool_slot} << 16 | uint32_t{segment.work_slot} << 21
         | (segment.last ? last_flag : 0U);
     for (size_t axis = 0; axis < 3; ++axis) {
         words[at(SegmentWord::start) + axis] = static_cast<uint32_t>(segment.start[axis]);
@@ -32,7 +32,7 @@ DecodedSegment segment_in(const SegmentWords& words) {
     Segment s{.sequence = words[at(SegmentWord::sequence)],
               .kind = static_cast<SegmentKind>(kind & 0xFFU),
               .tool_slot = static_cast<uint8_t>((kind >> 16) & slot_mask),
-              .work_slot = static_cast<uint8_t>((kind >> 20) & slot_mask),
+              .work_slot = static_cast<uint8_t>((kind >> 21) & slot_mask),
               .log2_steps = static_cast<uint8_t>((kind >> 8) & 0xFFU),
               .last = (kind & last_flag) != 0,
               .threshold = words[at(SegmentWord::threshold)],

@@ -70,7 +70,7 @@ enum IrqBit : uint32_t {
 /// sign-extended to 32 bits; a coordinate that does not fit into 24 is out of range.
 enum class SegmentWord : uint32_t {
     sequence = 0,
-    kind = 1,  // bits 0-7 SegmentKind, 8-15 log2_steps, 16-19 tool slot, 20-23 work slot, 31 last
+    kind = 1,  // bits 0-7 SegmentKind, 8-15 log2_steps, 16-20 tool slot, 21-25 work slot, 31 last
     start = 2, // x, y, z
     end = 5,   // x, y, z
     threshold = 8,
@@ -79,7 +79,7 @@ enum class SegmentWord : uint32_t {
     budget = 11,
 };
 constexpr uint32_t segment_words = 12;
-constexpr uint32_t model_slots = 16;
+constexpr uint32_t model_slots = 32;
 
 using SegmentWords = std::array<uint32_t, segment_words>;
 

@@ -189,6 +189,43 @@ TEST(Coprocessor, HoldsEachSegmentAgainstTheModelAsItWillBeThen) {
     EXPECT_EQ(squared, (std::vector<uint64_t>{2500, 2500, 4900, 4900, 8100}));
 }
 
+TEST(Coprocessor, TakesAModelOnlyWhenItsLinesAreWritten) {
+    DeviceConfig config = small_config();
+    config.cycles_per_line = 40;
+    TestDevice device(config);
+    std::mt19937 rng(9);
+    device.set_models(cloud(rng, 20, 1'000), cloud(rng, 20, 1'000));
+    device.push(question(1, {}, 0, SegmentKind::measure));
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.reason(), Stop::none);
+    EXPECT_EQ(device.retired.back().answer, expected(device, device.retired.back().segment));
+}
+
+/// Cycles of one search alone, and how many lines it reads.
+std::pair<uint64_t, uint64_t> one_search(uint32_t latency, uint32_t cycles_per_line) {
+    DeviceConfig config = small_config();
+    config.memory_latency = latency;
+    config.cycles_per_line = cycles_per_line;
+    TestDevice device(config);
+    std::mt19937 rng(10);
+    device.set_models(cloud(rng, 20, 1'000), cloud(rng, 20, 1'000));
+    device.clock(5'000);
+    device.push(question(1, {}, 0, SegmentKind::measure));
+    const uint64_t pushed = device.state.cycle;
+    device.finish();
+    return {device.state.cycle - pushed, device.read(Counter::lines_read)};
+}
+
+TEST(Coprocessor, WaitsForTheMemoryAsLongAsItTakes) {
+    const auto [cycles, lines] = one_search(10, 1);
+    ASSERT_GT(lines, 5U);
+    const auto [later, same] = one_search(25, 1);
+    EXPECT_EQ(same, lines);
+    EXPECT_EQ(later, cycles + 15 * lines);
+    // One search asks for a line at a time, so the bandwidth does not matter to it.
+    EXPECT_EQ(one_search(10, 5).first, cycles);
+}
+
 TEST(Coprocessor, RaisesItsInterruptsAndTakesThemBack) {
     TestDevice device;
     device.set_models({{{0, 0, 0}, 0, 0}}, {{{5'000, 0, 0}, 0, 0}});
@@ -256,6 +293,19 @@ struct Work {
         device.clock();
     }
 };
+
+TEST(Coprocessor, GetsLinesNoFasterThanTheBandwidth) {
+    Work work(11);
+    work.device.config.cycles_per_line = 20;
+    const auto moved = [&] {
+        return work.device.read(Counter::lines_read) + work.device.read(Counter::lines_written);
+    };
+    const uint64_t lines = moved(), cycle = work.device.state.cycle;
+    while (work.device.retired.size() < 42) work.step();
+    const uint64_t read = moved() - lines, taken = work.device.state.cycle - cycle;
+    EXPECT_LE(20 * read, taken + 20);
+    EXPECT_GT(60 * read, taken); // it was short of lines a third of the time
+}
 
 TEST(Coprocessor, TakesTheSameCyclesEveryTime) {
     Work a(5), b(5);

@@ -146,6 +146,43 @@ TEST(Driver, GivesLinesBackWhenNothingReadsThemAnyMore) {
     EXPECT_LT(driver.released.size(), 20U);
 }
 
+TEST(Driver, AsksNothingBeforeItsLinesAreWritten) {
+    DeviceConfig config = bench_config();
+    config.cycles_per_line = 60;
+    EmulatedDevice device = emulated_device(config).value();
+    device.bus_cycles = 1;
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    core::CutModel stock = raw.uncut(1.0);
+    const SlotNumber work = load_stock(driver, stock).value();
+    const auto cutter = std::make_shared<core::Cutter>(
+        core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
+    for (uint32_t i = 1; i < 20; ++i) {
+        EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), i);
+        core::cut(stock, {cutter, {1.0 * i, 0, -4}, {1.0 * i, 9, -4}});
+        EXPECT_TRUE(update_stock(driver, work, stock));
+    }
+    const DeviceReport now = wait_for_all(driver);
+    EXPECT_EQ(now.stop, Stop::none);
+    EXPECT_EQ(now.permitted, 19U);
+}
+
+TEST(Driver, PermitsASegmentWhenAllOfItsPairsAreKeptApart) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    const SlotNumber stock = load_stock(driver, raw.uncut(1.0)).value();
+    const SlotNumber clamp =
+        load_records(driver, Side::work, {{{40 * 4096, 0, 0}, 20 * 4096, 4096}}).value();
+    PathSegment way{{0, 0, 2}, {9, 0, 2}, {{tool, stock, 1.0}, {tool, clamp, 2.0}}};
+    EXPECT_EQ(push(driver, way).value(), 1U);
+    EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+    way.to.x = 40.0;
+    EXPECT_EQ(push(driver, way).value(), 2U);
+    EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+    EXPECT_EQ(report(driver).stop, Stop::violation);
+}
+
 TEST(Driver, RefusesWhatItCannotSay) {
     FunctionalDevice device = functional_device(bench_config()).value();
     Driver driver = open_device(port_of(device)).value();
@@ -182,8 +219,8 @@ TEST(Driver, KeepsAsManyModelsAsThereAreSlots) {
     const uint32_t used = driver.space.next;
     EXPECT_FALSE(load_tool(driver, holder));
     EXPECT_EQ(driver.space.next, used);
-    unload(driver, SlotNumber{5});
-    EXPECT_EQ(load_tool(driver, holder).value(), SlotNumber{5});
+    unload(driver, SlotNumber{25});
+    EXPECT_EQ(load_tool(driver, holder).value(), SlotNumber{25});
     EXPECT_EQ(driver.space.next, used);
 }
 

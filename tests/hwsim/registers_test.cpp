@@ -9,8 +9,8 @@ namespace {
 
 const Segment example{.sequence = 0xFFFF'FFFFU,
                       .kind = SegmentKind::measure,
-                      .tool_slot = 15,
-                      .work_slot = 1,
+                      .tool_slot = 31,
+                      .work_slot = 30,
                       .log2_steps = 12,
                       .last = false,
                       .start = {least_coordinate, 0, -1},

@@ -136,6 +136,18 @@ TEST(StockModel, WritesNothingWhereNothingWasCut) {
     EXPECT_EQ(again.lines.size(), 1U); // the header
 }
 
+TEST(StockModel, WritesEveryUpdateInAnEpochOfItsOwn) {
+    std::mt19937 rng(5);
+    Workshop shop(1.0);
+    for (uint32_t epoch = 1; epoch < 10; ++epoch) {
+        const StockUpdate done = shop.take_over();
+        ASSERT_EQ(done.epoch, epoch);
+        ASSERT_EQ(shop.model.epoch, epoch);
+        for (const AddressedLine& line : done.lines) ASSERT_EQ(epoch_of(line.line), epoch);
+        shop.cut(rng);
+    }
+}
+
 TEST(StockModel, StaysAsItWasWhenTheMemoryIsFull) {
     std::mt19937 rng(4);
     Workshop shop(1.0);

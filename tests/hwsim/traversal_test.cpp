@@ -73,6 +73,11 @@ TEST(BoxTest, SaysNothingBeyondTheRange) {
     EXPECT_FALSE(squared_gap(box, higher, here, everywhere));
     EXPECT_TRUE(squared_gap(box, low, here, everywhere));
     EXPECT_FALSE(squared_gap(box, lower, here, everywhere));
+    // A radius reaches sideways only.
+    const Volume disc{{{0, 0, 0}, {0, 0, 0}}, 10};
+    EXPECT_TRUE(squared_gap(disc, here, {0, 0, greatest_coordinate}, everywhere));
+    EXPECT_TRUE(squared_gap(disc, here, high, everywhere));
+    EXPECT_FALSE(squared_gap(disc, here, higher, everywhere));
 }
 
 /// The distance of a cylinder to a post, by doubles, for the true one is known in closed form.

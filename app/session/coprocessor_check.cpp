@@ -1,0 +1,208 @@
+#include "app/session/coprocessor_check.h"
+
+#include "core/dbm/covered_path.h"
+#include "hwsim/body_cover.h"
+#include "hwsim/tool_model.h"
+
+namespace app {
+namespace {
+
+using core::Result;
+using hwsim::SlotNumber;
+
+/// A body of revolution looks the same however it is turned about its axis; others do not.
+bool stands_upright(const core::MovingBody& body, const core::RelativeLeg& way) {
+    return body.profile ? way.orientation[2] == core::Vec3(0.0, 0.0, 1.0)
+                        : way.orientation == core::Mat3(1.0);
+}
+
+/// The mesh size for a body: the set-up's, or coarser for a large one.
+double spacing_for(const core::Aabb& box, double mesh_size) {
+    constexpr double most_cells = 200.0;
+    return std::max({mesh_size, box.size().x / most_cells, box.size().y / most_cells});
+}
+
+} // namespace
+
+Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const core::Setup& setup,
+                                                const core::CutModel& stock) {
+    FEELER_TRY(hwsim::Driver driver, hwsim::open_device(std::move(port)));
+    CoprocessorCheck check(std::move(driver), setup);
+    FEELER_TRY(check.stock_, hwsim::load_stock(check.driver_, stock));
+    return check;
+}
+
+Result<BlockPermit> CoprocessorCheck::ask(const core::BlockEvents& block,
+                                          const core::SimulatorState& before) {
+    BlockPermit permit;
+    asked_.clear();
+    FEELER_TRY(const size_t tiles, hwsim::update_stock(driver_, stock_, before.stock));
+    (void)tiles;
+    At at{.before = before,
+          .spindle = before.spindle,
+          .position = before.position,
+          .fixtures_there = before.fixtures_there};
+    if (before.tool)
+        if (const auto found = setup_->tools.find(*before.tool); found != setup_->tools.end())
+            at.tool = &found->second;
+    const uint32_t first = driver_.next_sequence;
+    for (const core::Event& event : block.events)
+        if (auto asked = ask_event(event, at, permit); !asked)
+            return tl::unexpected(std::move(asked).error());
+    permit.segments = asked_.size();
+    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
+    permit.permitted = permit.not_asked.empty() && now.stop == hwsim::Stop::none;
+    if (now.stop == hwsim::Stop::none) return permit;
+    permit.stop = now.stop;
+    if (now.stop_sequence - first < asked_.size()) permit.pair = asked_[now.stop_sequence - first];
+    hwsim::recover(driver_);
+    return permit;
+}
+
+Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, BlockPermit& permit) {
+    if (const auto* motion = std::get_if<core::Motion>(&event))
+        return ask_motion(*motion, at, permit);
+    if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
+    if (const auto* change = std::get_if<core::ToolChange>(&event)) {
+        const auto found = change->tool ? setup_->tools.find(*change->tool) : setup_->tools.end();
+        at.tool = found == setup_->tools.end() ? nullptr : &found->second;
+        return ask_rest(at, permit);
+    }
+    if (const auto* change = std::get_if<core::FixtureChange>(&event)) {
+        at.fixtures_there[change->fixture] = change->is_there;
+        if (change->is_there) return ask_rest(at, permit);
+    }
+    return {};
+}
+
+Result<void> CoprocessorCheck::ask_rest(At& at, BlockPermit& permit) {
+    const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
+    if (path.legs.empty() || !path.legs[0].start_known) return {};
+    return ask_leg({.places = {path.legs[0].places[0]}}, false, at, permit);
+}
+
+Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, BlockPermit& permit) {
+    const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
+    at.position = motion.to;
+    if (!at.tool && setup_->machine.bodies.empty()) return {};
+    if (path.legs.empty() || !path.legs[0].start_known) {
+        permit.not_asked = "nobody knows where the motion begins";
+        return {};
+    }
+    const bool cutting = motion.kind != core::MotionKind::rapid && at.tool
+                         && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
+    for (const core::Leg& leg : path.legs)
+        if (auto asked = ask_leg(leg, cutting, at, permit); !asked) return asked;
+    return {};
+}
+
+Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
+                                       BlockPermit& permit) {
+    if (!leg.straight) {
+        permit.not_asked = "nobody knows the way of the motion";
+        return {};
+    }
+    static const core::ToolAssembly nothing;
+    use_tool(at.tool);
+    for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
+        const bool cuts = cutting && body.kind == core::PartKind::flutes;
+        core::Pair pair{body.kind, {}, body.carried};
+        const auto question = [&](const core::Mount& mount) {
+            return Question{body, pair, relative_leg(setup_->machine, mount, body.mover, leg),
+                            allowance_of(*setup_, pair)};
+        };
+        if (!cuts) {
+            const Question stock = question(setup_->stock_mount);
+            if (!is_in_own_cut(stock, at))
+                if (auto asked = ask_pair(stock, stock_, permit); !asked) return asked;
+        }
+        for (size_t i = 0; i < setup_->fixtures.size(); ++i) {
+            const core::Fixture& fixture = setup_->fixtures[i];
+            if (!at.fixtures_there[i] || is_exempt(setup_->machine, body, fixture)
+                || (cuts && fixture.expendable))
+                continue;
+            pair.fixture = i;
+            FEELER_TRY(const SlotNumber work, model_of(i));
+            if (auto asked = ask_pair(question(fixture.mount), work, permit); !asked) return asked;
+        }
+    }
+    return {};
+}
+
+Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, BlockPermit& permit) {
+    if (q.way.turns || !stands_upright(q.body, q.way) || !std::isfinite(q.way.error)) {
+        permit.not_asked = "a body turns or is held at an angle";
+        return {};
+    }
+    // Bodies that may touch are held against each other with the one shrunk by what is contact.
+    const bool may_touch = q.allowance.distance <= core::resolution;
+    const double shrink =
+        may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
+    FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
+    const auto pushed =
+        hwsim::push(driver_, {.from = q.way.places.front(),
+                              .to = q.way.places.back(),
+                              .pairs = {{tool, work, q.allowance.distance + q.way.error}}});
+    if (pushed)
+        asked_.push_back(q.pair);
+    else
+        permit.not_asked = pushed.error().message;
+    return {};
+}
+
+Result<SlotNumber> CoprocessorCheck::model_of(const core::MovingBody& body, double shrink) {
+    const ModelKey key{body.kind, body.carried, shrink};
+    if (const auto known = bodies_.find(key); known != bodies_.end()) return known->second;
+    std::vector<hwsim::Record> records;
+    if (body.profile) {
+        constexpr double tolerance = 0.02; // mm
+        const core::RevolvedProfile part =
+            shrink > 0.0 ? shrunk_around(*body.profile, shrink) : *body.profile;
+        if (!part.empty()) {
+            FEELER_TRY(records, hwsim::cylinders_round(part, tolerance));
+        }
+    } else {
+        FEELER_TRY(
+            const std::vector<hwsim::Record> posts,
+            hwsim::posts_round(*body.body, spacing_for(bounds(*body.body), setup_->mesh_size)));
+        records = hwsim::cylinders_round(posts);
+    }
+    FEELER_TRY(const SlotNumber slot,
+               hwsim::load_records(driver_, hwsim::Side::tool, std::move(records)));
+    bodies_[key] = slot;
+    return slot;
+}
+
+Result<SlotNumber> CoprocessorCheck::model_of(size_t fixture) {
+    if (fixtures_[fixture]) return *fixtures_[fixture];
+    const core::ExactBody& body = setup_->fixtures[fixture].body;
+    FEELER_TRY(std::vector<hwsim::Record> posts,
+               hwsim::posts_round(body, spacing_for(bounds(body), setup_->mesh_size)));
+    FEELER_TRY(fixtures_[fixture],
+               hwsim::load_records(driver_, hwsim::Side::work, std::move(posts)));
+    return *fixtures_[fixture];
+}
+
+void CoprocessorCheck::use_tool(const core::ToolAssembly* tool) {
+    if (tool == tool_) return;
+    tool_ = tool;
+    for (auto known = bodies_.begin(); known != bodies_.end();) {
+        const core::PartKind kind = std::get<core::PartKind>(known->first);
+        const bool is_of_tool = kind == core::PartKind::flutes || kind == core::PartKind::shank
+                                || kind == core::PartKind::holder;
+        if (is_of_tool) hwsim::unload(driver_, known->second);
+        known = is_of_tool ? bodies_.erase(known) : std::next(known);
+    }
+}
+
+bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {
+    if (q.body.kind != core::PartKind::flutes || q.way.turns) return false;
+    return runs_in_own_cut(at.before.stock,
+                           {.flutes = *q.body.profile,
+                            .from = q.way.places.front(),
+                            .to = q.way.places.back(),
+                            .sideways = 0.5 * contact_depth(q.allowance) - q.way.error,
+                            .orientation = q.way.orientation});
+}
+
+} // namespace app

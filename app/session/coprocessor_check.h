@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+
+#include "core/sim/simulator.h"
+#include "hwsim/driver.h"
+
+namespace app {
+
+/// What the coprocessor says of a block.
+struct BlockPermit {
+    bool permitted = true; // also of a block that moves nothing
+    size_t segments = 0;   // that were asked
+    hwsim::Stop stop = hwsim::Stop::none;
+    std::optional<core::Pair> pair; // that was refused
+    std::string not_asked;          // why a motion could not be asked; it is not permitted then
+};
+
+/// Asks a coprocessor for every motion of a program: each part of the tool and body of the machine
+/// against the stock, as it is before the block, and against each fixture. Refers to the set-up.
+///
+/// What the flutes cut while they feed is no question, nor is where they have been before
+/// (core::runs_in_own_cut). A motion on which something turns, a body held at an angle and a way
+/// that is not known cannot be asked.
+class CoprocessorCheck {
+public:
+    /// Brings the stock into the device.
+    ///
+    /// Errors: those of the driver.
+    static core::Result<CoprocessorCheck> with(hwsim::DevicePort port, const core::Setup& setup,
+                                               const core::CutModel& stock);
+
+    /// Errors: models that do not fit into the device.
+    core::Result<BlockPermit> ask(const core::BlockEvents& block,
+                                  const core::SimulatorState& before);
+
+private:
+    /// Where a block has got to.
+    struct At {
+        const core::SimulatorState& before;
+        const core::ToolAssembly* tool = nullptr;
+        core::SpindleChange spindle;
+        core::AxisPosition position;
+        std::vector<bool> fixtures_there;
+    };
+    /// A body of the tool's side over a leg, and what it must keep.
+    struct Question {
+        const core::MovingBody& body;
+        core::Pair pair;
+        core::RelativeLeg way;
+        core::Allowance allowance;
+    };
+    /// A body's kind, which of the machine's it is, and by how much it is shrunk.
+    using ModelKey = std::tuple<core::PartKind, size_t, double>;
+
+    CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup)
+        : driver_(std::move(driver)), setup_(&setup), fixtures_(setup.fixtures.size()) {}
+
+    core::Result<void> ask_event(const core::Event& event, At& at, BlockPermit& permit);
+    core::Result<void> ask_motion(const core::Motion& motion, At& at, BlockPermit& permit);
+    core::Result<void> ask_rest(At& at, BlockPermit& permit);
+    core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, BlockPermit& permit);
+    core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
+                                BlockPermit& permit);
+    core::Result<hwsim::SlotNumber> model_of(const core::MovingBody& body, double shrink);
+    core::Result<hwsim::SlotNumber> model_of(size_t fixture);
+    void use_tool(const core::ToolAssembly* tool);
+    bool is_in_own_cut(const Question& question, const At& at) const;
+
+    hwsim::Driver driver_;
+    const core::Setup* setup_;
+    hwsim::SlotNumber stock_{};
+    std::vector<std::optional<hwsim::SlotNumber>> fixtures_;
+    const core::ToolAssembly* tool_ = nullptr; // whose parts are in the device
+    std::map<ModelKey, hwsim::SlotNumber> bodies_;
+    std::vector<core::Pair> asked_; // in this block, in order
+};
+
+} // namespace app
