@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/session/check_run.h"
+#include "tests/support/device_judgement.h"
 
 namespace real_test {
 namespace {
@@ -48,6 +49,24 @@ TEST(RealPrograms, HaveTheErrorsThatAreTrueOfThemAndNoOthers) {
         EXPECT_EQ(status, program.status) << program.file;
         EXPECT_EQ(errors_of(*run), program.errors) << program.file;
     }
+}
+
+TEST(RealPrograms, AreRefusedByTheCoprocessorWhereTheExactEngineFindsAViolation) {
+    test_support::DeviceJudgement all;
+    for (const RealProgram& program : programs)
+        judge_by_device({.program = std::string(FEELER_SOURCE_DIR "/") + program.file,
+                         .detail = core::Detail::every_pair},
+                        all);
+    EXPECT_EQ(all.missed, "");
+    EXPECT_EQ(all.errors, "");
+    RecordProperty("blocks", all.blocks);
+    RecordProperty("violations", all.violations);
+    RecordProperty("refused", all.refused);
+    RecordProperty("not_asked", all.not_asked);
+    RecordProperty("undecided", all.undecided);
+    RecordProperty("false_alarms", all.false_alarms);
+    EXPECT_GT(all.blocks, 1'000);
+    EXPECT_GT(all.violations, 50);
 }
 
 } // namespace
