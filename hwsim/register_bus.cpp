@@ -6,18 +6,34 @@ namespace {
 constexpr uint32_t segment_base = address_of(Register::segment);
 constexpr uint32_t counter_base = address_of(Register::counter);
 
-uint64_t sum_over_elements(const CoprocessorState& s, uint64_t ElementCounts::*count) {
-    uint64_t sum = 0;
-    for (const SearchElement& element : s.elements) sum += element.counts.*count;
-    return sum;
+/// What elements count, none for what they do not.
+uint64_t ElementCounts::*element_count(Counter which) {
+    switch (which) {
+    case Counter::busy:
+        return &ElementCounts::busy;
+    case Counter::node_hits:
+        return &ElementCounts::node_hits;
+    case Counter::node_misses:
+        return &ElementCounts::node_misses;
+    case Counter::record_hits:
+        return &ElementCounts::record_hits;
+    case Counter::record_misses:
+        return &ElementCounts::record_misses;
+    case Counter::wait_memory:
+        return &ElementCounts::wait_memory;
+    case Counter::wait_port:
+        return &ElementCounts::wait_port;
+    case Counter::wait_retire:
+        return &ElementCounts::wait_retire;
+    default:
+        return nullptr;
+    }
 }
 
 uint64_t counter(const CoprocessorState& s, Counter which) {
     switch (which) {
     case Counter::cycles:
         return s.cycle;
-    case Counter::busy:
-        return sum_over_elements(s, &ElementCounts::busy);
     case Counter::queries:
         return s.searched.queries;
     case Counter::nodes:
@@ -28,24 +44,10 @@ uint64_t counter(const CoprocessorState& s, Counter which) {
         return s.searched.box_tests;
     case Counter::pair_tests:
         return s.searched.pair_tests;
-    case Counter::node_hits:
-        return sum_over_elements(s, &ElementCounts::node_hits);
-    case Counter::node_misses:
-        return sum_over_elements(s, &ElementCounts::node_misses);
-    case Counter::record_hits:
-        return sum_over_elements(s, &ElementCounts::record_hits);
-    case Counter::record_misses:
-        return sum_over_elements(s, &ElementCounts::record_misses);
     case Counter::lines_read:
         return s.memory.reads_done;
     case Counter::lines_written:
         return s.memory.writes_done;
-    case Counter::wait_memory:
-        return sum_over_elements(s, &ElementCounts::wait_memory);
-    case Counter::wait_port:
-        return sum_over_elements(s, &ElementCounts::wait_port);
-    case Counter::wait_retire:
-        return sum_over_elements(s, &ElementCounts::wait_retire);
     case Counter::missed:
         return s.permits.missed;
     case Counter::deepest:
@@ -54,8 +56,12 @@ uint64_t counter(const CoprocessorState& s, Counter which) {
         return static_cast<uint64_t>(s.permits.least_slack);
     case Counter::longest:
         return s.permits.longest;
+    default:
+        break;
     }
-    return 0;
+    uint64_t sum = 0;
+    for (const SearchElement& element : s.elements) sum += element.counts.*element_count(which);
+    return sum;
 }
 
 uint32_t status(const CoprocessorState& s) {

@@ -42,7 +42,8 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
                      .setup = folder / "setups" / (program.setup + ".toml"),
                      .detail = core::Detail::every_pair};
         job.settings.dialect = gcode::dialect_named(program.dialect);
-        judge_by_device(job, all);
+        hwsim::FunctionalDevice device = hwsim::functional_device({}).value();
+        judge_by_device(job, port_of(device), all);
     }
     EXPECT_EQ(all.missed, "");
     EXPECT_EQ(all.errors, "");

@@ -42,15 +42,14 @@ core::Result<BlockPermit> ask_next(app::CoprocessorCheck& device, const app::Run
 
 } // namespace
 
-void judge_by_device(const app::CheckJob& job, DeviceJudgement& judgement) {
+void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJudgement& judgement) {
     const auto fail = [&](const core::Error& error) {
         judgement.errors += job.program + ": " + error.message + "\n";
     };
     auto check = app::prepare_check(job);
     if (!check) return fail(check.error());
-    hwsim::FunctionalDevice device = hwsim::functional_device({}).value();
     auto coprocessor =
-        app::CoprocessorCheck::with(port_of(device), check->run.setup, check->machine.stock);
+        app::CoprocessorCheck::with(std::move(port), check->run.setup, check->machine.stock);
     if (!coprocessor) return fail(coprocessor.error());
     app::ProgramRunner runner(*check);
     app::BlockRunner ahead(*check->program, check->file.environment, check->run.setup,

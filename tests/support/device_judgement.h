@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/session/check_run.h"
+#include "hwsim/device_port.h"
 
 namespace test_support {
 
@@ -16,9 +17,11 @@ struct DeviceJudgement {
     int false_alarms = 0; // refused, and clear by the exact engine
     std::string missed;   // violations that the device permitted: files and lines
     std::string errors;   // why it could not be judged
+
+    bool operator==(const DeviceJudgement&) const = default;
 };
 
-/// Runs a program block by block, each first on the functional device, and adds what came of it.
-void judge_by_device(const app::CheckJob& job, DeviceJudgement& judgement);
+/// Runs a program block by block, each first on the device at the port, and adds what came of it.
+void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJudgement& judgement);
 
 } // namespace test_support
