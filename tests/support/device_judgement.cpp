@@ -32,11 +32,12 @@ void compare(const BlockPermit& permit, const app::CheckedBlock& block, DeviceJu
 core::Result<BlockPermit> ask_next(app::CoprocessorCheck& device, const app::RunPlace& place,
                                    app::BlockRunner& ahead) {
     core::Result<BlockPermit> permit;
-    ahead.visit_ahead(
-        place, [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
-            permit = device.ask({.block = block.block, .events = events}, place.machine);
-            return false;
-        });
+    ahead.visit_ahead(place.control, place.lowering,
+                      [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
+                          permit =
+                              device.ask({.block = block.block, .events = events}, place.machine);
+                          return false;
+                      });
     return permit;
 }
 
@@ -52,9 +53,7 @@ void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJud
         app::CoprocessorCheck::with(std::move(port), check->run.setup, check->machine.stock);
     if (!coprocessor) return fail(coprocessor.error());
     app::ProgramRunner runner(*check);
-    app::BlockRunner ahead(*check->program, check->file.environment, check->run.setup,
-                           runner.library());
-    ahead.speed_by_hand = check->file.speed_by_hand;
+    app::BlockRunner ahead(*check);
     while (true) {
         const auto permit = ask_next(*coprocessor, runner.place(), ahead);
         if (!permit) return fail(permit.error());
