@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
     app::ExitCode exit_code = app::ExitCode::clear;
     app::add_check(cli, exit_code);
     app::add_setup(cli, exit_code);
+    app::add_coproc(cli, exit_code);
     app::add_trace(cli, exit_code);
     app::add_debug(cli, exit_code);
     app::add_distance(cli, exit_code);

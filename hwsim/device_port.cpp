@@ -5,9 +5,19 @@
 namespace hwsim {
 namespace {
 
-void clock(EmulatedDevice& device) {
-    for (uint32_t i = 0; i < device.bus_cycles; ++i) tick(device.state, device.config);
-}
+/// An emulated device with whoever looks on.
+struct WatchedDevice {
+    EmulatedDevice& device;
+    std::function<void(const CoprocessorState&)> after_cycle;
+
+    void cycles(uint32_t count) const {
+        for (uint32_t i = 0; i < count; ++i) {
+            tick(device.state, device.config);
+            if (after_cycle) after_cycle(device.state);
+        }
+    }
+    void access() const { cycles(device.bus_cycles); }
+};
 
 /// One entry of the FIFO, from its models to its permit.
 void answer_first(FunctionalDevice& device) {
@@ -49,23 +59,25 @@ core::Result<FunctionalDevice> functional_device(const DeviceConfig& config) {
     return device;
 }
 
-DevicePort port_of(EmulatedDevice& device) {
+DevicePort port_of(EmulatedDevice& device,
+                   std::function<void(const CoprocessorState&)> after_cycle) {
+    const WatchedDevice watched{device, std::move(after_cycle)};
     return {.read =
-                [&device](Register r) {
-                    clock(device);
-                    return read(device.state, device.config, address_of(r));
+                [watched](Register r) {
+                    watched.access();
+                    return read(watched.device.state, watched.device.config, address_of(r));
                 },
             .write =
-                [&device](uint32_t address, uint32_t value) {
-                    clock(device);
-                    write(device.state, device.config, address, value);
+                [watched](uint32_t address, uint32_t value) {
+                    watched.access();
+                    write(watched.device.state, watched.device.config, address, value);
                 },
             .store =
-                [&device](uint32_t line, const Line& content) {
-                    tick(device.state, device.config);
-                    return store(device.state, line, content);
+                [watched](uint32_t line, const Line& content) {
+                    watched.cycles(1);
+                    return store(watched.device.state, line, content);
                 },
-            .wait = [&device] { clock(device); }};
+            .wait = [watched] { watched.access(); }};
 }
 
 DevicePort port_of(FunctionalDevice& device) {

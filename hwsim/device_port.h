@@ -38,8 +38,9 @@ struct FunctionalDevice {
 /// Errors: those of checked().
 core::Result<FunctionalDevice> functional_device(const DeviceConfig& config);
 
-/// The devices must live as long as the ports, where they are.
-DevicePort port_of(EmulatedDevice& device);
+/// The devices must live as long as the ports, where they are. `after_cycle` looks on.
+DevicePort port_of(EmulatedDevice& device,
+                   std::function<void(const CoprocessorState&)> after_cycle = {});
 DevicePort port_of(FunctionalDevice& device);
 
 } // namespace hwsim

@@ -14,6 +14,7 @@ enum class ExitCode : int {
 /// Each adds a subcommand that sets `exit_code` when it runs.
 void add_check(CLI::App& cli, ExitCode& exit_code);
 void add_setup(CLI::App& cli, ExitCode& exit_code);
+void add_coproc(CLI::App& cli, ExitCode& exit_code);
 void add_trace(CLI::App& cli, ExitCode& exit_code);
 void add_debug(CLI::App& cli, ExitCode& exit_code);
 void add_distance(CLI::App& cli, ExitCode& exit_code);

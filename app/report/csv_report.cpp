@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/report/block_rules.h"
+#include "app/report/text_layout.h"
 
 namespace app {
 namespace {
@@ -10,14 +11,6 @@ namespace {
 constexpr const char* column_names =
     "block,file,line,calls,text,motion,tool,time,duration,removed,lower,upper,allowance,part,body,"
     "at,part_x,part_y,part_z,body_x,body_y,body_z,verdict,rules\r\n";
-
-/// Quoted where it has to be.
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
 
 std::string joined(const std::vector<uint32_t>& lines) {
     std::string text;
@@ -42,8 +35,8 @@ std::string clearance_cells(const CheckRun& run, const core::BlockResult& result
     std::string cells = fmt::format("{:.6f},", pair.lower);
     if (pair.found()) cells += fmt::format("{:.6f}", pair.upper);
     cells += fmt::format(",{:.6f},{},{}", pair.allowance.distance,
-                         cell(core::part_name(run.setup, pair.pair)),
-                         cell(core::body_name(run.setup, pair.pair)));
+                         csv_cell(core::part_name(run.setup, pair.pair)),
+                         csv_cell(core::body_name(run.setup, pair.pair)));
     if (!pair.found()) return cells + ",,,,,,,";
     cells += fmt::format(",{:.6f}", result.duration > 0.0 ? pair.time / result.duration : 0.0);
     for (const core::Vec3& point : {pair.on_tool, pair.on_body})
@@ -60,12 +53,12 @@ std::string csv_report(const CheckRun& run) {
         const core::BlockResult& result = block.result;
         const std::string tool =
             result.tool ? fmt::format("{}", core::value_of(*result.tool)) : std::string();
-        text +=
-            fmt::format("{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{}\r\n",
-                        core::value_of(block.block), cell(block.file), block.line,
-                        joined(block.calls), cell(block.text), core::name_of(result.motion), tool,
-                        result.time, result.duration, result.removed, clearance_cells(run, result),
-                        core::name_of(result.verdict), cell_of(rules[block.block]));
+        text += fmt::format("{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{}\r\n",
+                            core::value_of(block.block), csv_cell(block.file), block.line,
+                            joined(block.calls), csv_cell(block.text), core::name_of(result.motion),
+                            tool, result.time, result.duration, result.removed,
+                            clearance_cells(run, result), core::name_of(result.verdict),
+                            cell_of(rules[block.block]));
     }
     return text;
 }

@@ -157,9 +157,11 @@ std::vector<LengthDoubt> ProgramRunner::length_doubts() const {
 }
 
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
-    for (const core::BlockTime& time : timed)
-        if (core::value_of(time.block) >= first_to_time_)
-            core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+    for (const core::BlockTime& time : timed) {
+        if (core::value_of(time.block) < first_to_time_) continue;
+        core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+        if (on_timed) on_timed(time);
+    }
 }
 
 void ProgramRunner::hold_against_stock() {

@@ -16,6 +16,8 @@ public:
     ProgramRunner& operator=(const ProgramRunner&) = delete;
 
     std::function<bool(const CheckProgress&)> after_block; // false: stop there
+    // Told of blocks in order, when their places in time have become known.
+    std::function<void(const core::BlockTime&)> on_timed;
 
     /// Begins in the middle of the program, at a line or "N210", as a control does that was just
     /// switched on.

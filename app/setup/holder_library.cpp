@@ -9,6 +9,7 @@
 #include "app/setup/outline.h"
 #include "app/setup/shipped_holders.h"
 #include "app/setup/table_reader.h"
+#include "app/setup/toml_file.h"
 
 namespace app {
 namespace {
@@ -55,19 +56,6 @@ core::Result<HolderLibrary> read_library(const toml::table& parsed) {
     return library;
 }
 
-core::Result<HolderLibrary> parsed_library(const std::string& path) {
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure))
-        return core::fail(core::ErrorCode::io, "there is no such file");
-    try {
-        return read_library(toml::parse_file(path));
-    } catch (const toml::parse_error& error) {
-        const toml::source_position at = error.source().begin;
-        return core::fail(core::ErrorCode::syntax, std::string(error.description()),
-                          {at.line, at.column, 0});
-    }
-}
-
 HolderLibrary shipped() {
     HolderLibrary all;
     for (const ShippedFile& file : shipped_holders()) {
@@ -81,7 +69,11 @@ HolderLibrary shipped() {
 } // namespace
 
 core::Result<HolderLibrary> read_holder_library(const std::string& path) {
-    auto library = parsed_library(path);
+    core::Result<HolderLibrary> library;
+    if (const auto parsed = read_toml(path))
+        library = read_library(*parsed);
+    else
+        library = tl::unexpected(parsed.error());
     if (!library && library.error().file.empty()) library.error().file = path;
     return library;
 }

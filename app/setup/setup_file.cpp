@@ -9,6 +9,7 @@
 #include "app/setup/machine_table.h"
 #include "app/setup/program_table.h"
 #include "app/setup/table_reader.h"
+#include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"
 #include "app/tools/tool_library.h"
 #include "core/sim/allowance.h"
@@ -23,21 +24,12 @@ constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
 constexpr double largest_allowance = 1000.0; // mm; more is a slip of the finger
 
 core::Result<toml::table> parse(const std::string& path) {
-    std::error_code failure;
-    if (std::filesystem::is_directory(path, failure))
-        return core::fail(core::ErrorCode::io, "is a folder, not a file");
-    if (!std::filesystem::exists(path, failure))
-        return core::fail(core::ErrorCode::io, "there is no such file");
-    try {
-        return toml::parse_file(path);
-    } catch (const toml::parse_error& error) {
-        const toml::source_position at = error.source().begin;
-        std::string why(error.description());
-        if (why.find("'allowance'") != std::string::npos)
-            why += "; write the general allowance as an [[allowance]] with a distance and no "
-                   "between when there are others";
-        return core::fail(core::ErrorCode::syntax, why, {at.line, at.column, 0});
-    }
+    auto parsed = read_toml(path);
+    if (!parsed && parsed.error().message.find("'allowance'") != std::string::npos)
+        parsed.error().message +=
+            "; write the general allowance as an [[allowance]] with a distance and no between when "
+            "there are others";
+    return parsed;
 }
 
 /// The settings of the program's table and of the command line, in effect for all that follows: the

@@ -29,9 +29,9 @@ struct SetupFile {
     std::string stock_frame = "G54";               // that the stock's coordinates count in
     std::map<core::ToolNumber, std::string> inferred_tools; // by what, in a sentence
     std::string inferred_stock;                             // by what; empty: it is stated
-    bool speed_by_hand = false;                    // M3 turns the spindle without an S
-    bool allow_comments = false;                   // (feeler: allow RULE) in the program counts
-    bool is_inferred = false;                      // no file: everything is
+    bool speed_by_hand = false;                             // M3 turns the spindle without an S
+    bool allow_comments = false;          // (feeler: allow RULE) in the program counts
+    bool is_inferred = false;             // no file: everything is
     std::string not_judged;               // why the motions of the program are not; empty: they are
     std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
 };

@@ -1,0 +1,111 @@
+#include <algorithm>
+
+#include "app/commands/check_arguments.h"
+#include "app/commands/commands.h"
+#include "app/commands/output.h"
+#include "app/report/coprocessor_report.h"
+#include "hwsim/vcd_trace.h"
+
+namespace app {
+namespace {
+
+struct Options {
+    CheckArguments what;
+    std::string config, format = "text", output, vcd;
+    std::optional<size_t> from, to;
+    bool past_refusals = false, no_fit = false;
+};
+
+core::Result<std::string> report_of(const Options& options, const CoprocessorResult& result) {
+    if (options.format == "json") return coprocessor_json(result);
+    if (options.format == "csv") return coprocessor_csv(result);
+    return coprocessor_text(result);
+}
+
+/// What the signals of a range of blocks are kept in, if somebody asked for them.
+struct Trace {
+    std::optional<hwsim::VcdTrace> vcd;
+    size_t from = 0, to = 0;
+
+    void note(size_t block, const hwsim::CoprocessorState& state) {
+        if (vcd && block >= from && block <= to) vcd->note(state);
+    }
+};
+
+core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
+    CoprocessorResult result;
+    if (!options.config.empty()) {
+        FEELER_TRY(result.file, read_device_file(options.config));
+    }
+    CoprocessorJob job;
+    FEELER_TRY(job.check, job_of(options.what));
+    job.check.detail = core::Detail::every_pair;
+    job.device = result.file.device;
+    if (!options.no_fit) job.other_elements = {1, 2, 4, 8, 16};
+    if (!options.vcd.empty()) {
+        trace.vcd.emplace(job.device);
+        trace.from = options.from.value_or(0);
+        trace.to = options.to.value_or(trace.from);
+        job.on_cycle = [&trace](size_t block, const hwsim::CoprocessorState& state) {
+            trace.note(block, state);
+        };
+    }
+    FEELER_TRY(result.run, run_beside_coprocessor(job));
+    result.timing =
+        timed_with_permits(result.run.plan, services_of(result.run, result.file.device.clock_mhz),
+                           result.file.control, options.past_refusals);
+    result.fits = least_clocks(result.run, result.file.control);
+    return result;
+}
+
+core::Result<ExitCode> coproc(const Options& options) {
+    for (const std::string& output : {options.output, options.vcd})
+        if (auto safe =
+                check_output(output, {options.what.program, options.what.setup, options.config});
+            !safe)
+            return tl::unexpected(std::move(safe).error());
+    Trace trace;
+    FEELER_TRY(const CoprocessorResult result, run(options, trace));
+    FEELER_TRY(const std::string report, report_of(options, result));
+    if (auto written = write_output(options.output, report); !written)
+        return tl::unexpected(std::move(written).error());
+    if (trace.vcd)
+        if (auto written = write_output(options.vcd, trace.vcd->text()); !written)
+            return tl::unexpected(std::move(written).error());
+    if (result.run.check.stopped) {
+        print_error(*result.run.check.stopped);
+        return ExitCode::failed;
+    }
+    const bool refuses = std::any_of(result.run.blocks.begin(), result.run.blocks.end(),
+                                     [](const auto& block) { return !block.permit.permitted; });
+    return refuses || result.timing.missed > 0 ? ExitCode::findings : ExitCode::clear;
+}
+
+} // namespace
+
+void add_coproc(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *cli.add_subcommand(
+        "coproc", "Run a program beside an emulated coprocessor that permits its blocks");
+    add_check_arguments(command, options->what)->required();
+    command.add_option("--config", options->config,
+                       "Device file (TOML): [device], [control], [energy]");
+    command.add_option("--format", options->format, "text, json or csv")
+        ->check(CLI::IsMember({"text", "json", "csv"}))
+        ->capture_default_str();
+    command.add_option("-o,--output", options->output, "Write the report to this file");
+    auto* vcd = command.add_option("--vcd", options->vcd,
+                                   "Write the device's signals to this file, for GTKWave");
+    auto* from = command.add_option("--from", options->from, "... from this block on")->needs(vcd);
+    command.add_option("--to", options->to, "... to this one")->needs(from);
+    command.add_flag("--past-refusals", options->past_refusals,
+                     "Run refused blocks all the same, as if a person had let them");
+    command.add_flag("--no-fit", options->no_fit, "Do not look for the smallest device");
+    command.callback([options, &exit_code] {
+        auto done = coproc(*options);
+        if (!done) print_error(done.error());
+        exit_code = done ? *done : ExitCode::failed;
+    });
+}
+
+} // namespace app

@@ -1,0 +1,53 @@
+#include "app/session/device_fit.h"
+
+#include <algorithm>
+
+namespace app {
+namespace {
+
+/// Whether no permit is late, where the machine never has to wait.
+bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<uint64_t>& cycles,
+              uint32_t clock_mhz) {
+    double free = 0.0;
+    for (size_t i = 0; i < undisturbed.size(); ++i) {
+        free = std::max(free, undisturbed[i].asked)
+               + static_cast<double>(cycles[i]) / (1e6 * clock_mhz);
+        if (free > undisturbed[i].due) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz) {
+    std::vector<BlockService> services;
+    for (const DeviceBlock& block : run.blocks)
+        services.push_back(
+            {static_cast<double>(block.cycles) / (1e6 * clock_mhz), !block.permit.permitted});
+    return services;
+}
+
+std::vector<DeviceFit> least_clocks(const CoprocessorRun& run, const ControlConfig& control) {
+    const std::vector<BlockService> at_once(run.blocks.size());
+    const std::vector<BlockTiming> undisturbed =
+        timed_with_permits(run.plan, at_once, control).blocks;
+    std::vector<DeviceFit> fits;
+    for (const auto& [elements, cycles] : run.cycles_by_elements) {
+        const auto enough = std::find_if(clocks.begin(), clocks.end(), [&](uint32_t clock) {
+            return keeps_up(undisturbed, cycles, clock);
+        });
+        fits.push_back({elements, enough == clocks.end() ? std::nullopt : std::optional(*enough)});
+    }
+    return fits;
+}
+
+std::optional<DeviceFit> smallest(const std::vector<DeviceFit>& fits) {
+    std::optional<DeviceFit> best;
+    for (const DeviceFit& fit : fits) {
+        if (!fit.clock_mhz) continue;
+        if (!best || fit.elements * *fit.clock_mhz < best->elements * *best->clock_mhz) best = fit;
+    }
+    return best;
+}
+
+} // namespace app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/sim/permit_run.h"
+
+namespace app {
+
+/// The control beside the device.
+struct ControlConfig {
+    core::ServoTiming servo;
+    uint32_t look_ahead = 256; // blocks that it reads, and asks permits for, ahead of the machine
+};
+
+/// How long a device takes for each block, and which of them it refuses.
+struct BlockService {
+    double seconds = 0.0;
+    bool refused = false;
+};
+
+/// When a block was asked for, permitted, needed and begun, seconds after the start of the program.
+struct BlockTiming {
+    double asked = core::infinity;
+    double permitted = core::infinity; // or refused
+    double due = core::infinity;       // that is when the machine had to know; infinite for a block
+                                       // that does not move, and for the first that does
+    double entered = core::infinity;
+
+    double slack() const { return due - permitted; }
+    bool is_late() const { return permitted > due; }
+};
+
+/// A program in time, with a device that permits its blocks.
+struct PermitTiming {
+    std::vector<BlockTiming> blocks;
+    double planned = 0.0;           // what the machine takes if it never waits, seconds
+    double taken = 0.0;             // until the end, or until it stands before what is refused
+    std::optional<size_t> refused;  // the block before which it stands
+    std::optional<size_t> tightest; // the block with the least slack
+    size_t missed = 0;              // permits that came late
+    double busy = 0.0;              // seconds that the device worked
+};
+
+/// Lets the machine run its plan against the device, which works on one block after the other, from
+/// when the control has read it.
+///
+/// `past_refusals`: what is refused is run all the same, as if a person had let it.
+PermitTiming timed_with_permits(const std::vector<core::PermitMotion>& plan,
+                                const std::vector<BlockService>& services,
+                                const ControlConfig& control, bool past_refusals = false);
+
+} // namespace app

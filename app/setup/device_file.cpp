@@ -1,0 +1,87 @@
+#include "app/setup/device_file.h"
+
+#include "app/setup/table_reader.h"
+#include "app/setup/toml_file.h"
+
+namespace app {
+namespace {
+
+void read_count(TableReader& table, const char* key, uint32_t& value) {
+    const auto stated = table.integer(key);
+    if (!stated) return;
+    if (*stated < 1)
+        table.refuse(key, "must be above 0");
+    else
+        value = static_cast<uint32_t>(*stated);
+}
+
+void read_positive(TableReader& table, const char* key, double& value) {
+    const auto stated = table.number(key);
+    if (!stated) return;
+    if (!(*stated > 0.0))
+        table.refuse(key, "must be above 0");
+    else
+        value = *stated;
+}
+
+void read_device(TableReader& table, hwsim::DeviceConfig& device) {
+    read_count(table, "clock_mhz", device.clock_mhz);
+    read_count(table, "elements", device.elements);
+    read_count(table, "threads", device.threads);
+    read_count(table, "stack_depth", device.stack_depth);
+    read_count(table, "node_cache_lines", device.node_cache_lines);
+    read_count(table, "record_cache_lines", device.record_cache_lines);
+    read_count(table, "fifo_depth", device.fifo_depth);
+    read_count(table, "memory_lines", device.memory_lines);
+    read_count(table, "memory_latency", device.memory_latency);
+    read_count(table, "cycles_per_line", device.cycles_per_line);
+    read_count(table, "memory_queue", device.memory_queue);
+    read_count(table, "write_queue", device.write_queue);
+    read_count(table, "search_limit", device.search_limit);
+    read_count(table, "memory_limit", device.memory_limit);
+    table.finish();
+}
+
+void read_control(TableReader& table, ControlConfig& control) {
+    read_positive(table, "servo_period", control.servo.period);
+    read_positive(table, "io_latency", control.servo.latency);
+    read_positive(table, "feed_override", control.servo.feed);
+    read_count(table, "look_ahead", control.look_ahead);
+    table.finish();
+}
+
+void read_energy(TableReader& table, EnergyTable& energy) {
+    read_positive(table, "box_test", energy.box_test);
+    read_positive(table, "pair_test", energy.pair_test);
+    read_positive(table, "cache_line", energy.cache_line);
+    read_positive(table, "memory_line", energy.memory_line);
+    read_positive(table, "idle_watts", energy.idle_watts);
+    table.finish();
+}
+
+core::Result<DeviceFile> device_file_in(const toml::table& parsed) {
+    DeviceFile file;
+    std::optional<core::Error> error;
+    TableReader root(parsed, "device file", error);
+    if (auto table = root.table("device", "[device]")) read_device(*table, file.device);
+    if (auto table = root.table("control", "[control]")) read_control(*table, file.control);
+    if (auto table = root.table("energy", "[energy]")) read_energy(*table, file.energy);
+    root.finish();
+    if (error) return tl::unexpected(*error);
+    FEELER_TRY(file.device, hwsim::checked(file.device));
+    return file;
+}
+
+} // namespace
+
+core::Result<DeviceFile> read_device_file(const std::string& path) {
+    core::Result<DeviceFile> file;
+    if (const auto parsed = read_toml(path))
+        file = device_file_in(*parsed);
+    else
+        file = tl::unexpected(parsed.error());
+    if (!file && file.error().file.empty()) file.error().file = path;
+    return file;
+}
+
+} // namespace app

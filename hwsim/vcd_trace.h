@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hwsim/coprocessor.h"
+
+namespace hwsim {
+
+/// The signals of a device over time, as a value change dump (IEEE 1364) that GTKWave reads.
+///
+/// Units: nanoseconds, a cycle of the clock to each period of it.
+class VcdTrace {
+public:
+    explicit VcdTrace(const DeviceConfig& config);
+
+    /// The device after a cycle. Cycles between two that are shown pass without a change.
+    void note(const CoprocessorState& state);
+
+    /// The whole file.
+    const std::string& text() const { return text_; }
+
+private:
+    struct Signal {
+        std::string id;
+        uint32_t bits = 1;
+        uint64_t value = ~uint64_t{0}; // that was written last
+    };
+    void declare(const std::string& name, uint32_t bits);
+    void write(size_t signal, uint64_t value, bool& has_time, uint64_t cycle);
+
+    uint64_t picoseconds_;
+    uint32_t elements_;
+    std::vector<Signal> signals_;
+    std::string text_;
+};
+
+} // namespace hwsim

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include "app/report/coprocessor_report.h"
+#include "hwsim/vcd_trace.h"
+#include "tests/support/scoped_folder.h"
+
+namespace app {
+namespace {
+
+const std::string assets = FEELER_SOURCE_DIR "/assets/";
+
+core::MotionTime hop(double seconds, double length) {
+    const double peak = 2.0 * length / seconds;
+    return {.duration = seconds,
+            .length = length,
+            .cruise = peak,
+            .acceleration = 2.0 * peak / seconds};
+}
+
+TEST(PermitTiming, WaitsForALateDeviceAndGoesOnByItself) {
+    const std::vector<core::PermitMotion> plan = {
+        {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
+    const PermitTiming quick = timed_with_permits(plan, {{1e-6}, {1e-6}, {1e-6}}, {});
+    EXPECT_NEAR(quick.planned, 3.0, 1e-9);
+    EXPECT_NEAR(quick.taken, 3.0, 0.003);
+    EXPECT_EQ(quick.missed, 0U);
+    EXPECT_FALSE(quick.refused);
+    const PermitTiming slow = timed_with_permits(plan, {{0.5}, {2.0}, {0.1}}, {});
+    EXPECT_EQ(slow.missed, 1U);
+    EXPECT_EQ(slow.tightest, 1U);
+    EXPECT_NEAR(slow.taken, 2.5 + 2.0, 0.005) << "the second begins at 2.5 s";
+    EXPECT_NEAR(slow.blocks[1].permitted, 2.5, 0.002);
+}
+
+TEST(PermitTiming, AsksNoFartherAheadThanTheControlReads) {
+    std::vector<core::PermitMotion> plan;
+    for (uint32_t i = 0; i < 20; ++i) plan.push_back({hop(1.0, 10), i});
+    const PermitTiming timing =
+        timed_with_permits(plan, std::vector<BlockService>(20), {.look_ahead = 4});
+    for (size_t i = 0; i < 5; ++i) EXPECT_EQ(timing.blocks[i].asked, 0.0);
+    for (size_t i = 5; i < 20; ++i)
+        EXPECT_NEAR(timing.blocks[i].asked, timing.blocks[i - 4].entered, 0.0021) << i;
+}
+
+TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
+    const std::vector<core::PermitMotion> plan = {{hop(1.0, 10), 0}, {hop(1.0, 10), 2}};
+    const std::vector<BlockService> services = {{1e-6}, {1e-6}, {1e-6, true}};
+    const PermitTiming stands = timed_with_permits(plan, services, {});
+    EXPECT_EQ(stands.refused, 2U);
+    EXPECT_NEAR(stands.taken, 1.0, 0.1) << "it brakes towards the place";
+    EXPECT_EQ(stands.blocks[2].entered, core::infinity);
+    EXPECT_FALSE(timed_with_permits(plan, services, {}, true).refused);
+}
+
+CoprocessorJob plate(const std::string& program) {
+    CoprocessorJob job;
+    job.check.program = assets + "programs/" + program;
+    job.check.setup = assets + "setups/clamped_plate.toml";
+    job.check.detail = core::Detail::every_pair;
+    return job;
+}
+
+TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
+    CoprocessorJob job = plate("clamped_plate_low.nc");
+    job.other_elements = {1};
+    const auto run = run_beside_coprocessor(job);
+    ASSERT_TRUE(run.has_value());
+    ASSERT_EQ(run->blocks.size(), run->check.blocks.size());
+    EXPECT_EQ(agreement(*run).missed, 0U);
+    EXPECT_EQ(agreement(*run).not_asked, 0U);
+    for (const size_t block : {38U, 39U, 41U, 42U})
+        EXPECT_FALSE(run->blocks[block].permit.permitted) << block;
+    EXPECT_TRUE(run->blocks[20].permit.permitted);
+    double planned = 0.0;
+    for (const core::PermitMotion& motion : run->plan) planned += motion.time.duration;
+    EXPECT_NEAR(planned, run->check.cycle_time, 1e-6);
+    const auto again = run_beside_coprocessor(job);
+    ASSERT_TRUE(again.has_value());
+    for (size_t i = 0; i < run->blocks.size(); ++i)
+        EXPECT_EQ(again->blocks[i].cycles, run->blocks[i].cycles) << i;
+    EXPECT_EQ(again->totals.counters, run->totals.counters);
+}
+
+TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
+    const auto run = run_beside_coprocessor(plate("clamped_plate.nc"));
+    ASSERT_TRUE(run.has_value());
+    const PermitTiming fast = timed_with_permits(run->plan, services_of(*run, 100), {}, true);
+    EXPECT_EQ(fast.missed, 0U);
+    EXPECT_NEAR(fast.taken, fast.planned, 0.01);
+    std::vector<BlockService> slow = services_of(*run, 1);
+    for (BlockService& service : slow) service.seconds *= 1e4;
+    const PermitTiming late = timed_with_permits(run->plan, slow, {}, true);
+    EXPECT_GT(late.missed, 0U);
+    EXPECT_GT(late.taken, late.planned + 1.0);
+    ASSERT_TRUE(late.tightest);
+    EXPECT_LT(late.blocks[*late.tightest].slack(), 0.0);
+}
+
+TEST(VcdTrace, IsAFileOfChanges) {
+    hwsim::DeviceConfig config;
+    config.elements = 1;
+    auto device = hwsim::emulated_device(config);
+    ASSERT_TRUE(device.has_value());
+    hwsim::VcdTrace trace(config);
+    const hwsim::DevicePort port =
+        port_of(*device, [&](const hwsim::CoprocessorState& state) { trace.note(state); });
+    port.write(hwsim::address_of(hwsim::Register::control), hwsim::control_enable);
+    port.wait();
+    const std::string& text = trace.text();
+    EXPECT_NE(text.find("$enddefinitions $end\n#10000\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n1!\n"), std::string::npos) << "enabled";
+    size_t times = 0;
+    for (size_t at = 0; (at = text.find("\n#", at)) != std::string::npos; ++at) ++times;
+    EXPECT_EQ(times, 2U) << "the first cycle, and that of the change";
+}
+
+TEST(DeviceFile, SaysWhatIsWrongAndWhere) {
+    const test_support::ScopedFolder folder;
+    const auto error_of = [&](const std::string& text) {
+        const auto file = read_device_file(folder.write("device.toml", text));
+        return file ? std::string("none") : file.error().message;
+    };
+    EXPECT_EQ(error_of("[device]\nelements = 4\nclock_mhz = 50\n[control]\nlook_ahead = 8\n"),
+              "none");
+    EXPECT_NE(error_of("[device]\nelement = 4\n").find("element"), std::string::npos);
+    EXPECT_NE(error_of("[device]\nelements = 0\n").find("above 0"), std::string::npos);
+    EXPECT_NE(error_of("[device]\nelements = 1000\n"), "none");
+    EXPECT_NE(error_of("[control]\nservo_period = -1\n").find("above 0"), std::string::npos);
+    EXPECT_NE(error_of("device\n"), "none");
+}
+
+} // namespace
+} // namespace app
