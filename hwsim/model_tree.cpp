@@ -57,7 +57,7 @@ core::Result<Branch> subtree(ModelWriter& writer, std::span<Record> records, uin
     // Whole lines on the left, so that few places of the leaves stay empty.
     const size_t half =
         (records.size() / 2 + records_per_line - 1) / records_per_line * records_per_line;
-    const size_t left = records.size() > 2 * records_per_line ? half : records.size() / 2;
+    const size_t left = records.size() > size_t{2} * records_per_line ? half : records.size() / 2;
     const auto at = static_cast<std::ptrdiff_t>(left);
     std::nth_element(records.begin(), records.begin() + at, records.end(),
                      [&](const Record& a, const Record& b) { return by_place(a) < by_place(b); });
@@ -81,7 +81,7 @@ core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
     for (const Record& record : records) leaf.volume.extend(volume_of(record, side));
     for (uint32_t i = 0; i < run.count; ++i) {
         Records four{};
-        const auto part = records.subspan(i * records_per_line);
+        const auto part = records.subspan(size_t{i} * records_per_line);
         std::copy_n(part.begin(), std::min<size_t>(records_per_line, part.size()), four.begin());
         lines.push_back({run.first + i, packed(four, epoch, run.first + i)});
     }

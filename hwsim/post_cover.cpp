@@ -43,7 +43,9 @@ private:
     bool is_there(int i, int j) const {
         return u_ + i < cells_.columns->u_count() && v_ + j < cells_.columns->v_count();
     }
-    FixedColumn& column(int i, int j) { return columns_[static_cast<size_t>(j * side + i)]; }
+    FixedColumn& column(int i, int j) {
+        return columns_[static_cast<size_t>(j) * side + static_cast<size_t>(i)];
+    }
 
     core::Result<void> take(int i, int j) {
         if (!is_there(i, j)) return {};

@@ -17,8 +17,8 @@ int64_t longest_side(const Box& box) {
 int64_t longest_side(const Volume& volume) {
     const Box& box = volume.box;
     const int64_t x = int64_t{box.max[0]} - box.min[0], y = int64_t{box.max[1]} - box.min[1];
-    return std::max(
-        {x + 2 * volume.radius, y + 2 * volume.radius, int64_t{box.max[2]} - box.min[2]});
+    return std::max({x + 2 * int64_t{volume.radius}, y + 2 * int64_t{volume.radius},
+                     int64_t{box.max[2]} - box.min[2]});
 }
 
 int64_t longest_way(const FixedVec& from, const FixedVec& to) {

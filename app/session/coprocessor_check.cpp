@@ -40,6 +40,7 @@ Result<BlockPermit> CoprocessorCheck::ask(const core::BlockEvents& block,
     (void)tiles;
     At at{.before = before,
           .spindle = before.spindle,
+          .corners = before.corners,
           .position = before.position,
           .fixtures_there = before.fixtures_there};
     if (before.tool)
@@ -63,6 +64,8 @@ Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, Block
     if (const auto* motion = std::get_if<core::Motion>(&event))
         return ask_motion(*motion, at, permit);
     if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
+    if (const auto* change = std::get_if<core::PathModeChange>(&event))
+        change_mode(at.corners, *change, setup_->machine);
     if (const auto* change = std::get_if<core::ToolChange>(&event)) {
         const auto found = change->tool ? setup_->tools.find(*change->tool) : setup_->tools.end();
         at.tool = found == setup_->tools.end() ? nullptr : &found->second;
@@ -84,6 +87,7 @@ Result<void> CoprocessorCheck::ask_rest(At& at, BlockPermit& permit) {
 Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, BlockPermit& permit) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
+    at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
     if (!at.tool && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
         permit.not_asked = "nobody knows where the motion begins";
@@ -109,7 +113,7 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
         core::Pair pair{body.kind, {}, body.carried};
         const auto question = [&](const core::Mount& mount) {
             return Question{body, pair, relative_leg(setup_->machine, mount, body.mover, leg),
-                            allowance_of(*setup_, pair)};
+                            allowance_of(*setup_, pair), off_way(pair, at.off_motion, at.corners)};
         };
         if (!cuts) {
             const Question stock = question(setup_->stock_mount);
@@ -139,10 +143,10 @@ Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, Bloc
     const double shrink =
         may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
     FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
-    const auto pushed =
-        hwsim::push(driver_, {.from = q.way.places.front(),
-                              .to = q.way.places.back(),
-                              .pairs = {{tool, work, q.allowance.distance + q.way.error}}});
+    const double off = q.way.error + (may_touch ? 0.0 : q.off_path);
+    const auto pushed = hwsim::push(driver_, {.from = q.way.places.front(),
+                                              .to = q.way.places.back(),
+                                              .pairs = {{tool, work, q.allowance.distance + off}}});
     if (pushed)
         asked_.push_back(q.pair);
     else

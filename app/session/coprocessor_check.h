@@ -40,6 +40,8 @@ private:
         const core::SimulatorState& before;
         const core::ToolAssembly* tool = nullptr;
         core::SpindleChange spindle;
+        core::RoundedCorners corners;
+        double off_motion = 0.0; // that corners take the motion, mm
         core::AxisPosition position;
         std::vector<bool> fixtures_there;
     };
@@ -49,6 +51,7 @@ private:
         core::Pair pair;
         core::RelativeLeg way;
         core::Allowance allowance;
+        double off_path = 0.0; // that rounded corners may take the body, mm
     };
     /// A body's kind, which of the machine's it is, and by how much it is shrunk.
     using ModelKey = std::tuple<core::PartKind, size_t, double>;
