@@ -38,7 +38,7 @@ Result<BlockPermit> CoprocessorCheck::ask(const core::BlockEvents& block,
     asked_.clear();
     FEELER_TRY(const size_t tiles, hwsim::update_stock(driver_, stock_, before.stock));
     (void)tiles;
-    At at{.before = before,
+    At at{.stock = before.stock,
           .spindle = before.spindle,
           .corners = before.corners,
           .position = before.position,
@@ -108,6 +108,7 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
     }
     static const core::ToolAssembly nothing;
     use_tool(at.tool);
+    if (auto done = bring_up_to_date(at); !done) return done;
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
         core::Pair pair{body.kind, {}, body.carried};
@@ -130,7 +131,30 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
             if (auto asked = ask_pair(question(fixture.mount), work, permit); !asked) return asked;
         }
     }
+    if (cutting) note_cut(leg, at);
     return {};
+}
+
+Result<void> CoprocessorCheck::bring_up_to_date(At& at) {
+    if (at.to_cut.empty()) return {};
+    for (const core::CutterSweep& sweep : at.to_cut) cut(at.stock, sweep);
+    at.to_cut.clear();
+    FEELER_TRY(const size_t tiles, hwsim::update_stock(driver_, stock_, at.stock));
+    (void)tiles;
+    return {};
+}
+
+void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
+    if (!at.tool || at.tool->parts.empty()) return;
+    const core::MovingBody flutes = moving_bodies(*setup_, *at.tool)[0];
+    const core::RelativeLeg way =
+        relative_leg(setup_->machine, setup_->stock_mount, flutes.mover, leg);
+    if (way.turns) return; // what it takes is left out: the stock is then too large
+    at.to_cut.push_back({.cutter = std::make_shared<const core::Cutter>(
+                             make_cutter(at.tool->parts[0].profile, way.error)),
+                         .from = way.places.front(),
+                         .to = way.places.back(),
+                         .orientation = way.orientation});
 }
 
 Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, BlockPermit& permit) {
@@ -201,12 +225,11 @@ void CoprocessorCheck::use_tool(const core::ToolAssembly* tool) {
 
 bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {
     if (q.body.kind != core::PartKind::flutes || q.way.turns) return false;
-    return runs_in_own_cut(at.before.stock,
-                           {.flutes = *q.body.profile,
-                            .from = q.way.places.front(),
-                            .to = q.way.places.back(),
-                            .sideways = 0.5 * contact_depth(q.allowance) - q.way.error,
-                            .orientation = q.way.orientation});
+    return runs_in_own_cut(at.stock, {.flutes = *q.body.profile,
+                                      .from = q.way.places.front(),
+                                      .to = q.way.places.back(),
+                                      .sideways = 0.5 * contact_depth(q.allowance) - q.way.error,
+                                      .orientation = q.way.orientation});
 }
 
 } // namespace app

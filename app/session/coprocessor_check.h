@@ -17,7 +17,8 @@ struct BlockPermit {
 };
 
 /// Asks a coprocessor for every motion of a program: each part of the tool and body of the machine
-/// against the stock, as it is before the block, and against each fixture. Refers to the set-up.
+/// against the stock, as it is before each leg of the motion, and against each fixture. Refers to
+/// the set-up.
 ///
 /// What the flutes cut while they feed is no question, nor is where they have been before
 /// (core::runs_in_own_cut). A motion on which something turns, a body held at an angle and a way
@@ -37,7 +38,8 @@ public:
 private:
     /// Where a block has got to.
     struct At {
-        const core::SimulatorState& before;
+        core::CutModel stock;
+        std::vector<core::CutterSweep> to_cut; // from the stock, before anything more is asked
         const core::ToolAssembly* tool = nullptr;
         core::SpindleChange spindle;
         core::RoundedCorners corners;
@@ -62,6 +64,8 @@ private:
     core::Result<void> ask_event(const core::Event& event, At& at, BlockPermit& permit);
     core::Result<void> ask_motion(const core::Motion& motion, At& at, BlockPermit& permit);
     core::Result<void> ask_rest(At& at, BlockPermit& permit);
+    core::Result<void> bring_up_to_date(At& at);
+    void note_cut(const core::Leg& leg, At& at) const;
     core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, BlockPermit& permit);
     core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
                                 BlockPermit& permit);
