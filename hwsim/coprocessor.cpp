@@ -35,6 +35,7 @@ void add(SearchSums& sum, const SearchCounts& counts) {
 
 void retire_first(CoprocessorState& s) {
     s.retired.valid = false;
+    if (!s.host.enabled) return;
     const std::optional<Answer> answer = first_answer(s);
     if (!answer) return;
     const Dispatched& first = s.permits.in_order.front();

@@ -48,7 +48,7 @@ constexpr uint32_t identification_word = 0x464C'5231; // "FLR1"
 constexpr uint32_t version_word = 1;
 
 enum ControlBit : uint32_t {
-    control_enable = 1U << 0, // searches run; without it segments wait
+    control_enable = 1U << 0, // without it segments wait, and nothing is permitted
     control_clear = 1U << 1,  // forgets the reason of a stop; the FIFO is empty from then on
     control_reset = 1U << 2,  // as after power-up, the memory but for its contents
 };

@@ -1,59 +1,16 @@
 #include <gtest/gtest.h>
 
-#include "tests/hwsim/test_device.h"
+#include "tests/hwsim/functional_answers.h"
 
 namespace hwsim {
 namespace {
 
-std::vector<Record> cloud(std::mt19937& rng, uint32_t count, int32_t reach) {
-    std::vector<Record> records;
-    for (uint32_t i = 0; i < count; ++i) records.push_back(random_record(rng, reach));
-    return records;
-}
-
-Segment random_way(std::mt19937& rng, int32_t reach) {
-    return random_segment(rng, reach, static_cast<uint8_t>(rng() % 7));
-}
-
-/// What the functional model says to a segment, the memory being as it is.
-Answer expected(const TestDevice& device, const Segment& segment) {
-    const ModelSlot& tool = device.state.slots[segment.tool_slot];
-    const ModelSlot& work = device.state.slots[segment.work_slot];
-    return search(device.state.memory.lines,
-                  {segment, tool.header, work.header, tool.epoch, work.epoch, limit_of(segment)},
-                  device.config.stack_depth);
-}
-
-/// Measures many segments on one device, and compares each answer with the functional model's.
-void expect_the_functional_answers(uint32_t seed, const DeviceConfig& config, int32_t reach) {
-    std::mt19937 rng(seed);
-    for (int round = 0; round < 20; ++round) {
-        TestDevice device(config);
-        device.set_models(cloud(rng, 1 + rng() % 60, reach), cloud(rng, rng() % 120, reach));
-        const bool measures = round % 2 == 0;
-        for (int i = 0; i < 40; ++i) {
-            const SegmentKind kind = measures ? SegmentKind::measure : SegmentKind::permit;
-            device.push_in_time(question(measures ? 1 : device.read(Register::next_seq),
-                                         random_way(rng, 2 * reach), rng() % 20, kind));
-            device.clock(rng() % 50);
-            if (device.has_status(status_stopped)) break;
-        }
-        ASSERT_TRUE(device.finish());
-        ASSERT_GT(device.retired.size(), 2U);
-        for (const Retired& r : device.retired)
-            if (r.segment.kind != SegmentKind::model) {
-                device.state.slots[0].valid = device.state.slots[1].valid = true;
-                ASSERT_EQ(r.answer, expected(device, r.segment));
-            }
-    }
-}
-
 TEST(Coprocessor, AnswersAsTheFunctionalModel) {
-    expect_the_functional_answers(1, small_config(), 100'000);
+    expect_the_functional_answers(1, small_config(), 100'000, 20);
 }
 
 TEST(Coprocessor, AnswersAsTheFunctionalModelOnALattice) {
-    expect_the_functional_answers(2, small_config(), 4);
+    expect_the_functional_answers(2, small_config(), 4, 20);
 }
 
 TEST(Coprocessor, AnswersTheSameHoweverItIsBuilt) {
@@ -65,7 +22,7 @@ TEST(Coprocessor, AnswersTheSameHoweverItIsBuilt) {
             config.cycles_per_line = latency > 1 ? 4 : 1;
             config.node_cache_lines = latency > 1 ? 1 : 64;
             config.elements = threads == 1 ? 1 : 8;
-            expect_the_functional_answers(threads + latency, config, 30);
+            expect_the_functional_answers(threads + latency, config, 30, 20);
         }
 }
 
@@ -163,6 +120,15 @@ TEST(Coprocessor, WaitsUntilItIsEnabled) {
     device.write(Register::control, control_enable);
     ASSERT_TRUE(device.finish());
     EXPECT_EQ(device.permitted(), 1U);
+    // Disabled while a segment is searched.
+    device.push(question(2, {}, 100));
+    device.clock(3);
+    device.write(Register::control, 0);
+    device.clock(5'000);
+    EXPECT_EQ(device.permitted(), 1U);
+    device.write(Register::control, control_enable);
+    ASSERT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), 2U);
 }
 
 TEST(Coprocessor, HoldsEachSegmentAgainstTheModelAsItWillBeThen) {

@@ -154,6 +154,7 @@ TEST(Driver, AsksNothingBeforeItsLinesAreWritten) {
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     core::CutModel stock = raw.uncut(1.0);
+    for (int i = 0; i < 5'000; ++i) driver.port.wait(); // no line is on its way
     const SlotNumber work = load_stock(driver, stock).value();
     const auto cutter = std::make_shared<core::Cutter>(
         core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
