@@ -262,15 +262,15 @@ struct Work {
 
 TEST(Coprocessor, GetsLinesNoFasterThanTheBandwidth) {
     Work work(11);
-    work.device.config.cycles_per_line = 20;
+    work.device.config.cycles_per_line = 60;
     const auto moved = [&] {
         return work.device.read(Counter::lines_read) + work.device.read(Counter::lines_written);
     };
     const uint64_t lines = moved(), cycle = work.device.state.cycle;
     while (work.device.retired.size() < 42) work.step();
     const uint64_t read = moved() - lines, taken = work.device.state.cycle - cycle;
-    EXPECT_LE(20 * read, taken + 20);
-    EXPECT_GT(60 * read, taken); // it was short of lines a third of the time
+    EXPECT_LE(60 * read, taken + 60);
+    EXPECT_GT(90 * read, taken); // it was short of lines most of the time
 }
 
 TEST(Coprocessor, TakesTheSameCyclesEveryTime) {

@@ -161,6 +161,7 @@ TEST(Driver, AsksNothingBeforeItsLinesAreWritten) {
     for (uint32_t i = 1; i < 20; ++i) {
         EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), i);
         core::cut(stock, {cutter, {1.0 * i, 0, -4}, {1.0 * i, 9, -4}});
+        for (int n = 0; n < 50'000 && i % 2 == 0; ++n) driver.port.wait();
         EXPECT_TRUE(update_stock(driver, work, stock));
     }
     const DeviceReport now = wait_for_all(driver);
