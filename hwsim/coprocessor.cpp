@@ -67,7 +67,8 @@ bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry
     return false;
 }
 
-/// The first entry of the FIFO leaves it: a model for its slot, once all lines are written, or a
+/// The first entry of the FIFO leaves it: a model for its slot, once all lines that came before it
+/// are written, or a
 /// segment for a thread.
 void dispatch(CoprocessorState& s) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
@@ -76,7 +77,7 @@ void dispatch(CoprocessorState& s) {
     const Segment& segment = first.segment;
     Dispatched entry{.segment = segment, .pushed = first.pushed};
     if (segment.kind == SegmentKind::model) {
-        if (!is_written(s.memory)) return;
+        if (s.memory.writes_done < first.lines) return;
         take_model(s, segment);
     } else {
         entry.fault = fault_of_models(s, segment);

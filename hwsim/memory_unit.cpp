@@ -12,12 +12,13 @@ void answer_read(MemoryUnit& unit, uint64_t cycle) {
     ++unit.reads_done;
 }
 
-/// Reads go first unless the queue of writes is full.
+/// Reads go first; while the queue of writes is full they go in turn.
 void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
     unit.has_written = false;
     if (unit.free_at > cycle) return;
     const bool can_read = !unit.asked.empty() && !unit.under_way.full();
-    if (!unit.writes.empty() && (!can_read || unit.writes.full())) {
+    if (!unit.writes.empty() && (!can_read || (unit.writes.full() && !unit.write_was_last))) {
+        unit.write_was_last = true;
         const MemoryUnit::Write& write = unit.writes.front();
         unit.lines[write.address] = write.line;
         unit.has_written = true;
@@ -26,6 +27,7 @@ void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
         ++unit.writes_done;
         unit.free_at = cycle + config.cycles_per_line;
     } else if (can_read) {
+        unit.write_was_last = false;
         unit.under_way.push({unit.asked.front().request, cycle + config.memory_latency});
         unit.asked.pop();
         unit.free_at = cycle + config.cycles_per_line;

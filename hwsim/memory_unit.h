@@ -24,7 +24,8 @@ struct ReadResponse {
 };
 
 /// The memory and its port: reads in order, each after the latency, lines no faster than the
-/// bandwidth; lines written by DMA go between them.
+/// bandwidth; lines written by DMA go between them: when no read waits, or in turn with reads while
+/// their queue is full.
 struct MemoryUnit {
     struct Pending {
         ReadRequest request;
@@ -40,8 +41,9 @@ struct MemoryUnit {
     std::vector<Line> lines;
     Ring<Pending> asked, under_way;
     Ring<Write> writes;
-    uint64_t free_at = 0; // the port
-    bool stalled = false; // answers nothing: a fault to be injected
+    uint64_t free_at = 0;        // the port
+    bool write_was_last = false; // so a read goes first
+    bool stalled = false;        // answers nothing: a fault to be injected
 
     ReadResponse response;    // output
     bool has_written = false; // output: so caches forget the line
@@ -56,8 +58,10 @@ MemoryUnit memory_unit(const DeviceConfig& config);
 /// Whether a request can be taken in.
 inline bool accepts(const MemoryUnit& unit) { return !unit.asked.full(); }
 
-/// No line waits to be written, and caches know of those that were.
-inline bool is_written(const MemoryUnit& unit) { return unit.writes.empty() && !unit.has_written; }
+/// How many lines it has been given to write, from reset on.
+inline uint64_t lines_given(const MemoryUnit& unit) {
+    return unit.writes_done + unit.writes.size();
+}
 
 /// One rising clock edge.
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);

@@ -164,7 +164,7 @@ void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t val
 /// A push that is refused stops the device; one into a stopped device does nothing.
 void write_push(CoprocessorState& s) {
     if (s.permits.stopped != Stop::none) return;
-    const Stop fault = push(s.fifo, s.host.segment, s.cycle);
+    const Stop fault = push(s.fifo, s.host.segment, s.cycle, lines_given(s.memory));
     if (fault != Stop::none) halt(s, fault, segment_in(s.host.segment).segment.sequence);
 }
 

@@ -2,12 +2,12 @@
 
 namespace hwsim {
 
-Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle) {
+Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t lines) {
     const DecodedSegment decoded = segment_in(words);
     if (decoded.fault != Stop::none) return decoded.fault;
     if (fifo.entries.full()) return Stop::fifo_overrun;
     if (decoded.segment.sequence != fifo.next_sequence) return Stop::sequence;
-    fifo.entries.push({decoded.segment, cycle});
+    fifo.entries.push({decoded.segment, cycle, lines});
     if (decoded.segment.last) ++fifo.next_sequence;
     return Stop::none;
 }

@@ -10,6 +10,7 @@ struct SegmentFifo {
     struct Entry {
         Segment segment;
         uint64_t pushed = 0; // cycle
+        uint64_t lines = 0;  // that the memory had been given by then
         bool operator==(const Entry&) const = default;
     };
     Ring<Entry> entries;
@@ -19,6 +20,6 @@ struct SegmentFifo {
 };
 
 /// Takes a segment in, or says why not; then nothing has changed.
-Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle);
+Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t lines);
 
 } // namespace hwsim

@@ -273,6 +273,19 @@ TEST(Coprocessor, GetsLinesNoFasterThanTheBandwidth) {
     EXPECT_GT(90 * read, taken); // it was short of lines most of the time
 }
 
+TEST(Coprocessor, SearchesWhileTheHostWritesWithoutAPause) {
+    TestDevice device;
+    std::mt19937 rng(12);
+    device.set_models(cloud(rng, 20, 1'000), cloud(rng, 20, 1'000));
+    device.push(question(1, {}, 0, SegmentKind::measure));
+    for (int i = 0; i < 5'000; ++i) {
+        while (store(device.state, 4'000, Line{})) {
+        }
+        device.clock();
+    }
+    EXPECT_EQ(device.retired.size(), 3U);
+}
+
 TEST(Coprocessor, TakesTheSameCyclesEveryTime) {
     Work a(5), b(5);
     while (a.device.retired.size() < 42) {

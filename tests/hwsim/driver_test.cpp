@@ -153,20 +153,25 @@ TEST(Driver, AsksNothingBeforeItsLinesAreWritten) {
     device.bus_cycles = 1;
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
+    const auto wait_until_written = [&] {
+        for (int i = 0; i < 5'000; ++i) driver.port.wait();
+        ASSERT_TRUE(device.state.memory.writes.empty());
+    };
     core::CutModel stock = raw.uncut(1.0);
-    for (int i = 0; i < 5'000; ++i) driver.port.wait(); // no line is on its way
+    wait_until_written();
     const SlotNumber work = load_stock(driver, stock).value();
     const auto cutter = std::make_shared<core::Cutter>(
         core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
     for (uint32_t i = 1; i < 20; ++i) {
+        EXPECT_FALSE(device.state.memory.writes.empty());
         EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), i);
+        const DeviceReport now = wait_for_all(driver);
+        ASSERT_EQ(now.stop, Stop::none);
+        ASSERT_EQ(now.permitted, i);
+        wait_until_written();
         core::cut(stock, {cutter, {1.0 * i, 0, -4}, {1.0 * i, 9, -4}});
-        for (int n = 0; n < 50'000 && i % 2 == 0; ++n) driver.port.wait();
         EXPECT_TRUE(update_stock(driver, work, stock));
     }
-    const DeviceReport now = wait_for_all(driver);
-    EXPECT_EQ(now.stop, Stop::none);
-    EXPECT_EQ(now.permitted, 19U);
 }
 
 TEST(Driver, PermitsASegmentWhenAllOfItsPairsAreKeptApart) {

@@ -51,6 +51,7 @@ void expect_recovers(TestDevice& device) {
     device.write(Register::control, control_clear | control_enable);
     EXPECT_EQ(device.reason(), Stop::none);
     EXPECT_FALSE(device.has_status(status_stopped));
+    for (const ModelSlot& slot : device.state.slots) EXPECT_FALSE(slot.valid);
     device.clock(3'000);
     EXPECT_EQ(device.permitted(), permitted);
     EXPECT_EQ(device.read(Register::next_seq), permitted + 1);
