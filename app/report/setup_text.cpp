@@ -4,6 +4,7 @@
 
 #include "app/report/text_layout.h"
 #include "app/setup/setup_tables.h"
+#include "app/setup/utf8_text.h"
 
 namespace app {
 namespace {
@@ -14,8 +15,10 @@ constexpr const char* offset_keys[] = {"G54", "G55",       "G56",       "G57",  
 /// Lines of a comment; what a program says must not end it.
 std::string comment(const std::string& text) {
     std::string lines;
-    for (const char c : wrapped(text, 1, 2))
-        lines += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+    for (const char c : wrapped(utf8_text(text), 1, 2)) {
+        const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+        lines += is_control && c != '\n' ? ' ' : c;
+    }
     std::string commented;
     for (size_t at = 0; at < lines.size();) {
         const size_t end = std::min(lines.find('\n', at), lines.size());

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/utf8_text.h"
+
 namespace app {
 namespace {
 
@@ -48,9 +50,13 @@ std::string toml_number(double value) { return fmt::format("{}", value); }
 
 std::string toml_text(std::string_view text) {
     std::string safe;
-    for (const char c : text) {
+    for (const char c : utf8_text(text)) {
+        const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
         if (c == '"' || c == '\\') safe += '\\';
-        safe += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+        if (is_control)
+            safe += fmt::format("\\u{:04x}", c);
+        else
+            safe += c;
     }
     return "\"" + safe + "\"";
 }

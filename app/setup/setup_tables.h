@@ -11,7 +11,7 @@ namespace app {
 /// A number as TOML has it, to the last bit; whole ones stay whole.
 std::string toml_number(double value);
 
-/// A text as TOML has it; control characters become blanks.
+/// A text as TOML has it: read again it is the same, or utf8_text of it.
 std::string toml_text(std::string_view text);
 
 /// A `[[tool]]` that is read as this tool, every number to its last bit.

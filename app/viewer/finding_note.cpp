@@ -6,6 +6,7 @@
 #include <toml++/toml.h>
 
 #include "app/setup/setup_tables.h"
+#include "app/setup/utf8_text.h"
 
 namespace app::viewer {
 namespace {
@@ -19,11 +20,12 @@ auto find_note(NoteList& notes, const std::string& program, const FindingGroup& 
     const auto distance = [&](const FindingNote& note) {
         return note.line > first.line ? note.line - first.line : first.line - note.line;
     };
+    const std::string code = utf8_text(first.text), file = utf8_text(first.file); // as kept
     auto found = notes.end();
     for (auto note = notes.begin(); note != notes.end(); ++note) {
         const bool is_same = note->program == program && note->rule == group.rule
-                             && note->pair == group.pair && note->file == first.file
-                             && note->code == first.text;
+                             && note->pair == group.pair && note->file == file
+                             && note->code == code;
         if (is_same && (found == notes.end() || distance(*note) < distance(*found))) found = note;
     }
     return found;
@@ -54,8 +56,8 @@ void write_note(Notes& notes, const std::string& program, const FindingGroup& gr
     const auto found = find_note(notes, program, group, first);
     if (found != notes.end() && found->line == first.line) notes.erase(found);
     if (!text.empty())
-        notes.push_back(
-            {program, group.rule, group.pair, first.file, first.line, first.text, text});
+        notes.push_back({program, group.rule, group.pair, utf8_text(first.file), first.line,
+                         utf8_text(first.text), text});
 }
 
 Notes notes_in(const std::string& text) {

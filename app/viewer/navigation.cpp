@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/setup/utf8_text.h"
 #include "gcode/program_text.h"
 
 namespace app::viewer {
@@ -152,7 +153,7 @@ std::string notes_key(const ViewModel& model) {
     if (!model.program) return {};
     std::error_code failure; // where there is no folder to begin from the path stays as it is
     const auto path = std::filesystem::absolute(model.program->program, failure);
-    return failure ? model.program->program : path.lexically_normal().string();
+    return utf8_text(failure ? model.program->program : path.lexically_normal().string());
 }
 
 std::string note_at(const ViewModel& model, const StretchPlace& place) {

@@ -336,6 +336,14 @@ TEST(SavedSetup, OfAnInferredOneSaysWhatIsInferredAndWhatIsStated) {
     expect_saved_as_it_is(own.job, own.folder / "s.toml");
 }
 
+TEST(SavedSetup, IsUtf8WhateverTheProgramIsCalled) {
+    const test_support::ScopedFolder folder;
+    CheckJob job;
+    job.program = folder.write("fr\xE4s.nc", pocket);
+    expect_saved_as_it_is(job, folder / "s.toml");
+    EXPECT_THAT(bytes_of(folder / "s.toml"), HasSubstr("fr\xC3\xA4s.nc"));
+}
+
 TEST(SavedSetup, NeverReplacesAFileUnasked) {
     OwnProgram own;
     const std::string path = own.folder.write("s.toml", "mine\n");

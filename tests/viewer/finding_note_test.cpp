@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/commands/output.h"
+#include "app/viewer/navigation.h"
 #include "app/viewer/window_files.h"
 #include "tests/support/scoped_folder.h"
 
@@ -52,6 +53,24 @@ TEST(FindingNotes, ComeBackFromTheirFileAsTheyWere) {
     EXPECT_TRUE(notes_in("[[note]\nnonsense").empty());
     EXPECT_TRUE(notes_in("note = 5\n[x]\n").empty());
     EXPECT_TRUE(notes_in("[[note]]\nprogram = 5\ntext = \"a\"\n").empty());
+}
+
+/// Programs come in code pages of Windows, and with tabs.
+TEST(FindingNotes, OnALineOfAnyCodePageAreKnownAgainFromTheirFile) {
+    std::vector<FindingNote> notes;
+    const BlockRow umlaut = row_in(7, "G1 X5 (Tasche f\xFCr Fr\xC4SER)"), tab = row_in(8, "G1\tX6");
+    ViewModel model;
+    OpenedProgram opened;
+    opened.program = "/fr\xE4s.nc";
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    write_note(notes, "/b.nc", group_of("collision"), row_in(1, "G0"), "of another program");
+    write_note(notes, notes_key(model), group_of("collision"), umlaut, "raise\nit");
+    write_note(notes, notes_key(model), group_of("collision"), tab, "turn it");
+    const auto read = notes_in(text_of(notes));
+    EXPECT_EQ(read, notes);
+    EXPECT_EQ(note_on(read, notes_key(model), group_of("collision"), umlaut), "raise\nit");
+    EXPECT_EQ(note_on(read, notes_key(model), group_of("collision"), tab), "turn it");
+    EXPECT_EQ(note_on(read, "/b.nc", group_of("collision"), row_in(1, "G0")), "of another program");
 }
 
 TEST(FindingNotes, OfOtherProgramsStay) {
