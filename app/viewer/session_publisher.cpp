@@ -6,6 +6,7 @@
 #include "core/sim/timing.h"
 
 namespace app::viewer {
+
 void SessionPublisher::begin(std::vector<render::PathPoint> points, size_t rows) {
     *this = {};
     rows_ = rows;
@@ -28,16 +29,17 @@ void SessionPublisher::begin_again(size_t block, const std::vector<render::PathP
 
 size_t SessionPublisher::first_changed(const CheckRun& run) const {
     // A time is settled when `look_ahead` motions have come after it, at the latest at the end.
-    size_t known = durations_.size();
-    const size_t limit = is_whole_ ? known : known - std::min(known, 2 * core::look_ahead);
-    size_t first = known;
-    for (; known > limit; --known)
-        if (durations_[known - 1] != run.blocks[known - 1].result.duration) first = known - 1;
+    size_t first = durations_.size(), motions_after = 0;
+    if (is_whole_) return first;
+    for (size_t i = first; i-- > 0 && motions_after <= core::look_ahead;) {
+        const core::BlockResult& result = run.blocks[i].result;
+        if (durations_[i] != result.duration) first = i;
+        if (result.motion != core::BlockMotion::none) ++motions_after;
+    }
     return first;
 }
 
-void SessionPublisher::add_rows(const DebugSession& session, const core::Setup& setup,
-                                SessionUpdate& news) {
+void SessionPublisher::add_rows(const DebugSession& session, SessionUpdate& news) {
     const CheckRun& run = session.record();
     if (durations_.size() > run.blocks.size()) durations_.resize(run.blocks.size());
     RowsUpdate update;
@@ -45,7 +47,7 @@ void SessionPublisher::add_rows(const DebugSession& session, const core::Setup& 
     durations_.resize(update.first);
     states_.resize(std::min(states_.size(), update.first));
     for (size_t i = update.first; i < run.blocks.size(); ++i) {
-        update.rows.push_back(row_of(setup, run.blocks[i]));
+        update.rows.push_back(row_of(session.setup_at(i), run.blocks[i]));
         durations_.push_back(run.blocks[i].result.duration);
         states_.push_back(state_of(update.rows.back()));
     }
@@ -80,9 +82,8 @@ void SessionPublisher::paint_path(const DebugSession& session, SessionUpdate& ne
     path_cost_ = last_path_ - now;
 }
 
-void SessionPublisher::publish(const DebugSession& session, const core::Setup& setup,
-                               SessionUpdate& news) {
-    add_rows(session, setup, news);
+void SessionPublisher::publish(const DebugSession& session, SessionUpdate& news) {
+    add_rows(session, news);
     const CheckRun& run = session.record();
     if (run.findings.size() != findings_ || (session.is_recorded() && !is_whole_)) {
         news.findings = run.findings;

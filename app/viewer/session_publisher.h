@@ -16,14 +16,14 @@ public:
     void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
 
     /// What the record has gained since the last call.
-    void publish(const DebugSession& session, const core::Setup& setup, SessionUpdate& news);
+    void publish(const DebugSession& session, SessionUpdate& news);
 
     size_t row_count() const { return rows_; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    void add_rows(const DebugSession& session, const core::Setup& setup, SessionUpdate& news);
+    void add_rows(const DebugSession& session, SessionUpdate& news);
     /// The states of the blocks that were checked.
     std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
     void paint_path(const DebugSession& session, SessionUpdate& news);

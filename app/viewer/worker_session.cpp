@@ -119,7 +119,7 @@ void WorkerSession::publish_if_due() {
     const Clock::time_point now = Clock::now();
     if (!session_->is_recorded() && now - last_publish_ < publish_interval) return;
     last_publish_ = now;
-    publisher_.publish(*session_, session_->setup_at(session_->record().blocks.size()), news_);
+    publisher_.publish(*session_, news_);
 }
 
 bool WorkerSession::can_show(const ShowRequest& request) const {
@@ -209,7 +209,7 @@ void WorkerSession::walk(Walk walk, size_t block) {
     news_.walk = WalkEnd{session_->at(), stop};
     news_.breakpoints = breakpoints_ = session_->breakpoints();
     news_.has_news = true;
-    publisher_.publish(*session_, session_->setup_at(session_->record().blocks.size()), news_);
+    publisher_.publish(*session_, news_);
 }
 
 void WorkerSession::set_breakpoints(const std::vector<Breakpoint>& breakpoints) {
@@ -260,7 +260,7 @@ void WorkerSession::follow_anew() {
     const size_t count = block + track.rows.size();
     publisher_.begin_again(block, track.points, count);
     news_.rows.append({block, std::move(track.rows), count});
-    publisher_.publish(*session_, session_->setup_at(block), news_);
+    publisher_.publish(*session_, news_);
     std::vector<std::string> changes;
     for (const MadeChange& change : session_->changes()) changes.push_back(text_of(change.change));
     news_.changes = std::move(changes);

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "app/viewer/session_publisher.h"
+#include "app/viewer/view_model.h"
+#include "tests/support/scoped_folder.h"
+
+namespace {
+
+using namespace app::viewer;
+
+/// A session on a program of its own, and what a window is told of it.
+struct Published {
+    test_support::ScopedFolder folder;
+    std::unique_ptr<app::DebugSession> session;
+    SessionPublisher publisher;
+    ViewModel model;
+
+    explicit Published(const std::string& text) {
+        app::CheckJob job;
+        job.program = folder.write("p.nc", text);
+        auto opened = app::DebugSession::open(job);
+        EXPECT_TRUE(opened) << opened.error().message;
+        if (opened) session = *std::move(opened);
+        publisher.begin({}, 0);
+    }
+    void publish() {
+        SessionUpdate news;
+        publisher.publish(*session, news);
+        take_in(model, std::move(news), 0.0);
+    }
+    void record_all() {
+        while (session->record_for(1.0)) {
+        }
+        publish();
+    }
+    /// That every row is the one of the record.
+    void expect_rows_of_the_record() const {
+        const auto& blocks = session->record().blocks;
+        ASSERT_EQ(model.rows.size(), blocks.size());
+        for (size_t i = 0; i < blocks.size(); ++i) {
+            const BlockRow row = row_of(session->setup_at(i), blocks[i]);
+            ASSERT_EQ(model.rows[i].duration, row.duration) << i;
+            ASSERT_EQ(model.rows[i].time, row.time) << i;
+            ASSERT_EQ(model.rows[i].lower, row.lower) << i;
+            ASSERT_EQ(model.rows[i].verdict, row.verdict) << i;
+        }
+    }
+};
+
+const std::string opening = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X0 Y0 Z50\nG0 Z2\n";
+
+/// A motion's time is known when many more have come, however many blocks stand between them.
+TEST(SessionPublisher, TellsOfTimesThatAreSettledLate) {
+    std::string text = opening + "G1 Z-1 F600\n";
+    for (int i = 0; i < 600; ++i) {
+        text += i % 2 == 0 ? "X10\n" : "X0\n";
+        for (int j = 0; j < 4; ++j) text += "(nothing)\nM9\n";
+    }
+    Published program(text + "G0 Z50\nM30\n");
+    for (size_t block = 100; program.session->knows(block); block += 100) program.publish();
+    program.record_all();
+    ASSERT_GT(program.model.rows.size(), 2500U);
+    program.expect_rows_of_the_record();
+}
+
+/// What was searched for within 20 mm is not known to be 80 mm away.
+TEST(SessionPublisher, ClaimsNoMoreThanWasLookedForWhenABlockWasRun) {
+    Published program(opening + "G0 Z90\nG0 X5\nG0 X0\nG1 Z-1 F200\nX20\nG0 Z90\nG0 X5\nM30\n");
+    ASSERT_TRUE(program.session->go_to(9));
+    const double looked_for = program.session->setup_at(0).search_limit;
+    ASSERT_TRUE(program.session->change(app::OtherAllowance{80.0}));
+    program.record_all();
+    EXPECT_EQ(program.model.rows.at(7).lower, looked_for);
+    EXPECT_EQ(program.model.rows.at(12).lower, 81.0);
+    program.expect_rows_of_the_record();
+}
+
+} // namespace
