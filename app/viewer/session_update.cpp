@@ -1,11 +1,15 @@
 #include "app/viewer/session_update.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace app::viewer {
 
 void RowsUpdate::append(RowsUpdate later) {
-    if (later.count) count = later.count;
+    if (later.count)
+        count = later.count;
+    else if (count)
+        count = std::max(*count, later.first + later.rows.size());
     if (later.rows.empty()) return;
     if (rows.empty() || later.first <= first) {
         // What came before and reaches beyond stays true.
@@ -43,6 +47,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.place, later.place);
     take(news.walk, later.walk);
     take(news.breakpoints, later.breakpoints);
+    if (later.changes) news.stopped.reset(); // it goes another way
     take(news.changes, later.changes);
     take(news.failure, later.failure);
     take(news.refusal, later.refusal);

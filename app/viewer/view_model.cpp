@@ -155,7 +155,10 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (news.path) model.path = news.path;
     if (news.place) model.place = news.place;
     if (news.breakpoints) model.breakpoints = *std::move(news.breakpoints);
-    if (news.changes) model.changes = *std::move(news.changes);
+    if (news.changes) {
+        model.changes = *std::move(news.changes);
+        model.stopped.reset(); // it goes another way
+    }
     if (news.failure) model.failure = news.failure;
     if (news.stopped) model.stopped = news.stopped;
     model.share = news.share;

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/session_update.h"
+#include "app/viewer/view_model.h"
 
 namespace {
 
-using app::viewer::BlockRow;
-using app::viewer::RowsUpdate;
+using namespace app::viewer;
 
 RowsUpdate update_of(size_t first, size_t count, uint32_t line) {
     RowsUpdate update;
@@ -47,6 +46,47 @@ TEST(RowsUpdate, TwoTogetherDoWhatTheyDoOneAfterTheOther) {
     }
     EXPECT_GT(overlapping, 500);
     EXPECT_GT(apart, 100);
+}
+
+TEST(RowsUpdate, ACountIsOfTheRowsThatWereKnownThen) {
+    RowsUpdate both = update_of(5, 10, 1);
+    both.count = 15;
+    both.append(update_of(15, 1, 2)); // a block more, of an alarm
+    std::vector<uint32_t> lines(40);
+    put(both, lines);
+    ASSERT_EQ(lines.size(), 16U);
+    EXPECT_EQ(lines.back(), 2U);
+
+    RowsUpdate shorter;
+    shorter.count = 12;
+    both.append(shorter);
+    put(both, lines);
+    EXPECT_EQ(lines.size(), 12U);
+}
+
+TEST(SessionUpdate, AProgramThatGoesAnotherWayIsNotStopped) {
+    const auto stopped = [] {
+        SessionUpdate news;
+        news.stopped = core::Error{core::ErrorCode::syntax, {}, "too short"};
+        news.has_news = true;
+        return news;
+    };
+    SessionUpdate changed;
+    changed.changes = {"T1 is 95 mm long"};
+    changed.has_news = true;
+
+    ViewModel model;
+    take_in(model, stopped(), 0.0);
+    EXPECT_TRUE(model.stopped);
+    take_in(model, changed, 0.0);
+    EXPECT_FALSE(model.stopped);
+
+    SessionUpdate together = stopped();
+    merge(together, changed);
+    EXPECT_FALSE(together.stopped);
+    merge(together, stopped());
+    take_in(model, together, 0.0);
+    EXPECT_TRUE(model.stopped) << "it is stopped again";
 }
 
 } // namespace
