@@ -28,8 +28,8 @@ constexpr PromptCommand commands[] = {
     {"goto", "jump", "PLACE", "go to a place, forwards or back: block 17, line 120, N210, start, end", go_to, false},
     {"run", "r", "", "run from the beginning to the first breakpoint", run_program, false},
     {"start", "", "", "go to the beginning", start_program, false},
-    {"next-finding", "nf", "", "run to the next block with an error", go_to_finding, true},
-    {"previous-finding", "pf", "", "go back to the block with an error before", go_back_to_finding, true},
+    {"next-finding", "nf", "", "run to the next block with an error, or not proven to be clear", go_to_finding, true},
+    {"previous-finding", "pf", "", "go back to the block before that has one, or is not proven to be clear", go_back_to_finding, true},
     {"next-tool", "nt", "", "run to the next change of tool", go_to_tool, true},
     {"previous-tool", "pt", "", "go back to the change of tool before", go_back_to_tool, true},
     {"break", "b", "[PLACE] [if CONDITION]", "stop before a block\n"

@@ -121,12 +121,12 @@ Stop DebugSession::until(const Condition& condition) {
 
 Stop DebugSession::next_finding() {
     SessionWalk walk(*this);
-    return walk.forwards({[&](size_t block, auto) { return walk.has_error(block); }});
+    return walk.forwards({[&](size_t block, auto) { return walk.offends(block); }});
 }
 
 Stop DebugSession::previous_finding() {
     SessionWalk walk(*this);
-    return walk.backwards({[&](size_t block, auto) { return walk.has_error(block); }});
+    return walk.backwards({[&](size_t block, auto) { return walk.offends(block); }});
 }
 
 Stop DebugSession::next_tool() {

@@ -104,7 +104,8 @@ public:
     Stop go_on_back();
     /// To the next block of which a question is true; breakpoints and watches stop it, too.
     Stop until(const Condition& condition);
-    /// To the next or previous block with a finding of severity error.
+    /// To the next or previous block with a finding of severity error, or of which it is not proven
+    /// that it keeps its allowances.
     Stop next_finding();
     Stop previous_finding();
     /// To the next or previous block that changes the tool.

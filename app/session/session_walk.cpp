@@ -43,9 +43,10 @@ const SessionWalk::Findings* SessionWalk::findings_of(size_t block) {
     return found == findings_.end() ? nullptr : &found->second;
 }
 
-bool SessionWalk::has_error(size_t block) {
+bool SessionWalk::offends(size_t block) {
     const Findings* findings = findings_of(block);
-    return findings && findings->has_error;
+    return (findings && findings->has_error)
+           || session_.record().blocks[block].result.verdict != core::Verdict::clear;
 }
 
 bool SessionWalk::asks_control(const Goal& goal) const {

@@ -25,8 +25,9 @@ public:
     Stop forwards(const Goal& goal);
     Stop backwards(const Goal& goal);
 
-    /// Whether a finding of severity error is about a block.
-    bool has_error(size_t block);
+    /// Whether a finding of severity error is about a block, or it is not proven to keep its
+    /// allowances.
+    bool offends(size_t block);
     bool changes_tool(size_t block) const;
     /// How many subprograms deep a block is; 0 for one that is not known.
     size_t depth(size_t block) const;

@@ -73,6 +73,30 @@ TEST_F(Walking, FindsTheFirstOffenceFromBothSides) {
     EXPECT_EQ(first, offence);
 }
 
+/// Where the machine stands at first is not known: a warning, but the block is not proven clear.
+TEST(WalkingToAnOffence, StopsAtWhatIsNotDecidedAsWell) {
+    const ProgramFiles files("lost.ngc",
+                             "G21 G90 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X10 Y10\nG0 Z5\n"
+                             "G1 Z-1 F200\nG1 X30\nG0 Z20\nM2\n",
+                             walked_setup().program("dialect = \"linuxcnc\""));
+    const auto opened = app::DebugSession::open(files.job());
+    ASSERT_TRUE(opened);
+    app::DebugSession& session = **opened;
+    std::vector<size_t> before, after, back;
+    const auto is_found = [](const app::Stop& stop) {
+        return stop.reason == app::StopReason::found;
+    };
+    while (is_found(session.next_finding())) before.push_back(session.at());
+    ASSERT_TRUE(session.is_recorded());
+    const auto& blocks = session.record().blocks;
+    ASSERT_FALSE(before.empty());
+    EXPECT_EQ(blocks[before[0]].result.verdict, core::Verdict::undecided);
+    while (is_found(session.previous_finding())) back.insert(back.begin(), session.at());
+    while (is_found(session.next_finding())) after.push_back(session.at());
+    EXPECT_EQ(back, before);
+    EXPECT_EQ(after, before);
+}
+
 TEST_F(Walking, StopsAtARuleAToolAndACondition) {
     app::Breakpoint tool;
     tool.tool = core::ToolNumber{2};
