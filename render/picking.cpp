@@ -48,10 +48,12 @@ bool is_of_tool(BodyRole role) {
            || role == BodyRole::nose;
 }
 
-/// The nearest hit of a mesh before `limit`.
+enum class Side : uint8_t { front, back };
+
+/// The nearest hit of one side of a mesh's triangles before `limit`.
 std::optional<SurfaceHit> hit_before(const TriangleMesh& mesh, const Ray& ray,
                                      const std::optional<SectionPlane>& section, double limit,
-                                     size_t& triangle) {
+                                     size_t& triangle, Side side = Side::front) {
     if (!meets(mesh.bounds, ray, limit)) return std::nullopt;
     std::optional<SurfaceHit> best;
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -63,7 +65,8 @@ std::optional<SurfaceHit> hit_before(const TriangleMesh& mesh, const Ray& ray,
         const TriangleMesh::Corners& corners = mesh.triangles[t];
         const Vec3 a(mesh.vertices[corners[0]].place), b(mesh.vertices[corners[1]].place),
             c(mesh.vertices[corners[2]].place);
-        const double along = distance_along(ray, a, b, c);
+        const double along =
+            side == Side::front ? distance_along(ray, a, b, c) : distance_along(ray, a, c, b);
         if (!(along < limit)) continue;
         const Vec3 point = ray.origin + along * ray.direction;
         if (!is_kept(section, point)) continue;
@@ -72,6 +75,26 @@ std::optional<SurfaceHit> hit_before(const TriangleMesh& mesh, const Ray& ray,
         best = {along, point, glm::normalize(glm::cross(b - a, c - a))};
     }
     return best;
+}
+
+/// Where a ray comes through the plane of a section from the side that is cut away.
+std::optional<SurfaceHit> plane_hit(const SectionPlane& section, const Ray& ray) {
+    const double towards = -glm::dot(section.normal, ray.direction);
+    const double above = glm::dot(section.normal, ray.origin) - section.offset;
+    if (!(towards > 0.0) || above < 0.0) return std::nullopt;
+    const double along = above / towards;
+    return SurfaceHit{along, ray.origin + along * ray.direction, section.normal};
+}
+
+/// The face that a section makes where a ray leaves a mesh before it has entered it: it was within
+/// when it came through the plane.
+std::optional<SurfaceHit> cap_before(const TriangleMesh& mesh, const Ray& ray,
+                                     const std::optional<SectionPlane>& section, double limit) {
+    if (!section) return std::nullopt;
+    const auto cap = plane_hit(*section, ray);
+    size_t ignored = 0;
+    const bool is_within = cap && hit_before(mesh, ray, section, limit, ignored, Side::back);
+    return is_within ? cap : std::nullopt;
 }
 
 /// The box as the picture shows it; everything when a part of it is behind the eye.
@@ -191,6 +214,10 @@ std::optional<StockHit> pick_stock(const Scene& scene, const Ray& ray) {
         const uint32_t block = brick->blocks[triangle / 2];
         best = StockHit{*hit, block == StockBrick::raw ? std::nullopt : std::optional(block)};
     }
+    const double limit = best ? best->at.distance : core::infinity;
+    for (const auto& brick : scene.stock)
+        if (const auto cap = cap_before(brick->mesh, ray, scene.section, limit))
+            return StockHit{*cap, std::nullopt};
     return best;
 }
 
@@ -206,10 +233,15 @@ std::optional<BodyHit> pick_body(const Scene& scene, const Ray& ray, bool throug
             section = {back.rotation * scene.section->normal,
                        scene.section->offset
                            - glm::dot(scene.section->normal, body.stock_from_body.translation)};
+        const double limit = best ? best->at.distance : core::infinity;
         size_t triangle = 0;
-        auto hit = hit_before(*body.mesh, own, section, best ? best->at.distance : core::infinity,
-                              triangle);
-        if (!hit) continue;
+        // A section's face lies before whatever the ray meets within, be that too far away or not.
+        auto hit = hit_before(*body.mesh, own, section, section ? core::infinity : limit, triangle);
+        if (body.mesh->closed)
+            if (const auto cap =
+                    cap_before(*body.mesh, own, section, hit ? hit->distance : core::infinity))
+                hit = cap;
+        if (!hit || hit->distance >= limit) continue;
         hit->point = body.stock_from_body * hit->point;
         hit->normal = body.stock_from_body.rotation * hit->normal;
         best = BodyHit{*hit, i};

@@ -16,7 +16,7 @@ struct SurfaceHit {
 
 struct StockHit {
     SurfaceHit at;
-    std::optional<uint32_t> block; // that cut there; empty: raw stock
+    std::optional<uint32_t> block; // that cut there; empty: raw stock, or the face of a section
 };
 
 struct BodyHit {

@@ -148,10 +148,42 @@ TEST(Pick, DoesNotSeeWhatASectionTookAway) {
     Scene scene = sample();
     scene.section = SectionPlane{{0, 0, 1}, -20.0};
     const Camera camera = above();
+    scene.stock_visible = false;
     const Pick found = pick(scene, camera, window, seen(camera, {40, 25, -30}));
-    EXPECT_FALSE(found.stock); // its bottom faces away
+    EXPECT_FALSE(found.stock);
     ASSERT_TRUE(found.body);
-    EXPECT_LT(found.surface()->point.z, -30.0);
+    EXPECT_LT(found.surface()->point.z, -30.0) << scene.bodies[found.body->body].name;
+}
+
+/// What lies behind the face of a section cannot be seen, so it is not what was pointed at.
+TEST(Pick, MeetsTheFaceThatASectionMakes) {
+    Scene scene = sample();
+    scene.section = SectionPlane{{0, 0, 1}, -20.0};
+    const Camera camera = above();
+    const Pick found = pick(scene, camera, window, seen(camera, {40, 25, -20}));
+    ASSERT_TRUE(found.stock);
+    EXPECT_FALSE(found.body);
+    EXPECT_FALSE(found.stock->block) << "no block has cut within the material";
+    EXPECT_NEAR(found.stock->at.point.z, -20.0, 1e-9);
+    scene.section->normal = {0, 0, -1}; // the lower part is cut away, and the eye is above
+    scene.section->offset = 20.0;
+    const Pick top = pick(scene, camera, window, seen(camera, {40, 25, 0}));
+    ASSERT_TRUE(top.stock);
+    EXPECT_NEAR(top.stock->at.point.z, 0.0, 1e-4);
+}
+
+TEST(PickBody, MeetsTheFaceThatASectionMakes) {
+    Scene scene;
+    scene.bodies = {{.name = "box",
+                     .mesh = std::make_shared<const TriangleMesh>(
+                         mesh_of(core::Primitive(core::Box{{10, 10, 10}}))),
+                     .stock_from_body = {core::rotation_xyz_deg({0, 0, 90}), {100, 0, 50}}}};
+    scene.section = SectionPlane{{0, 0, 1}, 52.0};
+    const auto hit = pick_body(scene, {{101, 1, 90}, {0, 0, -1}});
+    ASSERT_TRUE(hit);
+    EXPECT_LT(glm::distance(hit->at.point, Vec3(101, 1, 52)), 1e-9);
+    EXPECT_LT(glm::distance(hit->at.normal, Vec3(0, 0, 1)), 1e-9);
+    EXPECT_FALSE(pick_body(scene, {{120, 1, 90}, {0, 0, -1}}));
 }
 
 /// Every piece, one after the other.
