@@ -333,6 +333,9 @@ TEST(SavedSetup, OfAnInferredOneSaysWhatIsInferredAndWhatIsStated) {
     EXPECT_THAT(*text, HasSubstr("the stock is as stated"));
     EXPECT_THAT(*text, HasSubstr("tool 1 is as stated: holder, stick_out; the rest"));
     EXPECT_THAT(*text, HasSubstr("tool 2 is"));
+    const std::string dialect(gcode::dialect(app::read_check(own.job)->run.dialect).name);
+    EXPECT_THAT(*text, HasSubstr("dialect = \"" + dialect + "\""))
+        << "whatever comes into the program";
     expect_saved_as_it_is(own.job, own.folder / "s.toml");
 }
 

@@ -70,6 +70,16 @@ TEST(FindingGroups, ComeWithTheWorstFirst) {
     EXPECT_EQ(groups[3].message, "in 0");
 }
 
+TEST(FindingGroups, ThatAreAsBadComeInTheOrderOfTheProgram) {
+    const auto groups = grouped(ten_rows(), {finding_in(6, "collision", "clamp-1", 0.5),
+                                             finding_in(1, "near-miss", "clamp-1", 0.5),
+                                             finding_in(3, "air-cut", "clamp-1", 0.5)});
+    ASSERT_EQ(groups.size(), 3u);
+    EXPECT_EQ(groups[0].rule, "near-miss");
+    EXPECT_EQ(groups[1].rule, "air-cut");
+    EXPECT_EQ(groups[2].rule, "collision");
+}
+
 TEST(FindingGroups, HoldEveryFindingOnce) {
     std::mt19937 random(7);
     for (int round = 0; round < 50; ++round) {

@@ -79,6 +79,15 @@ TEST(Navigation, ViolationsAreVisitedAtTheirClosestMomentAndRoundAgain) {
     EXPECT_EQ(model.cursor.block, 7U);
 }
 
+/// The stock must be the one that the block meets, not the one that it leaves.
+TEST(Navigation, AWitnessAtTheEndOfABlockIsShownBeforeItsEnd) {
+    ViewModel model = ten_blocks();
+    model.rows[3].witness_time = model.rows[3].duration;
+    go_to_witness(model, 3);
+    EXPECT_LT(model.cursor.share, 1.0);
+    EXPECT_FALSE(model.wanted->at_end);
+}
+
 TEST(Navigation, BlocksThatCannotBeDecidedAreVisitedLikeViolations) {
     std::vector<BlockRow> rows(4, row_with(5.0));
     rows[2].verdict = core::Verdict::undecided;

@@ -75,4 +75,26 @@ TEST(SessionPublisher, ClaimsNoMoreThanWasLookedForWhenABlockWasRun) {
     program.expect_rows_of_the_record();
 }
 
+/// Errors are painted, other findings are not.
+TEST(SessionPublisher, PaintsThePathAsTheRowsAre) {
+    Published program(
+        opening + "G1 Z-1 F200\nX20 (feeler: allow no-such)\nG0 X30\nG0 Z50\nG1 X60 F200\nM30\n");
+    std::vector<render::PathPoint> points;
+    for (uint32_t block = 0; block < 11; ++block)
+        points.push_back({glm::vec3(static_cast<float>(block)), block});
+    program.publisher.begin(points, 11);
+    program.record_all();
+    ASSERT_TRUE(program.model.path);
+    size_t told = 0, failed = 0;
+    for (const render::PathPoint& point : program.model.path->points) {
+        const BlockRow& row = program.model.rows[point.block];
+        EXPECT_EQ(point.state, state_of(row)) << point.block << " " << row.text;
+        const bool is_told = row.worst > core::Severity::off && row.worst < core::Severity::error;
+        if (is_told && !is_offending(row)) ++told;
+        if (row.worst == core::Severity::error) ++failed;
+    }
+    EXPECT_GT(told, 0U);
+    EXPECT_GT(failed, 0U);
+}
+
 } // namespace

@@ -70,5 +70,20 @@ TEST(ViewModel, BeginsAnotherProgramAtItsBeginning) {
     EXPECT_FALSE(model.opens_another);
 }
 
+TEST(ViewModel, MarksABlockByTheWorstOfItsFindings) {
+    ViewModel model = looked_at();
+    SessionUpdate news;
+    news.opening = model.opening;
+    news.has_news = news.is_recorded = true;
+    core::Finding error, note;
+    error.block = note.block = core::BlockIndex{5};
+    error.severity = core::Severity::error;
+    note.severity = core::Severity::note;
+    news.findings = {error, note};
+    take_in(model, std::move(news), 0.0);
+    EXPECT_EQ(model.rows[5].worst, core::Severity::error);
+    EXPECT_EQ(model.offending, std::vector<size_t>{5});
+}
+
 } // namespace
 } // namespace viewer_test
