@@ -25,9 +25,8 @@ void SessionWorker::post(Task task) {
 }
 
 void SessionWorker::open(const CheckJob& job) {
-    interrupted_ = true;
+    interrupt();
     post([this, job](WorkerSession& session) {
-        interrupted_ = false;
         const auto publish = [&] { deliver(session.take_news()); };
         session.open(job, publish);
     });
@@ -42,9 +41,11 @@ void SessionWorker::show(const ShowRequest& request) {
 }
 
 void SessionWorker::walk(Walk walk, size_t block) {
-    post([this, walk, block](WorkerSession& session) {
-        interrupted_ = false;
+    const uint64_t number = ++walks_;
+    post([this, number, walk, block](WorkerSession& session) {
+        walking_ = number;
         session.walk(walk, block);
+        walking_ = 0;
     });
 }
 
@@ -91,8 +92,10 @@ std::optional<ShowRequest> SessionWorker::wanted(const WorkerSession& session) {
 }
 
 void SessionWorker::run() {
-    WorkerSession session([this] { return stopping_.load() || interrupted_.load(); },
-                          [this] { return stopping_.load(); });
+    const auto is_interrupted = [this] {
+        return stopping_ || (walking_ != 0 && walking_ <= interrupted_);
+    };
+    WorkerSession session(is_interrupted, [this] { return stopping_.load(); });
     while (!stopping_) {
         Task task;
         {

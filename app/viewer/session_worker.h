@@ -28,8 +28,8 @@ public:
     void show(const ShowRequest& request);
     /// From a block on, which itself is passed; what it stops at comes as a WalkEnd.
     void walk(Walk walk, size_t block);
-    /// Ends a walk.
-    void interrupt() { interrupted_ = true; }
+    /// Ends the walks that were asked for so far.
+    void interrupt() { interrupted_ = walks_.load(); }
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
     /// Expressions that every view shows the values of.
     void watch(const std::vector<std::string>& expressions);
@@ -56,8 +56,11 @@ private:
     std::deque<Task> tasks_;
     std::optional<ShowRequest> wanted_;
     SessionUpdate news_;
-    std::atomic<bool> stopping_ = false, interrupted_ = false;
-    std::thread thread_; // last: it uses all of the above
+    std::atomic<bool> stopping_ = false;
+    std::atomic<uint64_t> walks_ = 0;       // that were asked for
+    std::atomic<uint64_t> interrupted_ = 0; // up to this one
+    uint64_t walking_ = 0;                  // in the worker's thread; 0: it does not walk
+    std::thread thread_;                    // last: it uses all of the above
 };
 
 } // namespace app::viewer

@@ -187,6 +187,18 @@ TEST(SessionWorker, SaysWhyAProgramCannotBeOpened) {
         << "the next one opens as if nothing had been";
 }
 
+TEST(SessionWorker, AWalkThatIsInterruptedBeforeItBeginsGoesNowhere) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    watcher.worker().walk(Walk::go_on, 0); // it waits until the program is open
+    watcher.worker().interrupt();
+    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.message.empty(); }));
+    EXPECT_LT(watcher.model.cursor.block, 45U);
+    watcher.worker().walk(Walk::go_on, 0);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.cursor.block == 45; }))
+        << "the next one is another one";
+}
+
 TEST(SessionWorker, EndsAtAnyMoment) {
     for (int milliseconds = 0; milliseconds < 200; milliseconds += 9) {
         std::atomic<int> news = 0;
