@@ -42,6 +42,7 @@ size_t stepped(const ViewModel& model, int blocks) {
 
 void go_to(ViewModel& model, size_t block, double share) {
     if (!model.has_rows()) return;
+    model.awaits_offending = model.is_walking = false;
     model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(share, 0.0, 1.0)};
     model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
     model.list_follows = true;
@@ -106,12 +107,22 @@ bool go_to_offending(ViewModel& model, bool forward) {
     if (forward && above != all.end()) return go_to_witness(model, *above), true;
     if (!forward && below != all.begin()) return go_to_witness(model, *(below - 1)), true;
     if (forward && !model.is_recorded) {
-        model.walk = Walk::next_finding;
+        model.awaits_offending = true;
         return true;
     }
     if (all.empty()) return false;
     go_to_witness(model, forward ? all.front() : all.back());
     return true;
+}
+
+bool await_offending(ViewModel& model) {
+    if (!model.awaits_offending) return true;
+    const auto above =
+        std::upper_bound(model.offending.begin(), model.offending.end(), model.cursor.block);
+    if (above != model.offending.end()) return go_to_witness(model, *above), true;
+    if (!model.is_recorded) return true;
+    model.awaits_offending = false;
+    return go_to_offending(model, true);
 }
 
 void go_to_bookmark(ViewModel& model) {

@@ -19,9 +19,11 @@ void step_over(ViewModel& model, bool forward);
 /// Behind the call of the subprogram that the cursor is in.
 void step_out(ViewModel& model);
 
-/// To the next or previous violation. Whether there is one that is known; if there is none and the
-/// check still runs, the worker is asked to go on until there is.
+/// To the next or previous violation. Whether there is one that is known, or may still be found: if
+/// the check still runs, the model goes there as soon as one is.
 bool go_to_offending(ViewModel& model, bool forward);
+/// Goes to the violation that is awaited, if it is known by now. False: there is none.
+bool await_offending(ViewModel& model);
 
 void go_to_bookmark(ViewModel& model);
 

@@ -29,8 +29,8 @@ void zoom(ViewModel& model, double factor) {
 }
 
 void find_offending(ViewModel& model, bool forward, double now) {
-    if (go_to_offending(model, forward)) return;
-    say(model, model.is_recorded ? "There is no violation" : "No violation is known yet", now);
+    if (!go_to_offending(model, forward)) return say(model, no_violation(model), now);
+    if (model.awaits_offending) say(model, "Goes to the next violation once one is found", now);
 }
 
 void step_findings(ViewModel& model, bool forward, double now) {
@@ -262,6 +262,7 @@ void perform(ViewModel& model, Command command, double now) {
     switch (command) {
     case Command::play:
         toggle(model.playback.running);
+        model.awaits_offending = model.is_walking = false;
         break;
     case Command::faster:
         model.playback.speed = next_speed(model.playback.speed, true);
@@ -298,6 +299,7 @@ void perform(ViewModel& model, Command command, double now) {
         if (model.popup == Popup::none) model.section.reset();
         model.popup = Popup::none;
         model.playback.running = false;
+        model.awaits_offending = model.is_walking = false;
         break;
     case Command::picture:
         model.wants_picture = true;
@@ -339,6 +341,7 @@ bool send_requests(ViewModel& model, SessionWorker& worker) {
     }
     if (const auto walk = std::exchange(model.walk, {})) {
         worker.walk(*walk, model.cursor.block);
+        model.is_walking = true;
         any = true;
     }
     if (const auto wanted = std::exchange(model.wanted, {})) {

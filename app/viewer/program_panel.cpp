@@ -48,6 +48,7 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
 }
 
 std::string clearance_text(const ViewModel& model, const BlockRow& row) {
+    if (row.is_known && !row.is_judged && moves(row)) return "?";
     if (!row.is_known || !row.lower) return {};
     if (!row.upper) return ">" + length_text(model, *row.lower, 0);
     // The lower one is proven; where the two differ visibly the sign says so.

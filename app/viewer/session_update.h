@@ -34,12 +34,7 @@ struct RowsUpdate {
 /// How far a walk goes.
 enum class Walk : uint8_t {
     go_on,
-    go_on_back,
-    next_finding,
-    previous_finding,
-    finish,
-    next,
-    next_back
+    go_on_back
 };
 
 /// A block that the window wants to see the state round.

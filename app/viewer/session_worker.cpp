@@ -45,7 +45,6 @@ void SessionWorker::walk(Walk walk, size_t block) {
     post([this, number, walk, block](WorkerSession& session) {
         walking_ = number;
         session.walk(walk, block);
-        walking_ = 0;
     });
 }
 

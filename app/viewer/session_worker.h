@@ -59,7 +59,7 @@ private:
     std::atomic<bool> stopping_ = false;
     std::atomic<uint64_t> walks_ = 0;       // that were asked for
     std::atomic<uint64_t> interrupted_ = 0; // up to this one
-    uint64_t walking_ = 0;                  // in the worker's thread; 0: it does not walk
+    uint64_t walking_ = 0;                  // the last that was begun, in the worker's thread
     std::thread thread_;                    // last: it uses all of the above
 };
 

@@ -41,6 +41,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.failure.reset();
     model.stopped.reset();
     model.walk.reset();
+    model.awaits_offending = model.is_walking = false;
     model.playback.running = false;
     model.share = 0.0;
     model.is_recorded = false;
@@ -122,11 +123,10 @@ std::string sentence_of(const Stop& stop) {
 }
 
 void end_walk(ViewModel& model, const WalkEnd& end, double now) {
-    if (!model.has_rows()) return;
+    // Who has gone elsewhere meanwhile is not called back.
+    if (!std::exchange(model.is_walking, false) || !model.has_rows()) return;
     const bool is_past = end.block >= model.rows.size();
-    if (end.stop.reason == StopReason::found) {
-        go_to_witness(model, end.block);
-    } else if (end.stop.reason == StopReason::step || is_past) {
+    if (is_past) {
         go_to(model, end.block == 0 ? 0 : end.block - 1);
     } else {
         go_to(model, end.block, 0.0);
@@ -169,6 +169,19 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (is_first) resume(model);
     if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.share);
     if (news.walk) end_walk(model, *news.walk, now);
+    if (!await_offending(model)) say(model, no_violation(model), now);
+}
+
+std::string no_violation(const ViewModel& model) {
+    if (!model.is_recorded) return "No violation is known yet";
+    const bool is_judged = std::all_of(model.rows.begin(), model.rows.end(), [](const auto& row) {
+        return !moves(row) || (row.is_known && row.is_judged);
+    });
+    if (model.stopped)
+        return fmt::format("No violation as far as it was checked, which is to line {}",
+                           model.stopped->where.line);
+    return is_judged ? "There is no violation"
+                     : "No violation in what was checked; blocks with ? were not";
 }
 
 void say(ViewModel& model, const std::string& text, double now) {

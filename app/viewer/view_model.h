@@ -100,6 +100,8 @@ struct ViewModel {
     Popup popup = Popup::none;
     std::string message; // shown for a while
     double message_until = 0.0;
+    bool awaits_offending = false; // goes to the next violation as soon as one is found
+    bool is_walking = false;  // the worker has been asked for a walk and has not come to its end
     bool list_follows = true; // the list scrolls to the cursor once
     bool filter_wants_focus = false;
 
@@ -125,6 +127,9 @@ struct ViewModel {
 
 /// Takes in what the worker has to tell. `now`: seconds, as messages are timed.
 void take_in(ViewModel& model, SessionUpdate news, double now);
+
+/// That there is no violation, as far as that is known.
+std::string no_violation(const ViewModel& model);
 
 /// Says something at the foot of the view for some seconds.
 void say(ViewModel& model, const std::string& text, double now);

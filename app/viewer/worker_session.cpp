@@ -11,6 +11,7 @@ namespace {
 
 /// How long a slice of the record takes, seconds: a request waits for one at most.
 constexpr double slice = 0.01;
+constexpr auto walk_slice = std::chrono::milliseconds(30);
 constexpr auto publish_interval = std::chrono::milliseconds(60);
 
 /// Blocks beyond these are only known once they are checked.
@@ -74,6 +75,7 @@ std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
 
 void WorkerSession::open(const CheckJob& job, const std::function<void()>& publish) {
     session_.reset();
+    walk_.reset();
     scenes_.clear();
     surface_.reset();
     news_ = {};
@@ -91,7 +93,7 @@ void WorkerSession::open(const CheckJob& job, const std::function<void()>& publi
     auto session = DebugSession::open(job, *std::move(check));
     if (!session) return fail(session.error());
     session_ = *std::move(session);
-    session_->is_interrupted = is_interrupted_;
+    session_->is_interrupted = [this] { return is_interrupted_() || Clock::now() > walk_rests_; };
     news_.has_news = true;
     set_breakpoints(breakpoints_);
 }
@@ -110,6 +112,7 @@ void WorkerSession::show_early(ProgramTrack track) {
 }
 
 void WorkerSession::record() {
+    if (walk_) return walk_on();
     if (has_work()) session_->record_for(slice);
     publish_if_due();
 }
@@ -180,32 +183,20 @@ void WorkerSession::show(const ShowRequest& request) {
 }
 
 void WorkerSession::walk(Walk walk, size_t block) {
-    if (!session_) return;
-    Stop stop;
-    if (const auto gone = session_->go_to(block); !gone) return refuse(gone.error());
-    switch (walk) {
-    case Walk::go_on:
-        stop = session_->go_on();
-        break;
-    case Walk::go_on_back:
-        stop = session_->go_on_back();
-        break;
-    case Walk::next_finding:
-        stop = session_->next_finding();
-        break;
-    case Walk::previous_finding:
-        stop = session_->previous_finding();
-        break;
-    case Walk::finish:
-        stop = session_->finish();
-        break;
-    case Walk::next:
-        stop = session_->next();
-        break;
-    case Walk::next_back:
-        stop = session_->next_back();
-        break;
+    if (session_) walk_ = WalkOnItsWay{walk, block};
+}
+
+void WorkerSession::walk_on() {
+    WalkOnItsWay& way = *walk_;
+    if (const auto gone = session_->go_to(way.block); !gone) {
+        walk_.reset();
+        return refuse(gone.error());
     }
+    walk_rests_ = Clock::now() + walk_slice;
+    const Stop stop = way.walk == Walk::go_on ? session_->go_on() : session_->go_on_back();
+    way.block = session_->at();
+    if (stop.reason == StopReason::interrupted && !is_interrupted_()) return publish_if_due();
+    walk_.reset();
     news_.walk = WalkEnd{session_->at(), stop};
     news_.breakpoints = breakpoints_ = session_->breakpoints();
     news_.has_news = true;
@@ -248,6 +239,7 @@ void WorkerSession::save_setup(const SaveRequest& request) {
 }
 
 void WorkerSession::follow_anew() {
+    walk_.reset();
     scenes_.clear();
     surface_.reset();
     const size_t block = session_->at();

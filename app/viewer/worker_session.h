@@ -25,12 +25,13 @@ public:
     /// Opens another program; `publish` is called when its path is known, before the stock is.
     void open(const CheckJob& job, const std::function<void()>& publish);
     /// Whether there is more to record.
-    bool has_work() const { return session_ && !session_->is_recorded(); }
-    /// Carries the record on for a slice.
+    bool has_work() const { return session_ && (walk_ || !session_->is_recorded()); }
+    /// Carries the walk that was asked for on for a slice, else the record.
     void record();
     /// Whether a view needs no more recording.
     bool can_show(const ShowRequest& request) const;
     void show(const ShowRequest& request);
+    /// Begins a walk; `record` goes on with it, so that what is found on the way is told.
     void walk(Walk walk, size_t block);
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
@@ -44,6 +45,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void publish_if_due();
+    void walk_on();
     /// The program cannot be opened.
     void fail(const core::Error& error);
     void show_early(ProgramTrack track);
@@ -63,6 +65,13 @@ private:
     std::vector<Breakpoint> breakpoints_;
     SessionUpdate news_;
     uint64_t openings_ = 0, views_ = 0;
+    /// A walk that has not come to its end, and the block before which it stands.
+    struct WalkOnItsWay {
+        Walk walk = Walk::go_on;
+        size_t block = 0;
+    };
+    std::optional<WalkOnItsWay> walk_;
+    Clock::time_point walk_rests_ = {}; // when others get their turn
     Clock::time_point last_publish_ = {};
 };
 

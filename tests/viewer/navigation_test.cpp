@@ -97,12 +97,52 @@ TEST(Navigation, BlocksThatCannotBeDecidedAreVisitedLikeViolations) {
     EXPECT_EQ(model.cursor.block, 2U);
 }
 
-TEST(Navigation, AsksTheWorkerWhileTheCheckStillRuns) {
+/// What a worker tells when so many rows have been checked.
+SessionUpdate rows_from(size_t first, std::vector<BlockRow> rows, bool is_recorded) {
+    SessionUpdate news;
+    news.opening = 1;
+    news.rows.first = first;
+    news.rows.rows = std::move(rows);
+    news.is_recorded = is_recorded;
+    news.has_news = true;
+    return news;
+}
+
+TEST(Navigation, GoesToAViolationThatIsFoundLaterUnlessOneHasGoneElsewhere) {
+    for (const bool goes_elsewhere : {false, true}) {
+        ViewModel model = ten_blocks();
+        model.is_recorded = false;
+        go_to(model, 8);
+        EXPECT_TRUE(go_to_offending(model, true));
+        EXPECT_EQ(model.cursor.block, 8U);
+        EXPECT_FALSE(model.walk) << "breakpoints do not stop it";
+        take_in(model, rows_from(10, {row_with(5.0)}, false), 0.0);
+        EXPECT_EQ(model.cursor.block, 8U);
+        if (goes_elsewhere) step(model, -1);
+        take_in(model, rows_from(11, {row_with(5.0), row_with(0.1)}, false), 0.0);
+        EXPECT_EQ(model.cursor.block, goes_elsewhere ? 7U : 12U);
+    }
+}
+
+TEST(Navigation, BeginsAgainWhenNoViolationComesAfterAll) {
     ViewModel model = ten_blocks();
     model.is_recorded = false;
     go_to(model, 8);
     EXPECT_TRUE(go_to_offending(model, true));
-    EXPECT_EQ(model.walk, Walk::next_finding);
+    take_in(model, rows_from(10, {row_with(5.0)}, true), 0.0);
+    EXPECT_EQ(model.cursor.block, 3U);
+}
+
+TEST(Navigation, SaysThatThereIsNoViolationOnlyOfAProgramThatWasCheckedToItsEnd) {
+    ViewModel model = model_of({row_with(5.0), row_with(6.0)});
+    EXPECT_EQ(no_violation(model), "There is no violation");
+    model.rows[1].is_judged = false;
+    EXPECT_NE(no_violation(model).find("were not"), std::string::npos);
+    model.stopped = core::Error{};
+    model.stopped->where.line = 320;
+    EXPECT_NE(no_violation(model).find("line 320"), std::string::npos);
+    model.is_recorded = false;
+    EXPECT_EQ(no_violation(model), "No violation is known yet");
 }
 
 TEST(Navigation, StepsByTool) {

@@ -4,6 +4,7 @@
 
 #include "app/commands/output.h"
 #include "app/viewer/navigation.h"
+#include "app/viewer/perform.h"
 #include "app/viewer/session_worker.h"
 #include "tests/support/scoped_folder.h"
 
@@ -149,12 +150,31 @@ TEST(SessionWorker, StopsAtABreakpoint) {
     app::Breakpoint breakpoint;
     breakpoint.line = 44;
     watcher.worker().set_breakpoints({breakpoint});
-    watcher.worker().walk(Walk::go_on, 0);
+    watcher.model.walk = Walk::go_on;
+    send_requests(watcher.model, watcher.worker());
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.cursor.block > 0; }));
     EXPECT_EQ(watcher.model.row().line, 44U);
     EXPECT_EQ(watcher.model.cursor.share, 0.0);
     ASSERT_EQ(watcher.model.breakpoints.size(), 1U);
     EXPECT_EQ(watcher.model.breakpoints[0].hits, 1U);
+}
+
+TEST(SessionWorker, TellsWhatIsFoundOnALongWalk) {
+    Watcher watcher;
+    app::CheckJob job = clamped_plate();
+    job.program = assets + "programs/PARALLEL.NC";
+    job.setup = assets + "setups/parallel.toml";
+    watcher.open(job);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.has_rows(); }));
+    watcher.model.walk = Walk::go_on; // there is no breakpoint: it goes to the end
+    send_requests(watcher.model, watcher.worker());
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.rows[100].is_known; }));
+    EXPECT_TRUE(watcher.model.is_walking);
+    watcher.worker().show({50, true});
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.place != nullptr; }));
+    EXPECT_TRUE(watcher.model.is_walking) << "a place is shown on the way";
+    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.is_walking; }));
+    EXPECT_EQ(watcher.model.cursor.block, watcher.model.rows.size() - 1);
 }
 
 TEST(SessionWorker, AWhatIfChangesOnlyWhatComesAfterIt) {
@@ -205,7 +225,7 @@ TEST(SessionWorker, EndsAtAnyMoment) {
         SessionWorker worker([&] { ++news; });
         worker.open(clamped_plate());
         worker.show({3, true});
-        worker.walk(Walk::next_finding, 0);
+        worker.walk(Walk::go_on, 0);
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
         worker.show({20, false});
     }
