@@ -31,6 +31,11 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
             stop = text[i] == ';' ? text.size() : text.find(')', i);
             stop = stop == std::string::npos ? text.size() : std::min(stop + 1, text.size());
             role = Role::dim;
+        } else if (is_letter(i) && i + 1 < text.size()
+                   && (is_letter(i + 1) || text[i + 1] == '_')) {
+            // A name, such as TOOL or FMAX: its letters are no addresses.
+            const auto is_of_name = [&](size_t k) { return is_letter(k) || text[k] == '_'; };
+            while (stop < text.size() && is_of_name(stop)) ++stop;
         } else if (is_letter(i)) {
             while (stop < text.size() && !std::isspace(static_cast<unsigned char>(text[stop]))
                    && !is_letter(stop) && text[stop] != '(')
@@ -117,27 +122,43 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-} // namespace
-
-void ProgramPanel::draw_head(Frame& frame, const Area& area) {
-    ViewModel& model = frame.model;
-    draw_list_tabs(frame);
+/// How many blocks are how bad, beside the tabs.
+void draw_counts(Frame& frame, const Area& area) {
+    const ViewModel& model = frame.model;
     const std::string counts = fmt::format("of {}", model.rows.size());
     const std::string bad =
         fmt::format("{} {}", frame.fonts.icon(Icon::warning), model.offending.size());
     const std::string near = fmt::format("{} {}", frame.fonts.icon(Icon::near), model.near_count);
     const float gap = frame.px(12);
-    const float width = ImGui::CalcTextSize(counts.c_str()).x + ImGui::CalcTextSize(bad.c_str()).x
-                        + ImGui::CalcTextSize(near.c_str()).x + 2 * gap;
+    // The violations have the first right to what room there is.
+    const float room = area.width - frame.px(26) - (ImGui::GetItemRectMax().x - area.x);
+    float width = ImGui::CalcTextSize(bad.c_str()).x;
+    const auto fits = [&](const std::string& words) {
+        const float wider = width + gap + ImGui::CalcTextSize(words.c_str()).x;
+        if (wider > room) return false;
+        width = wider;
+        return true;
+    };
+    const bool near_fits = fits(near), counts_fit = near_fits && fits(counts);
     ImGui::SameLine(area.width - width - frame.px(14));
     text(frame.fonts.text, frame.look.color(model.offending.empty() ? Role::dim : Role::violation),
          bad);
     tip(frame, "Blocks that do not keep their allowance, or have a finding of severity error");
+    if (!near_fits) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(model.near_count == 0 ? Role::dim : Role::near), near);
     tip(frame, "Blocks that keep their allowance, but not twice");
+    if (!counts_fit) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(Role::dim), counts);
+}
+
+} // namespace
+
+void ProgramPanel::draw_head(Frame& frame, const Area& area) {
+    ViewModel& model = frame.model;
+    draw_list_tabs(frame);
+    draw_counts(frame, area);
 
     ImGui::SetNextItemWidth(area.width - frame.px(24));
     if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
