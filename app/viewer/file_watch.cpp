@@ -66,6 +66,13 @@ void FileWatch::set(std::vector<std::string> paths) {
     for (const std::string& path : paths)
         if (!path.empty()) known_.push_back(look_at(path));
     last_ = known_;
+    missing_.clear();
+}
+
+void FileWatch::look_for_missing(const std::vector<Seen>& now) {
+    missing_.clear();
+    for (size_t i = now.size(); i-- > 0;)
+        if (now[i].size == 0 && now[i] != known_[i]) missing_ = now[i].path;
 }
 
 bool FileWatch::has_changed() {
@@ -73,10 +80,10 @@ bool FileWatch::has_changed() {
     for (const Seen& seen : known_) now.push_back(look_at(seen.path));
     const bool rests = now == last_;
     last_ = now;
-    if (!rests || now == known_) return false;
+    if (!rests) return false;
     // An editor that replaces a file takes it away for a moment.
-    for (size_t i = 0; i < now.size(); ++i)
-        if (now[i].size == 0 && now[i] != known_[i]) return false;
+    look_for_missing(now);
+    if (now == known_ || !missing_.empty()) return false;
     known_ = std::move(now);
     return true;
 }

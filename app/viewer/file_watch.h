@@ -22,6 +22,8 @@ public:
     /// Whether one of them has changed since the last time, and has rested since: a file that is
     /// still being written is not read.
     bool has_changed();
+    /// The first that was there and is gone or empty, at rest as of the last look; or nothing.
+    const std::string& missing() const { return missing_; }
 
 private:
     struct Seen {
@@ -31,9 +33,11 @@ private:
 
         bool operator==(const Seen&) const = default;
     };
+    void look_for_missing(const std::vector<Seen>& now);
     static Seen look_at(const std::string& path);
 
     std::vector<Seen> known_, last_;
+    std::string missing_;
 };
 
 } // namespace app::viewer

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -67,13 +68,24 @@ std::string place_text(const ViewModel& model) {
                        clock_text(last.time + last.duration));
 }
 
-/// Why the program goes no further, where nobody can overlook it.
-void draw_stop(const Frame& frame, ImDrawList& list, const Area& area) {
-    if (!frame.model.stopped) return;
+/// What makes less of the picture than it seems to be: a file that is gone, a program that stops.
+std::string warning_text(const Frame& frame) {
+    const char* const sign = frame.fonts.icon(Icon::warning);
+    std::string words;
+    if (!frame.model.missing.empty())
+        words = fmt::format("{}  {} is gone or empty: this shows what it was before", sign,
+                            std::filesystem::path(frame.model.missing).filename().string());
+    if (!frame.model.stopped) return words;
     const core::Error& error = *frame.model.stopped;
-    const std::string words =
-        fmt::format("{}  Line {} could not be run, nothing behind it is checked: {}",
-                    frame.fonts.icon(Icon::warning), error.where.line, error.message);
+    return words + (words.empty() ? "" : "\n")
+           + fmt::format("{}  Line {} could not be run, nothing behind it is checked: {}", sign,
+                         error.where.line, error.message);
+}
+
+/// The same where nobody can overlook it.
+void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
+    const std::string words = warning_text(frame);
+    if (words.empty()) return;
     ImFont* const font = frame.fonts.text;
     const float x = frame.px(11), y = frame.px(7);
     const ImVec2 corner(area.x + frame.px(14), area.y + frame.px(52));
@@ -272,7 +284,7 @@ void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewp
     draw_measure(frame, area, size);
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)}, place_text(model));
-    draw_stop(frame, list, area);
+    draw_warning(frame, list, area);
     std::string words;
     if (frame.now < model.message_until) words = model.message;
     if (model.is_busy && !model.place)

@@ -72,6 +72,7 @@ struct ViewModel {
     SetupEdits edits;                // of the set-up, that the program was opened with
     std::optional<SetupSaved> saved; // the last answer to a wish to save the set-up
     std::optional<core::Error> failure, stopped;
+    std::string missing; // a file that is shown, but is gone or empty by now
     double share = 0.0;
     bool is_recorded = false, is_busy = false;
 

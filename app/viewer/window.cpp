@@ -206,6 +206,7 @@ void Window::set_title() {
             title +=
                 fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
                             model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
+        if (!model.missing.empty()) title += ", gone or empty";
         if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
         title += " - feeler";
     }
@@ -237,6 +238,10 @@ void Window::update() {
         if (files_.has_changed()) {
             open_job();
             say(model, "The file has changed and is read again", now);
+        }
+        if (model.missing != files_.missing()) {
+            model.missing = files_.missing();
+            damage();
         }
         if (now < model.message_until + watch_interval) damage();
     }

@@ -36,18 +36,24 @@ TEST_F(FileWatchTest, WaitsForAFileThatWasTakenAwayOrEmptied) {
     watch.set({path_});
     std::filesystem::remove(path_);
     EXPECT_FALSE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), "") << "an editor may be replacing it";
     EXPECT_FALSE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), path_);
     write("");
     EXPECT_FALSE(watch.has_changed());
     EXPECT_FALSE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), path_);
     write("G1 X3 Y5\n");
     EXPECT_FALSE(watch.has_changed());
     EXPECT_TRUE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), "");
 }
 
 TEST_F(FileWatchTest, IsNotHeldUpByAFileThatWasNeverThere) {
     FileWatch watch;
     watch.set({path_, path_ + ".none"});
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), "");
     write("G1 X1\nG1 X2\n");
     EXPECT_FALSE(watch.has_changed());
     EXPECT_TRUE(watch.has_changed());

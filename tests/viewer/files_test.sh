@@ -80,6 +80,12 @@ rm "$program"
 sleep 1
 cp "$program.good" "$program"
 expect 'a program that was away for a while is back' 'clamped_plate_low.nc, line'
+rm "$program"
+expect 'that what is shown is of a file that is gone is said' 'gone or empty'
+picture 09-gone
+(($(of_color 09-gone '#FF5A36') > 5000)) || die 'and loudly'
+cp "$program.good" "$program"
+expect 'and taken back' 'clamped_plate_low.nc, line [0-9]+ \(block [^)]*\) - feeler'
 
 press ctrl+q
 ended 'by Ctrl+Q'
