@@ -20,8 +20,12 @@ public:
 private:
     void draw_head(Frame& frame, const Area& area);
     void draw_filter_note(Frame& frame);
+    /// Scrolls to the cursor in the frame that is begun, where it is not seen.
+    void follow_cursor(Frame& frame);
     void draw_rows(Frame& frame);
     void draw_row(Frame& frame, size_t block, float width);
+
+    float scroll_ = 0.0F, room_ = 0.0F; // pixels, of the rows as they were drawn last
 };
 
 /// What was found, grouped by rule and pair of bodies, with what a person has written on it.

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "app/viewer/navigation.h"
@@ -203,24 +205,28 @@ void ProgramPanel::draw_row(Frame& frame, size_t block, float width) {
     draw_words(frame, list, area, row);
 }
 
+void ProgramPanel::follow_cursor(Frame& frame) {
+    ViewModel& model = frame.model;
+    if (room_ <= 0.0F || !std::exchange(model.list_follows, false)) return;
+    const std::vector<size_t>& shown = model.filtered;
+    const size_t block = model.cursor.block;
+    const auto rank = model.filter.empty()
+                          ? static_cast<ptrdiff_t>(block)
+                          : std::lower_bound(shown.begin(), shown.end(), block) - shown.begin();
+    const float height = frame.px(20), top = static_cast<float>(rank) * height;
+    // What is said inside of a window about its scrolling counts from the next frame on.
+    if (top < scroll_ + 3 * height || top > scroll_ + room_ - 4 * height)
+        ImGui::SetNextWindowScroll({-1.0F, std::max(0.0F, top - 0.5F * room_ + height)});
+}
+
 void ProgramPanel::draw_rows(Frame& frame) {
     ViewModel& model = frame.model;
     const float width = ImGui::GetContentRegionAvail().x;
     const float height = frame.px(20);
     const bool filtering = !model.filter.empty();
     const size_t count = filtering ? model.filtered.size() : model.rows.size();
-    if (model.list_follows) {
-        size_t rank = model.cursor.block;
-        if (filtering)
-            rank = static_cast<size_t>(
-                std::lower_bound(model.filtered.begin(), model.filtered.end(), model.cursor.block)
-                - model.filtered.begin());
-        const float top = static_cast<float>(rank) * height;
-        const float now = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
-        if (top < now + 3 * height || top > now + room - 4 * height)
-            ImGui::SetScrollY(std::max(0.0F, top - 0.5F * room + height));
-        model.list_follows = false;
-    }
+    scroll_ = ImGui::GetScrollY();
+    room_ = ImGui::GetWindowHeight();
     if (count == 0) {
         wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
                      filtering ? "No block is like that." : "Reading \xE2\x80\xA6");
@@ -239,6 +245,7 @@ void ProgramPanel::draw_rows(Frame& frame) {
 
 void ProgramPanel::draw(Frame& frame, const Area& area) {
     draw_head(frame, area);
+    follow_cursor(frame);
     ImGui::BeginChild("rows", ImVec2(area.width - frame.px(18), 0), false, ImGuiWindowFlags_NoNav);
     draw_rows(frame);
     ImGui::EndChild();
