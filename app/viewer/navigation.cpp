@@ -42,7 +42,7 @@ size_t stepped(const ViewModel& model, int blocks) {
 
 void go_to(ViewModel& model, size_t block, double share) {
     if (!model.has_rows()) return;
-    model.awaits_offending = model.is_walking = false;
+    stay(model);
     model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(share, 0.0, 1.0)};
     model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
     model.list_follows = true;

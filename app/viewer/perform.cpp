@@ -262,7 +262,7 @@ void perform(ViewModel& model, Command command, double now) {
     switch (command) {
     case Command::play:
         toggle(model.playback.running);
-        model.awaits_offending = model.is_walking = false;
+        stay(model);
         break;
     case Command::faster:
         model.playback.speed = next_speed(model.playback.speed, true);
@@ -299,7 +299,7 @@ void perform(ViewModel& model, Command command, double now) {
         if (model.popup == Popup::none) model.section.reset();
         model.popup = Popup::none;
         model.playback.running = false;
-        model.awaits_offending = model.is_walking = false;
+        stay(model);
         break;
     case Command::picture:
         model.wants_picture = true;
@@ -339,9 +339,9 @@ bool send_requests(ViewModel& model, SessionWorker& worker) {
         worker.take_back();
         any = true;
     }
+    if (std::exchange(model.wants_interrupt, false)) worker.interrupt();
     if (const auto walk = std::exchange(model.walk, {})) {
-        worker.walk(*walk, model.cursor.block);
-        model.is_walking = true;
+        model.walking = worker.walk(*walk, model.cursor.block);
         any = true;
     }
     if (const auto wanted = std::exchange(model.wanted, {})) {

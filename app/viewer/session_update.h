@@ -32,10 +32,7 @@ struct RowsUpdate {
 };
 
 /// How far a walk goes.
-enum class Walk : uint8_t {
-    go_on,
-    go_on_back
-};
+enum class Walk : uint8_t { go_on, go_on_back };
 
 /// A block that the window wants to see the state round.
 struct ShowRequest {
@@ -52,7 +49,8 @@ struct SetupSaved {
 
 /// Where a walk ended.
 struct WalkEnd {
-    size_t block = 0; // the block before which it stands
+    uint64_t walk = 0; // its number
+    size_t block = 0;  // the block before which it stands
     Stop stop;
 };
 

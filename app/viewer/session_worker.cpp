@@ -40,12 +40,13 @@ void SessionWorker::show(const ShowRequest& request) {
     changed_.notify_all();
 }
 
-void SessionWorker::walk(Walk walk, size_t block) {
+uint64_t SessionWorker::walk(Walk walk, size_t block) {
     const uint64_t number = ++walks_;
     post([this, number, walk, block](WorkerSession& session) {
         walking_ = number;
-        session.walk(walk, block);
+        session.walk(walk, block, number);
     });
+    return number;
 }
 
 void SessionWorker::set_breakpoints(const std::vector<Breakpoint>& breakpoints) {

@@ -26,8 +26,9 @@ public:
     void open(const CheckJob& job);
     /// Of several that wait only the last one counts.
     void show(const ShowRequest& request);
-    /// From a block on, which itself is passed; what it stops at comes as a WalkEnd.
-    void walk(Walk walk, size_t block);
+    /// From a block on, which itself is passed; what it stops at comes as a WalkEnd with
+    /// the number that is returned.
+    uint64_t walk(Walk walk, size_t block);
     /// Ends the walks that were asked for so far.
     void interrupt() { interrupted_ = walks_.load(); }
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);

@@ -41,7 +41,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.failure.reset();
     model.stopped.reset();
     model.walk.reset();
-    model.awaits_offending = model.is_walking = false;
+    stay(model);
     model.playback.running = false;
     model.share = 0.0;
     model.is_recorded = false;
@@ -124,7 +124,8 @@ std::string sentence_of(const Stop& stop) {
 
 void end_walk(ViewModel& model, const WalkEnd& end, double now) {
     // Who has gone elsewhere meanwhile is not called back.
-    if (!std::exchange(model.is_walking, false) || !model.has_rows()) return;
+    if (model.walking != end.walk || !model.has_rows()) return;
+    model.walking.reset();
     const bool is_past = end.block >= model.rows.size();
     if (is_past) {
         go_to(model, end.block == 0 ? 0 : end.block - 1);
@@ -136,6 +137,12 @@ void end_walk(ViewModel& model, const WalkEnd& end, double now) {
 }
 
 } // namespace
+
+void stay(ViewModel& model) {
+    model.awaits_offending = false;
+    model.wants_interrupt = model.wants_interrupt || model.walking;
+    model.walking.reset();
+}
 
 void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (!news.has_news) return;

@@ -101,9 +101,10 @@ struct ViewModel {
     Popup popup = Popup::none;
     std::string message; // shown for a while
     double message_until = 0.0;
-    bool awaits_offending = false; // goes to the next violation as soon as one is found
-    bool is_walking = false;  // the worker has been asked for a walk and has not come to its end
-    bool list_follows = true; // the list scrolls to the cursor once
+    bool awaits_offending = false;   // goes to the next violation as soon as one is found
+    std::optional<uint64_t> walking; // number of the walk whose end the worker shall tell
+    bool wants_interrupt = false;    // of walks whose end nobody waits for any more
+    bool list_follows = true;        // the list scrolls to the cursor once
     bool filter_wants_focus = false;
 
     // what the worker is to be asked
@@ -125,6 +126,9 @@ struct ViewModel {
     bool has_rows() const { return !rows.empty(); }
     const BlockRow& row() const { return rows[cursor.block]; }
 };
+
+/// Goes on to nothing that was asked for before: no walk, no violation that is still to be found.
+void stay(ViewModel& model);
 
 /// Takes in what the worker has to tell. `now`: seconds, as messages are timed.
 void take_in(ViewModel& model, SessionUpdate news, double now);

@@ -182,8 +182,8 @@ void WorkerSession::show(const ShowRequest& request) {
     publish_if_due();
 }
 
-void WorkerSession::walk(Walk walk, size_t block) {
-    if (session_) walk_ = WalkOnItsWay{walk, block};
+void WorkerSession::walk(Walk walk, size_t block, uint64_t number) {
+    if (session_) walk_ = WalkOnItsWay{walk, block, number};
 }
 
 void WorkerSession::walk_on() {
@@ -196,8 +196,8 @@ void WorkerSession::walk_on() {
     const Stop stop = way.walk == Walk::go_on ? session_->go_on() : session_->go_on_back();
     way.block = session_->at();
     if (stop.reason == StopReason::interrupted && !is_interrupted_()) return publish_if_due();
+    news_.walk = WalkEnd{way.number, session_->at(), stop};
     walk_.reset();
-    news_.walk = WalkEnd{session_->at(), stop};
     news_.breakpoints = breakpoints_ = session_->breakpoints();
     news_.has_news = true;
     publisher_.publish(*session_, news_);

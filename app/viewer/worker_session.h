@@ -32,7 +32,7 @@ public:
     bool can_show(const ShowRequest& request) const;
     void show(const ShowRequest& request);
     /// Begins a walk; `record` goes on with it, so that what is found on the way is told.
-    void walk(Walk walk, size_t block);
+    void walk(Walk walk, size_t block, uint64_t number);
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
     void change(const WhatIf& change, size_t block);
@@ -69,6 +69,7 @@ private:
     struct WalkOnItsWay {
         Walk walk = Walk::go_on;
         size_t block = 0;
+        uint64_t number = 0;
     };
     std::optional<WalkOnItsWay> walk_;
     Clock::time_point walk_rests_ = {}; // when others get their turn

@@ -169,11 +169,11 @@ TEST(SessionWorker, TellsWhatIsFoundOnALongWalk) {
     watcher.model.walk = Walk::go_on; // there is no breakpoint: it goes to the end
     send_requests(watcher.model, watcher.worker());
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.rows[100].is_known; }));
-    EXPECT_TRUE(watcher.model.is_walking);
+    EXPECT_TRUE(watcher.model.walking);
     watcher.worker().show({50, true});
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.place != nullptr; }));
-    EXPECT_TRUE(watcher.model.is_walking) << "a place is shown on the way";
-    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.is_walking; }));
+    EXPECT_TRUE(watcher.model.walking) << "a place is shown on the way";
+    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.walking; }));
     EXPECT_EQ(watcher.model.cursor.block, watcher.model.rows.size() - 1);
 }
 
@@ -207,16 +207,47 @@ TEST(SessionWorker, SaysWhyAProgramCannotBeOpened) {
         << "the next one opens as if nothing had been";
 }
 
+/// The next end of a walk that a worker tells of.
+std::optional<WalkEnd> next_end(SessionWorker& worker) {
+    for (int tries = 0; tries < 6000; ++tries) {
+        SessionUpdate news = worker.take();
+        if (news.walk) return news.walk;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return {};
+}
+
 TEST(SessionWorker, AWalkThatIsInterruptedBeforeItBeginsGoesNowhere) {
+    SessionWorker worker([] {});
+    worker.open(clamped_plate());
+    const uint64_t first = worker.walk(Walk::go_on, 0); // it waits for the program
+    worker.interrupt();
+    const auto ended = next_end(worker);
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(ended->walk, first);
+    EXPECT_EQ(ended->stop.reason, app::StopReason::interrupted);
+    EXPECT_LE(ended->block, 1U);
+    const uint64_t second = worker.walk(Walk::go_on, 0);
+    const auto other = next_end(worker);
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->walk, second);
+    EXPECT_EQ(other->stop.reason, app::StopReason::end);
+}
+
+TEST(SessionWorker, TheEndOfAWalkThatNobodyWaitsForChangesNothing) {
     Watcher watcher;
     watcher.open(clamped_plate());
-    watcher.worker().walk(Walk::go_on, 0); // it waits until the program is open
-    watcher.worker().interrupt();
-    ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.message.empty(); }));
-    EXPECT_LT(watcher.model.cursor.block, 45U);
-    watcher.worker().walk(Walk::go_on, 0);
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.cursor.block == 45; }))
-        << "the next one is another one";
+    ASSERT_TRUE(watcher.record());
+    go_to(watcher.model, 3);
+    watcher.model.walk = Walk::go_on;
+    send_requests(watcher.model, watcher.worker());
+    ASSERT_TRUE(watcher.model.walking);
+    go_to(watcher.model, 7);
+    EXPECT_TRUE(watcher.model.wants_interrupt);
+    send_requests(watcher.model, watcher.worker());
+    ASSERT_TRUE(
+        watcher.wait_for([&] { return watcher.model.place && watcher.model.place->block == 7; }));
+    EXPECT_EQ(watcher.model.cursor.block, 7U);
 }
 
 TEST(SessionWorker, EndsAtAnyMoment) {
