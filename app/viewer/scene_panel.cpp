@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/viewer/navigation.h"
+#include "app/viewer/setup_summary.h"
 #include "app/viewer/widgets.h"
 #include "render/picking.h"
 
@@ -57,6 +58,27 @@ void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::s
                        frame.look.color(Role::panel, 0.86), frame.px(5));
     list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, frame.look.color(Role::text),
                  words.c_str());
+}
+
+/// What was inferred, where it cannot be overlooked.
+void draw_summary(const Frame& frame, ImDrawList& list, const Area& area) {
+    const std::vector<std::string> lines = inferred_summary(frame.model);
+    if (lines.empty() || area.height < frame.px(360)) return;
+    ImFont* const font = frame.fonts.small;
+    const float step = font->FontSize + frame.px(4), x = frame.px(12), y = frame.px(9);
+    float width = 0.0F;
+    for (const std::string& line : lines)
+        width = std::max(width, font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, line.c_str()).x);
+    const float height = step * static_cast<float>(lines.size()) + 2 * y;
+    const ImVec2 corner(area.x + frame.px(14), area.y + area.height - frame.px(56) - height);
+    list.AddRectFilled(corner, {corner.x + width + 2 * x, corner.y + height},
+                       frame.look.color(Role::panel, 0.86), frame.px(5));
+    list.AddRectFilled(corner, {corner.x + frame.px(3), corner.y + height},
+                       frame.look.color(Role::near), frame.px(1));
+    for (size_t i = 0; i < lines.size(); ++i)
+        list.AddText(font, font->FontSize,
+                     {corner.x + x, corner.y + y + step * static_cast<float>(i)},
+                     frame.look.color(i == 0 ? Role::text : Role::dim), lines[i].c_str());
 }
 
 std::string place_text(const ViewModel& model) {
@@ -285,6 +307,7 @@ void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewp
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)}, place_text(model));
     draw_warning(frame, list, area);
+    draw_summary(frame, list, area);
     std::string words;
     if (frame.now < model.message_until) words = model.message;
     if (model.is_busy && !model.place)

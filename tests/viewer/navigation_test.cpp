@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/viewer/navigation.h"
+#include "app/viewer/setup_summary.h"
 #include "tests/viewer/rows.h"
 
 namespace {
@@ -221,6 +222,30 @@ TEST(Navigation, ABreakpointIsOnTheLineWhereverItIsRun) {
     EXPECT_TRUE(model.breakpoints_changed);
     toggle_breakpoint(model, 2);
     EXPECT_TRUE(model.breakpoints.empty());
+}
+
+TEST(SetupSummary, SpellsOutWhatWasInferred) {
+    ViewModel model = ten_blocks();
+    EXPECT_TRUE(inferred_summary(model).empty());
+    OpenedProgram opened;
+    auto sheet = std::make_shared<app::SetupSheet>();
+    sheet->stock = {core::SolidBox{{{0, 0, -10}, {120, 80, 0}}}, 0.0};
+    for (int number = 1; number <= 5; ++number) {
+        core::ToolDescription tool;
+        tool.number = core::ToolNumber{number};
+        tool.diameter = 6.0;
+        sheet->tools.push_back({tool, app::SetupSource::inferred, "", {}});
+    }
+    opened.sheet = sheet;
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    EXPECT_TRUE(inferred_summary(model).empty()) << "a set-up says it";
+    opened.is_inferred = true;
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    EXPECT_EQ(
+        inferred_summary(model),
+        (std::vector<std::string>{"Inferred set-up: E edits it", "Stock 120.00 x 80.00 x 10.00 mm",
+                                  "T1 flat, D6.00 mm", "T2 flat, D6.00 mm", "T3 flat, D6.00 mm",
+                                  "and 2 more tools", "No fixtures are known"}));
 }
 
 TEST(Playback, TakesAsLongAsTheMachine) {
