@@ -151,8 +151,11 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
                               Studio& studio) {
     ViewModel& model = studio.model;
     const size_t from = options.from.value_or(0), to = options.to.value_or(model.rows.size() - 1);
-    if (to < from || to >= model.rows.size())
+    if (to >= model.rows.size() || from >= model.rows.size())
         return tl::unexpected(no_such("--from, --to: " + block_numbers(model)));
+    if (to < from)
+        return tl::unexpected(
+            no_such(fmt::format("a film goes forwards: --from {} is behind --to {}", from, to)));
     const BlockRow& last = model.rows[to];
     const double length = last.time + last.duration - model.rows[from].time;
     const size_t count =

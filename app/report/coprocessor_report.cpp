@@ -300,10 +300,10 @@ std::string coprocessor_csv(const CoprocessorResult& result) {
         const Json block = block_json(result, i);
         for (const auto& [key, value] : block.items()) {
             const std::string cell = value.is_null() ? ""
-                               : value.is_number_float()
-                                   ? fmt::format("{:.9f}", value.get<double>())
-                               : value.is_string() ? value.get<std::string>()
-                                                   : value.dump();
+                                     : value.is_number_float()
+                                         ? fmt::format("{:.9f}", value.get<double>())
+                                     : value.is_string() ? value.get<std::string>()
+                                                         : value.dump();
             row += (row.empty() ? "" : ",") + csv_cell(cell);
         }
         text += row + "\r\n";

@@ -108,6 +108,8 @@ std::optional<core::Vec3> tip_now(const ViewModel& model) {
 
 std::optional<render::Witness> witness_of(const ViewModel& model) {
     if (!model.has_rows() || !model.settings.shown.witness) return {};
+    // While the worker makes another view the tool stands where the last one has it.
+    if (model.place && model.place->block != model.cursor.block) return {};
     const BlockRow& row = model.row();
     if (!row.has_witness()) return {};
     return render::Witness{row.on_tool, row.on_body, state_of(row)};

@@ -13,6 +13,7 @@ namespace {
 using render::Role;
 
 std::string work_offset(const ViewModel& model) {
+    if (model.program && model.program->counts_blocks) return {}; // Klartext has no G54
     if (!model.place) return {};
     for (const ShownValue& value : model.place->modal)
         if (value.name == "offset") return value.text;
