@@ -244,6 +244,9 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     const bool is_form = model.popup == Popup::setup;
     ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
                             ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    // What is taller than the window scrolls.
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F),
+                                        ImVec2(area.width - 20, 0.88F * area.height));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
     if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);

@@ -106,6 +106,28 @@ expect 'Space plays' 'block ([4-9]|1[0-9]) of'
 press space
 press Home
 
+picture 14-before
+press v
+picture 14-findings
+same_picture 14-before 14-findings && die 'V shows the findings'
+press ctrl+Down
+expect 'Ctrl+Down goes to the first of them' 'block 3[0-9] of 45'
+press v
+press Home
+expect 'Home' 'block 0 of'
+press e
+picture 15-setup
+[[ $(compare -metric AE "$pictures/14-before.png" "$pictures/15-setup.png" null: 2>&1 || true) -gt 100000 ]] \
+    || die 'E opens the set-up'
+xdotool windowsize "$window" 640 420
+sleep 0.7
+picture 16-setup-small
+press Escape
+picture 17-small
+same_picture 16-setup-small 17-small && die 'Escape closes it'
+xdotool windowsize "$window" 1440 900
+sleep 0.7
+
 sed -i '6a (ANOTHER LINE)\nG4 P0.1' "$work/plate.nc"
 expect 'a saved file is read again' 'of 4[67]\)'
 printf 'GARBAGE[[[' >"$work/plate.nc"
