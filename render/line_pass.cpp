@@ -90,7 +90,7 @@ void LinePass::set_inks(const ViewFrame& frame) const {
     lines_.set("rapid_ink", with_alpha(color(theme, Role::rapid), 0.75));
     lines_.set("ink", Color{0, 0, 0, 0});
     lines_.set("wider", 0.0F);
-    lines_.set("later", frame.scene.fade_later_blocks ? 0.3F : 1.0F);
+    lines_.set("later", frame.scene.fade_later_blocks ? 0.55F : 1.0F);
     lines_.set("current", frame.scene.current_block.value_or(std::numeric_limits<uint32_t>::max()));
     lines_.set("nearer", nearer(frame.camera, path_share));
     lines_.set_sampler("points", 0);
