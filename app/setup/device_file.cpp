@@ -75,11 +75,8 @@ core::Result<DeviceFile> device_file_in(const toml::table& parsed) {
 } // namespace
 
 core::Result<DeviceFile> read_device_file(const std::string& path) {
-    core::Result<DeviceFile> file;
-    if (const auto parsed = read_toml(path))
-        file = device_file_in(*parsed);
-    else
-        file = tl::unexpected(parsed.error());
+    FEELER_TRY(const toml::table parsed, read_toml(path));
+    auto file = device_file_in(parsed);
     if (!file && file.error().file.empty()) file.error().file = path;
     return file;
 }

@@ -69,11 +69,8 @@ HolderLibrary shipped() {
 } // namespace
 
 core::Result<HolderLibrary> read_holder_library(const std::string& path) {
-    core::Result<HolderLibrary> library;
-    if (const auto parsed = read_toml(path))
-        library = read_library(*parsed);
-    else
-        library = tl::unexpected(parsed.error());
+    FEELER_TRY(const toml::table parsed, read_toml(path));
+    auto library = read_library(parsed);
     if (!library && library.error().file.empty()) library.error().file = path;
     return library;
 }

@@ -7,22 +7,12 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "app/setup/setup_tables.h"
+#include "app/setup/toml_file.h"
 
 namespace app {
 namespace {
-
-core::Result<toml::table> parsed(const std::string& text) {
-    try {
-        return toml::table(toml::parse(text));
-    } catch (const toml::parse_error& error) {
-        const toml::source_position at = error.source().begin;
-        return core::fail(core::ErrorCode::syntax, std::string(error.description()),
-                          {at.line, at.column, 0});
-    }
-}
 
 /// Visits every node below one, with its key; elements of lists have that of the list.
 void visit(const toml::node& node, const std::string& key,
@@ -190,7 +180,7 @@ void put(toml::table& root, double allowance) {
 } // namespace
 
 core::Result<std::string> rewritten_setup(const std::string& text, const SetupEdits& edits) {
-    FEELER_TRY(const toml::table before, parsed(text));
+    FEELER_TRY(const toml::table before, parsed_toml(text));
     Lines lines(text);
     const std::set<size_t> heads = heads_of(before, lines);
     toml::table wanted = before;
@@ -223,14 +213,14 @@ core::Result<std::string> rewritten_setup(const std::string& text, const SetupEd
         if (table.first > 0) lines.replace(table.first, table.end, table.text);
     }
     const std::string cut = lines.text() + added;
-    if (const auto read = parsed(cut); read && *read == wanted) return cut;
+    if (const auto read = parsed_toml(cut); read && *read == wanted) return cut;
     std::ostringstream whole;
     whole << wanted << "\n";
     return whole.str();
 }
 
 bool names_relative_files(const std::string& text) {
-    const auto root = parsed(text);
+    const auto root = parsed_toml(text);
     if (!root) return false;
     static const std::set<std::string> keys = {
         "mesh",       "model",       "file",         "ini",         "parameters",

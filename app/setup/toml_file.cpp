@@ -3,19 +3,35 @@
 #include <filesystem>
 
 namespace app {
+namespace {
+
+core::Error syntax_error(const toml::parse_error& error, const std::string& file) {
+    const toml::source_position at = error.source().begin;
+    return {
+        core::ErrorCode::syntax, {at.line, at.column, 0}, std::string(error.description()), file};
+}
+
+} // namespace
+
+core::Result<toml::table> parsed_toml(std::string_view text) {
+    try {
+        return toml::table(toml::parse(text));
+    } catch (const toml::parse_error& error) {
+        return tl::unexpected(syntax_error(error, ""));
+    }
+}
 
 core::Result<toml::table> read_toml(const std::string& path) {
+    using core::ErrorCode;
     std::error_code failure;
     if (std::filesystem::is_directory(path, failure))
-        return core::fail(core::ErrorCode::io, "is a folder, not a file");
+        return tl::unexpected<core::Error>({ErrorCode::io, {}, "is a folder, not a file", path});
     if (!std::filesystem::exists(path, failure))
-        return core::fail(core::ErrorCode::io, "there is no such file");
+        return tl::unexpected<core::Error>({ErrorCode::io, {}, "there is no such file", path});
     try {
-        return toml::parse_file(path);
+        return toml::table(toml::parse_file(path));
     } catch (const toml::parse_error& error) {
-        const toml::source_position at = error.source().begin;
-        return core::fail(core::ErrorCode::syntax, std::string(error.description()),
-                          {at.line, at.column, 0});
+        return tl::unexpected(syntax_error(error, path));
     }
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "app/setup/setup_tables.h"
+#include "app/setup/toml_file.h"
 #include "app/setup/utf8_text.h"
 
 namespace app::viewer {
@@ -62,13 +62,9 @@ void write_note(Notes& notes, const std::string& program, const FindingGroup& gr
 
 Notes notes_in(const std::string& text) {
     Notes notes;
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error&) {
-        return notes; // as if there was no file
-    }
-    const toml::array* list = root["note"].as_array();
+    const auto root = parsed_toml(text);
+    if (!root) return notes; // as if there was no file
+    const toml::array* list = (*root)["note"].as_array();
     if (!list) return notes;
     for (const toml::node& node : *list) {
         if (!node.is_table()) continue;

@@ -5,7 +5,8 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
+
+#include "app/setup/toml_file.h"
 
 namespace app::viewer {
 namespace {
@@ -29,18 +30,13 @@ void take_within(const toml::table& table, std::string_view name, int& value, in
     if (found >= least && found <= largest) value = found;
 }
 
-toml::parse_result parsed(const std::string& text) { return toml::parse(text); }
-
 } // namespace
 
 Settings settings_in(const std::string& text) {
     Settings settings;
-    toml::table table;
-    try {
-        table = parsed(text);
-    } catch (const toml::parse_error&) {
-        return settings; // as if there was no file
-    }
+    const auto parsed = parsed_toml(text);
+    if (!parsed) return settings; // as if there was no file
+    const toml::table& table = *parsed;
     std::string word;
     take(table, "theme", word);
     if (word == "light") settings.theme = render::Theme::light;
