@@ -17,58 +17,55 @@ std::string identifier(size_t number) {
     return id;
 }
 
-std::string binary(uint64_t value) { return fmt::format("{:b}", value); }
+/// A signal of the device as a whole.
+struct DeviceSignal {
+    const char* name;
+    uint32_t bits;
+    uint64_t (*value)(const CoprocessorState&);
+};
 
-/// What the trace shows of a state, in the order in which it is declared.
-std::vector<uint64_t> values_of(const CoprocessorState& state) {
-    std::vector<uint64_t> values = {
-        state.host.enabled,
-        state.permits.stopped != Stop::none,
-        static_cast<uint64_t>(state.permits.stopped),
-        state.permits.permit_sequence,
-        state.permits.retired,
-        state.fifo.entries.size(),
-        state.permits.in_order.size(),
-        state.searching,
-        state.memory.asked.size(),
-        state.memory.under_way.size(),
-        state.memory.writes.size(),
-        state.memory.response.request.valid,
-        interrupt(state),
-        state.retired.valid,
-        state.retired.segment.sequence,
-    };
-    for (const SearchElement& element : state.elements) {
-        values.push_back(static_cast<uint64_t>(std::popcount(element.busy)));
-        values.push_back(static_cast<uint64_t>(std::popcount(element.waiting)));
-        values.push_back(static_cast<uint64_t>(std::popcount(element.done)));
-    }
-    return values;
-}
+constexpr DeviceSignal device_signals[] = {
+    {"enabled", 1, [](const CoprocessorState& s) { return uint64_t{s.host.enabled}; }},
+    {"stopped", 1,
+     [](const CoprocessorState& s) { return uint64_t{s.permits.stopped != Stop::none}; }},
+    {"stop", 4, [](const CoprocessorState& s) { return static_cast<uint64_t>(s.permits.stopped); }},
+    {"permit_seq", 32,
+     [](const CoprocessorState& s) { return uint64_t{s.permits.permit_sequence}; }},
+    {"retired", 32, [](const CoprocessorState& s) { return uint64_t{s.permits.retired}; }},
+    {"fifo_used", 8, [](const CoprocessorState& s) { return uint64_t{s.fifo.entries.size()}; }},
+    {"dispatched", 8,
+     [](const CoprocessorState& s) { return uint64_t{s.permits.in_order.size()}; }},
+    {"searching", 16, [](const CoprocessorState& s) { return uint64_t{s.searching}; }},
+    {"memory_asked", 8, [](const CoprocessorState& s) { return uint64_t{s.memory.asked.size()}; }},
+    {"memory_under_way", 8,
+     [](const CoprocessorState& s) { return uint64_t{s.memory.under_way.size()}; }},
+    {"memory_writes", 8,
+     [](const CoprocessorState& s) { return uint64_t{s.memory.writes.size()}; }},
+    {"memory_response", 1,
+     [](const CoprocessorState& s) { return uint64_t{s.memory.response.request.valid}; }},
+    {"irq", 1, [](const CoprocessorState& s) { return uint64_t{interrupt(s)}; }},
+    {"retires", 1, [](const CoprocessorState& s) { return uint64_t{s.retired.valid}; }},
+    {"retired_seq", 32,
+     [](const CoprocessorState& s) { return uint64_t{s.retired.segment.sequence}; }}};
+
+/// A signal of an element: of how many of its threads something is true.
+struct ElementSignal {
+    const char* name;
+    uint32_t SearchElement::*threads;
+};
+
+constexpr ElementSignal element_signals[] = {{"busy", &SearchElement::busy},
+                                             {"waiting", &SearchElement::waiting},
+                                             {"done", &SearchElement::done}};
 
 } // namespace
 
-VcdTrace::VcdTrace(const DeviceConfig& config)
-    : picoseconds_(1'000'000 / config.clock_mhz), elements_(config.elements) {
+VcdTrace::VcdTrace(const DeviceConfig& config) : picoseconds_(1'000'000 / config.clock_mhz) {
     text_ = "$version feeler $end\n$timescale 1ps $end\n$scope module coprocessor $end\n";
-    declare("enabled", 1);
-    declare("stopped", 1);
-    declare("stop", 4);
-    declare("permit_seq", 32);
-    declare("retired", 32);
-    declare("fifo_used", 8);
-    declare("dispatched", 8);
-    declare("searching", 16);
-    declare("memory_asked", 8);
-    declare("memory_under_way", 8);
-    declare("memory_writes", 8);
-    declare("memory_response", 1);
-    declare("irq", 1);
-    declare("retires", 1);
-    declare("retired_seq", 32);
-    for (uint32_t i = 0; i < elements_; ++i)
-        for (const char* what : {"busy", "waiting", "done"})
-            declare(fmt::format("element{}_{}", i, what), 5);
+    for (const DeviceSignal& signal : device_signals) declare(signal.name, signal.bits);
+    for (uint32_t i = 0; i < config.elements; ++i)
+        for (const ElementSignal& signal : element_signals)
+            declare(fmt::format("element{}_{}", i, signal.name), 5);
     text_ += "$upscope $end\n$enddefinitions $end\n";
 }
 
@@ -84,13 +81,18 @@ void VcdTrace::write(size_t signal, uint64_t value, bool& has_time, uint64_t cyc
     if (!has_time) text_ += fmt::format("#{}\n", cycle * picoseconds_);
     has_time = true;
     text_ += known.bits == 1 ? fmt::format("{}{}\n", value, known.id)
-                             : fmt::format("b{} {}\n", binary(value), known.id);
+                             : fmt::format("b{:b} {}\n", value, known.id);
 }
 
 void VcdTrace::note(const CoprocessorState& state) {
-    const std::vector<uint64_t> values = values_of(state);
     bool has_time = false;
-    for (size_t i = 0; i < values.size(); ++i) write(i, values[i], has_time, state.cycle);
+    size_t next = 0;
+    for (const DeviceSignal& signal : device_signals)
+        write(next++, signal.value(state), has_time, state.cycle);
+    for (const SearchElement& element : state.elements)
+        for (const ElementSignal& signal : element_signals)
+            write(next++, static_cast<uint64_t>(std::popcount(element.*signal.threads)), has_time,
+                  state.cycle);
 }
 
 } // namespace hwsim

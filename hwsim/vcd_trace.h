@@ -30,7 +30,6 @@ private:
     void write(size_t signal, uint64_t value, bool& has_time, uint64_t cycle);
 
     uint64_t picoseconds_;
-    uint32_t elements_;
     std::vector<Signal> signals_;
     std::string text_;
 };
