@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -26,11 +27,6 @@ constexpr std::array<const char*, hwsim::counter_count> counter_names = {
 
 double share(uint64_t part, uint64_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-bool violates(const core::BlockResult& result) {
-    return std::any_of(result.pairs.begin(), result.pairs.end(),
-                       [](const auto& pair) { return pair.verdict >= core::Verdict::violation; });
 }
 
 /// Seconds that blocks took, those that asked nothing left out, in order.
@@ -161,25 +157,16 @@ Json block_json(const CoprocessorResult& result, size_t i) {
 
 EngineAgreement agreement(const CoprocessorRun& run) {
     EngineAgreement found;
-    for (size_t i = 0; i < run.blocks.size(); ++i) {
-        const BlockPermit& permit = run.blocks[i].permit;
-        const core::BlockResult& exact = run.check.blocks[i].result;
-        if (!permit.not_asked.empty())
-            ++found.not_asked;
-        else if (permit.permitted && violates(exact))
-            ++found.missed;
-        else if (!permit.permitted && exact.verdict == core::Verdict::clear)
-            ++found.false_alarms;
-    }
+    for (size_t i = 0; i < run.blocks.size(); ++i)
+        add(found, run.blocks[i].permit, run.check.blocks[i].result);
     return found;
 }
 
 DeviceFigures figures(const CoprocessorResult& result) {
     const DeviceTotals& totals = result.run.totals;
     DeviceFigures f;
-    double working = 0.0;
-    for (const double seconds : latencies(result)) working += seconds;
     const std::vector<double> sorted = latencies(result);
+    const double working = std::accumulate(sorted.begin(), sorted.end(), 0.0);
     if (!sorted.empty()) {
         const auto at = [&](double part) {
             return sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1))];

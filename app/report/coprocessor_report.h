@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/session/device_fit.h"
+#include "app/session/engine_agreement.h"
 #include "app/setup/device_file.h"
 
 namespace app {
@@ -15,13 +16,7 @@ struct CoprocessorResult {
     std::vector<DeviceFit> fits;
 };
 
-/// How the two engines stand to each other, in blocks.
-struct EngineAgreement {
-    size_t missed = 0;       // violations by the exact engine that the device permitted
-    size_t false_alarms = 0; // refused, and clear by the exact engine
-    size_t not_asked = 0;    // refused because the device cannot be asked
-};
-
+/// How the two engines stand to each other.
 EngineAgreement agreement(const CoprocessorRun& run);
 
 /// Figures of the device over the whole run.

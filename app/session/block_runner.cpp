@@ -41,6 +41,16 @@ core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
     return finding;
 }
 
+std::optional<std::vector<core::Event>>
+first_events(const std::function<void(const BlockVisit&)>& show) {
+    std::optional<std::vector<core::Event>> found;
+    show([&](const gcode::BlockResult&, std::span<const core::Event> events) {
+        found.emplace(events.begin(), events.end());
+        return false;
+    });
+    return found;
+}
+
 std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                                                 const gcode::Lowering& lowering) const {
     if (lowering.moved_tilted)

@@ -15,15 +15,20 @@ core::Error named(core::Error error, const std::string& file);
 /// The finding that a warning of the interpreter makes, under the severities of the set-up.
 core::Finding remark(const core::Setup& setup, const gcode::Warning& warning);
 
+/// Looks at a block and what it does; whether it wants to see the next one.
+using BlockVisit = std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>;
+
+/// The events of the first block that a way ahead shows; empty if it shows none. `show` is given
+/// who looks.
+std::optional<std::vector<core::Event>>
+first_events(const std::function<void(const BlockVisit&)>& show);
+
 /// What carrying out one block gave.
 struct BlockStep {
     CheckedBlock checked;
     std::vector<core::Finding> findings;
     std::vector<core::BlockTime> timed; // blocks whose place in time has become known
 };
-
-/// Looks at a block and what it does; whether it wants to see the next one.
-using BlockVisit = std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>;
 
 /// Carries out the blocks of a program one at a time. It keeps nothing of a run: all of that is in
 /// the place. Refers to the check.

@@ -32,12 +32,12 @@ Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const co
     return check;
 }
 
-Result<BlockPermit> CoprocessorCheck::ask(const core::BlockEvents& block,
+Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
                                           const core::SimulatorState& before) {
     BlockPermit permit;
     asked_.clear();
-    FEELER_TRY(const size_t tiles, hwsim::update_stock(driver_, stock_, before.stock));
-    (void)tiles;
+    if (auto updated = hwsim::update_stock(driver_, stock_, before.stock); !updated)
+        return tl::unexpected(std::move(updated).error());
     At at{.stock = before.stock,
           .spindle = before.spindle,
           .corners = before.corners,
@@ -47,7 +47,7 @@ Result<BlockPermit> CoprocessorCheck::ask(const core::BlockEvents& block,
         if (const auto found = setup_->tools.find(*before.tool); found != setup_->tools.end())
             at.tool = &found->second;
     const uint32_t first = driver_.next_sequence;
-    for (const core::Event& event : block.events)
+    for (const core::Event& event : block)
         if (auto asked = ask_event(event, at, permit); !asked)
             return tl::unexpected(std::move(asked).error());
     permit.segments = asked_.size();
@@ -139,8 +139,8 @@ Result<void> CoprocessorCheck::bring_up_to_date(At& at) {
     if (at.to_cut.empty()) return {};
     for (const core::CutterSweep& sweep : at.to_cut) cut(at.stock, sweep);
     at.to_cut.clear();
-    FEELER_TRY(const size_t tiles, hwsim::update_stock(driver_, stock_, at.stock));
-    (void)tiles;
+    if (auto updated = hwsim::update_stock(driver_, stock_, at.stock); !updated)
+        return tl::unexpected(std::move(updated).error());
     return {};
 }
 

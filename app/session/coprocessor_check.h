@@ -32,7 +32,7 @@ public:
                                                const core::CutModel& stock);
 
     /// Errors: models that do not fit into the device.
-    core::Result<BlockPermit> ask(const core::BlockEvents& block,
+    core::Result<BlockPermit> ask(std::span<const core::Event> block,
                                   const core::SimulatorState& before);
 
 private:

@@ -25,7 +25,7 @@ bench_with(const hwsim::DeviceConfig& config, const core::Setup& setup, const co
     return bench;
 }
 
-core::Result<DeviceBlock> asked(Bench& bench, const core::BlockEvents& block,
+core::Result<DeviceBlock> asked(Bench& bench, std::span<const core::Event> block,
                                 const core::SimulatorState& before) {
     const uint64_t begin = bench.cycle();
     const hwsim::SearchSums sums = bench.device.state.searched;
@@ -52,7 +52,6 @@ class BesideCoprocessor {
 public:
     BesideCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
         : job_(job), check_(check), runner_(check), ahead_(check) {
-        runner_.after_block = job.check.after_block;
         runner_.on_timed = [this](const core::BlockTime& time) { plan(time); };
     }
 
@@ -95,28 +94,16 @@ core::Result<void> BesideCoprocessor::open() {
 
 core::Result<void> BesideCoprocessor::ask() {
     const RunPlace& place = runner_.place();
-    core::Result<void> done;
-    ahead_.visit_ahead(
-        place.control, place.lowering,
-        [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
-            const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
-            auto first = asked(*bench_, of_block, place.machine);
-            if (!first) {
-                done = tl::unexpected(std::move(first).error());
-                return false;
-            }
-            made_.blocks.push_back(*std::move(first));
-            for (auto& [elements, bench] : others_) {
-                const auto other = asked(*bench, of_block, place.machine);
-                if (!other) {
-                    done = tl::unexpected(other.error());
-                    return false;
-                }
-                made_.cycles_by_elements[elements].push_back(other->cycles);
-            }
-            return false;
-        });
-    return done;
+    const auto events = first_events(
+        [&](const BlockVisit& look) { ahead_.visit_ahead(place.control, place.lowering, look); });
+    if (!events) return {};
+    FEELER_TRY(DeviceBlock asked_of_it, asked(*bench_, *events, place.machine));
+    made_.blocks.push_back(std::move(asked_of_it));
+    for (auto& [elements, bench] : others_) {
+        FEELER_TRY(const DeviceBlock other, asked(*bench, *events, place.machine));
+        made_.cycles_by_elements[elements].push_back(other.cycles);
+    }
+    return {};
 }
 
 core::Result<CoprocessorRun> BesideCoprocessor::run() {

@@ -12,7 +12,6 @@ struct DeviceBlock {
     uint64_t cycles = 0; // from the first word of the stock or the block to its permit
     uint64_t nodes = 0;  // visited in both trees
     uint64_t pairs = 0;  // of records compared
-    size_t tiles = 0;    // of the stock brought up to date for it
 };
 
 /// Sums over a whole run, in the device's own counters.

@@ -28,6 +28,7 @@ std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_
 }
 
 std::vector<DeviceFit> least_clocks(const CoprocessorRun& run, const ControlConfig& control) {
+    if (run.cycles_by_elements.empty()) return {};
     const std::vector<BlockService> at_once(run.blocks.size());
     const std::vector<BlockTiming> undisturbed =
         timed_with_permits(run.plan, at_once, control).blocks;

@@ -18,8 +18,6 @@ public:
     /// What the record has gained since the last call.
     void publish(const DebugSession& session, SessionUpdate& news);
 
-    size_t row_count() const { return rows_; }
-
 private:
     using Clock = std::chrono::steady_clock;
 

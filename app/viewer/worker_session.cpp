@@ -47,22 +47,6 @@ ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
     return track;
 }
 
-/// What the next block of a session does.
-struct BlockAhead {
-    std::vector<core::Event> events;
-    bool exists = false;
-};
-
-BlockAhead block_ahead(DebugSession& session) {
-    BlockAhead ahead;
-    session.visit_ahead([&](const gcode::BlockResult&, std::span<const core::Event> events) {
-        ahead.exists = true;
-        ahead.events.assign(events.begin(), events.end());
-        return false;
-    });
-    return ahead;
-}
-
 /// The tool that a block moves: the one that it changes to, if it does.
 std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
                                         std::optional<core::ToolNumber> before) {
@@ -159,12 +143,13 @@ void WorkerSession::show(const ShowRequest& request) {
     if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
     view->scene = scene_at(view->block);
     const gcode::InterpreterState before = session_->place().control;
-    const BlockAhead ahead = block_ahead(*session_);
-    view->poses = poses_of(view->scene->setup.machine, ahead.events);
-    view->tool = tool_of(ahead.events, session_->place().machine.tool);
+    const auto ahead = first_events([&](const BlockVisit& look) { session_->visit_ahead(look); });
+    const std::vector<core::Event> events = ahead.value_or(std::vector<core::Event>());
+    view->poses = poses_of(view->scene->setup.machine, events);
+    view->tool = tool_of(events, session_->place().machine.tool);
     if (!request.at_end) surface_.update(session_->place().machine.stock);
     // A block that the control refuses has nothing behind it: the view is then that before it.
-    if (ahead.exists) static_cast<void>(session_->go_to(view->block + 1));
+    if (ahead) static_cast<void>(session_->go_to(view->block + 1));
     const RunPlace& after = session_->place();
     if (request.at_end) surface_.update(after.machine.stock);
     view->stock = surface_.bricks();

@@ -47,15 +47,10 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     }
     EXPECT_EQ(all.missed, "");
     EXPECT_EQ(all.errors, "");
-    RecordProperty("blocks", all.blocks);
-    RecordProperty("violations", all.violations);
-    RecordProperty("refused", all.refused);
-    RecordProperty("not_asked", all.not_asked);
-    RecordProperty("undecided", all.undecided);
-    RecordProperty("false_alarms", all.false_alarms);
-    EXPECT_GT(all.violations, 150);
-    EXPECT_LT(all.false_alarms, all.blocks / 200);
-    EXPECT_LT(all.not_asked, all.blocks / 50);
+    test_support::record(all.counts);
+    EXPECT_GT(all.counts.violations, 150);
+    EXPECT_LT(all.counts.false_alarms, all.counts.blocks / 200);
+    EXPECT_LT(all.counts.not_asked, all.counts.blocks / 50);
 }
 
 } // namespace

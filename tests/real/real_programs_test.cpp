@@ -69,15 +69,10 @@ TEST(RealPrograms, AreRefusedByTheCoprocessorWhereTheExactEngineFindsAViolation)
     EXPECT_EQ(judged_by(hwsim::emulated_device({}).value()), all);
     EXPECT_EQ(all.missed, "");
     EXPECT_EQ(all.errors, "");
-    RecordProperty("blocks", all.blocks);
-    RecordProperty("violations", all.violations);
-    RecordProperty("refused", all.refused);
-    RecordProperty("not_asked", all.not_asked);
-    RecordProperty("undecided", all.undecided);
-    RecordProperty("false_alarms", all.false_alarms);
-    EXPECT_GT(all.blocks, 1'000);
-    EXPECT_GT(all.violations, 50);
-    EXPECT_LT(all.false_alarms, all.blocks / 500);
+    test_support::record(all.counts);
+    EXPECT_GT(all.counts.blocks, 1'000);
+    EXPECT_GT(all.counts.violations, 50);
+    EXPECT_LT(all.counts.false_alarms, all.counts.blocks / 500);
 }
 
 } // namespace

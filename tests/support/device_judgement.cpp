@@ -1,47 +1,10 @@
 #include "tests/support/device_judgement.h"
 
-#include "app/session/coprocessor_check.h"
+#include <gtest/gtest.h>
+
 #include "app/session/program_runner.h"
 
 namespace test_support {
-namespace {
-
-using app::BlockPermit;
-
-bool violates(const core::BlockResult& result) {
-    for (const core::PairClearance& pair : result.pairs)
-        if (pair.verdict >= core::Verdict::violation) return true;
-    return false;
-}
-
-void compare(const BlockPermit& permit, const app::CheckedBlock& block, DeviceJudgement& judgement,
-             const std::string& file) {
-    ++judgement.blocks;
-    judgement.refused += permit.permitted ? 0 : 1;
-    judgement.not_asked += permit.not_asked.empty() ? 0 : 1;
-    if (violates(block.result)) {
-        ++judgement.violations;
-        if (permit.permitted) judgement.missed += file + ":" + std::to_string(block.line) + "\n";
-    } else if (!permit.permitted && permit.not_asked.empty()) {
-        const bool is_open = block.result.verdict == core::Verdict::undecided;
-        ++(is_open ? judgement.undecided : judgement.false_alarms);
-    }
-}
-
-/// What the device says of the block that the runner will run next.
-core::Result<BlockPermit> ask_next(app::CoprocessorCheck& device, const app::RunPlace& place,
-                                   app::BlockRunner& ahead) {
-    core::Result<BlockPermit> permit;
-    ahead.visit_ahead(place.control, place.lowering,
-                      [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
-                          permit =
-                              device.ask({.block = block.block, .events = events}, place.machine);
-                          return false;
-                      });
-    return permit;
-}
-
-} // namespace
 
 void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJudgement& judgement) {
     const auto fail = [&](const core::Error& error) {
@@ -55,11 +18,32 @@ void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJud
     app::ProgramRunner runner(*check);
     app::BlockRunner ahead(*check);
     while (true) {
-        const auto permit = ask_next(*coprocessor, runner.place(), ahead);
+        const app::RunPlace& place = runner.place();
+        const auto events = app::first_events([&](const app::BlockVisit& look) {
+            ahead.visit_ahead(place.control, place.lowering, look);
+        });
+        core::Result<app::BlockPermit> permit;
+        if (events) permit = coprocessor->ask(*events, place.machine);
         if (!permit) return fail(permit.error());
         if (!runner.advance()) return;
-        compare(*permit, check->run.blocks.back(), judgement, job.program);
+        const app::CheckedBlock& block = check->run.blocks.back();
+        const size_t missed = judgement.counts.missed;
+        add(judgement.counts, *permit, block.result);
+        if (judgement.counts.missed > missed)
+            judgement.missed += job.program + ":" + std::to_string(block.line) + "\n";
     }
+}
+
+void record(const app::EngineAgreement& counts) {
+    const auto write = [](const char* name, size_t count) {
+        testing::Test::RecordProperty(name, static_cast<int>(count));
+    };
+    write("blocks", counts.blocks);
+    write("violations", counts.violations);
+    write("refused", counts.refused);
+    write("not_asked", counts.not_asked);
+    write("undecided", counts.undecided);
+    write("false_alarms", counts.false_alarms);
 }
 
 } // namespace test_support
