@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -49,24 +48,6 @@ viewer::ShotView view_named(const std::string& name) {
 
 core::Error no_such(const std::string& what) { return {core::ErrorCode::invalid_value, {}, what}; }
 
-/// The worst verdict, among equals one with an error, then the least margin.
-size_t worst_block(const ViewModel& model) {
-    size_t worst = 0;
-    const auto margin = [](const BlockRow& row) {
-        return row.has_pair() ? *row.lower - *row.allowance : std::numeric_limits<double>::max();
-    };
-    const auto is_worse = [&](const BlockRow& a, const BlockRow& b) {
-        if (a.verdict != b.verdict) return a.verdict > b.verdict;
-        const bool a_fails = a.worst == core::Severity::error;
-        const bool b_fails = b.worst == core::Severity::error;
-        if (a_fails != b_fails) return a_fails;
-        return margin(a) < margin(b);
-    };
-    for (size_t i = 1; i < model.rows.size(); ++i)
-        if (is_worse(model.rows[i], model.rows[worst])) worst = i;
-    return worst;
-}
-
 std::string block_numbers(const ViewModel& model) {
     return fmt::format("the blocks of this program are 0 to {}, as in the reports of check",
                        model.rows.size() - 1);
@@ -77,7 +58,7 @@ core::Result<size_t> chosen_block(const Options& options, const ViewModel& model
         if (*options.block < model.rows.size()) return *options.block;
         return tl::unexpected(no_such("--block: " + block_numbers(model)));
     }
-    if (!options.finding) return worst_block(model);
+    if (!options.finding) return viewer::worst_block(model);
     const size_t number = *options.finding;
     if (number < 1 || number > model.findings.size())
         return tl::unexpected(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "app/setup/utf8_text.h"
 #include "gcode/program_text.h"
@@ -180,6 +181,23 @@ void write_note_at(ViewModel& model, const StretchPlace& place, const std::strin
     write_note(model.notes, notes_key(model), group,
                model.rows[group.stretches[place.stretch].first], text);
     model.notes_changed = true;
+}
+
+size_t worst_block(const ViewModel& model) {
+    size_t worst = 0;
+    const auto margin = [](const BlockRow& row) {
+        return row.has_pair() ? *row.lower - *row.allowance : std::numeric_limits<double>::max();
+    };
+    const auto is_worse = [&](const BlockRow& a, const BlockRow& b) {
+        if (a.verdict != b.verdict) return a.verdict > b.verdict;
+        const bool a_fails = a.worst == core::Severity::error;
+        const bool b_fails = b.worst == core::Severity::error;
+        if (a_fails != b_fails) return a_fails;
+        return margin(a) < margin(b);
+    };
+    for (size_t i = 1; i < model.rows.size(); ++i)
+        if (is_worse(model.rows[i], model.rows[worst])) worst = i;
+    return worst;
 }
 
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text) {

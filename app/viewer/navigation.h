@@ -40,6 +40,10 @@ std::string notes_key(const ViewModel& model);
 std::string note_at(const ViewModel& model, const StretchPlace& place);
 void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text);
 
+/// The block with the worst verdict, among equals one with an error, then the least margin. There
+/// must be rows.
+size_t worst_block(const ViewModel& model);
+
 /// The first block of a line ("188") or N number ("N1880") from the cursor on, then from the
 /// beginning.
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text);

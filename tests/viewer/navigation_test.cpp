@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/viewer/navigation.h"
+#include "app/viewer/scene_of.h"
 #include "app/viewer/setup_summary.h"
 #include "tests/viewer/rows.h"
 
@@ -183,6 +184,31 @@ TEST(Navigation, WithAFilterStepsOnlyToWhatItShows) {
     EXPECT_EQ(model.cursor.block, 7U);
     step(model, -1);
     EXPECT_EQ(model.cursor.block, 3U);
+}
+
+TEST(Navigation, TheWorstBlockIsTheTightestUnlessOneHasAnError) {
+    ViewModel model = model_of({row_with(9.0), row_with(8.0), row_with(3.0), row_with(4.0)});
+    model.rows[0].worst = core::Severity::note;
+    model.rows[1].worst = core::Severity::warning;
+    EXPECT_EQ(worst_block(model), 2U) << "a note makes no block worse";
+    model.rows[1].worst = core::Severity::error;
+    EXPECT_EQ(worst_block(model), 1U);
+    model.rows[3].verdict = core::Verdict::undecided;
+    EXPECT_EQ(worst_block(model), 3U);
+}
+
+TEST(SceneOf, ShowsNoWitnessWhileTheToolStandsAtAnotherBlock) {
+    ViewModel model = ten_blocks();
+    go_to(model, 3);
+    EXPECT_TRUE(witness_of(model)) << "there is no tool yet";
+    auto place = std::make_shared<PlaceView>();
+    place->block = 2;
+    model.place = place;
+    EXPECT_FALSE(witness_of(model));
+    place = std::make_shared<PlaceView>();
+    place->block = 3;
+    model.place = place;
+    EXPECT_TRUE(witness_of(model));
 }
 
 TEST(Navigation, FindsLinesAndNumbers) {
