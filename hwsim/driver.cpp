@@ -130,6 +130,15 @@ core::Result<std::vector<Segment>> entries_of(const Driver& driver, const PathSe
 
 double FoundPair::distance() const { return std::sqrt(static_cast<double>(squared)) * lsb; }
 
+double least_clearance(const FoundPair& found) {
+    // At some sample they are within hypot(clearance, half a step), and their records less than the
+    // reserve farther apart than that.
+    const double at_sample = found.distance() - rounding_reserve * lsb;
+    const double half_step = 0.5 * found.sample_step;
+    if (at_sample <= half_step) return 0.0;
+    return std::sqrt((at_sample - half_step) * (at_sample + half_step));
+}
+
 core::Result<Driver> open_device(DevicePort port) {
     Driver driver{.port = std::move(port)};
     if (read(driver, Register::identification) != identification_word
@@ -208,7 +217,10 @@ core::Result<std::optional<FoundPair>> measure(Driver& driver, const PathSegment
         entry.last = false;
         push_entry(driver, entry);
         if (wait_for_all(driver).stop != Stop::none) return std::optional<FoundPair>();
-        const std::optional<FoundPair> pair = found_pair(driver);
+        std::optional<FoundPair> pair = found_pair(driver);
+        if (pair)
+            pair->sample_step =
+                std::ldexp(glm::length(segment.to - segment.from), -int{entry.log2_steps});
         if (pair && (!nearest || pair->squared < nearest->squared)) nearest = pair;
     }
     return nearest;

@@ -65,9 +65,14 @@ struct FoundPair {
     uint32_t tool_record = 0, work_record = 0;
     uint16_t sample = 0;
     uint32_t sequence = 0;
+    double sample_step = 0.0; // of a measurement: from one of its samples to the next, mm
 
-    double distance() const; // mm
+    double distance() const; // of the records, mm
 };
+
+/// What the bodies of a measured pair keep over the segment, at least, mm (README.md, "Error
+/// bound").
+double least_clearance(const FoundPair& found);
 
 /// Resets a device and makes it ready.
 ///

@@ -53,6 +53,9 @@ enum class Stop : uint8_t {
 };
 constexpr uint8_t stop_count = 13;
 
+/// As reports say it: `stack-overflow`.
+const char* name_of(Stop stop);
+
 /// How much a search did.
 struct SearchCounts {
     uint32_t nodes = 0;      // lines of nodes opened

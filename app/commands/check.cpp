@@ -17,6 +17,7 @@ namespace {
 struct Options {
     CheckArguments what;
     std::string output, stock, comparison, format = "text";
+    Engine engine = Engine::exact;
     bool blocks = false;
     bool pairs = false;
     bool verdict_only = false;
@@ -96,6 +97,7 @@ ExitCode check(const Options& options) {
     stop_on_interrupt();
     ProgressLine line;
     job->detail = detail_of(options);
+    job->engine = options.engine;
     job->needs_surface = !options.stock.empty() || !options.comparison.empty();
     job->before_model = say_memory;
     job->after_block = [&line](const CheckProgress& progress) {
@@ -143,6 +145,12 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: add every pair of bodies to every block");
+    command
+        .add_option("--engine", options->engine,
+                    "Who measures: exact, or coprocessor (feeler coproc says what it is)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
+            {"exact", Engine::exact}, {"coprocessor", Engine::coprocessor}}))
+        ->option_text("exact|coprocessor");
     command
         .add_flag("--verdict-only", options->verdict_only,
                   "Faster: no clearance of blocks that a bound already clears")

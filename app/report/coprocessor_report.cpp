@@ -15,10 +15,6 @@ namespace {
 using hwsim::Counter;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, hwsim::stop_count> stop_names = {
-    "none",          "violation",      "out-of-range", "sequence",    "fifo-overrun",
-    "model-missing", "model-changed",  "bad-check",    "bad-address", "stack-overflow",
-    "too-long",      "memory-stalled", "host-silent"};
 constexpr std::array<const char*, hwsim::counter_count> counter_names = {
     "cycles",        "busy",       "queries",       "nodes",       "splits",
     "box_tests",     "pair_tests", "node_hits",     "node_misses", "record_hits",
@@ -56,7 +52,7 @@ double joules(const CoprocessorResult& result, double working) {
 std::string refusal(const CoprocessorResult& result, size_t block) {
     const BlockPermit& permit = result.run.blocks[block].permit;
     if (!permit.not_asked.empty()) return permit.not_asked;
-    std::string why = stop_names[static_cast<size_t>(permit.stop)];
+    std::string why = hwsim::name_of(permit.stop);
     if (permit.pair)
         why = fmt::format("{} / {}", core::part_name(result.run.check.setup, *permit.pair),
                           core::body_name(result.run.check.setup, *permit.pair));

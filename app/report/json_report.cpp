@@ -156,6 +156,7 @@ Json heading_json(const CheckRun& run) {
                        {"sha256", run.sha256},
                        {"dialect", gcode::dialect(run.dialect).name},
                        {"blocks", run.blocks.size()}};
+    json["engine"] = name_of(run.engine);
     json["allowance"] = run.setup.allowance ? Json(*run.setup.allowance) : Json(nullptr);
     json["mesh_size"] = run.setup.mesh_size;
     json["assumptions"] = run.assumptions;

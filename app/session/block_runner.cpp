@@ -91,11 +91,18 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
     const gcode::Lowering lowering_before = place.lowering;
     const std::vector<core::Event> events =
         events_of(*setup_, block, place.lowering, check_.file.speed_by_hand);
-    if (auto refused = refusal(block, place.lowering)) {
+    const auto give_up = [&](core::Error error) {
         place.control = before_;
         place.lowering = lowering_before;
-        return tl::unexpected(named(*std::move(refused), check_.program->file));
-    }
+        return tl::unexpected(named(std::move(error), check_.program->file));
+    };
+    if (auto refused = refusal(block, place.lowering)) return give_up(*std::move(refused));
+    auto judged = judge ? judge(events, place.machine) : core::Judgement();
+    if (!judged)
+        return give_up({judged.error().code,
+                        {.line = block.line, .column = 1},
+                        std::move(judged).error().message,
+                        std::string(block.file)});
     for (const size_t move : fixture_moves_of(*setup_, block)) place.moves_made.insert(move);
     BlockStep step{{block.block,
                     block.line,
@@ -103,7 +110,8 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
                     std::string(block.file),
                     block.calls,
                     {}}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
+                                     judge ? &*judged : nullptr};
     watch_length(place.lengths, *setup_, of_block, block.warnings, place.machine);
     if (before_block)
         before_block(block,

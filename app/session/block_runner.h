@@ -38,6 +38,10 @@ public:
 
     // Told of a block before it is run, when the control has read it and nothing has moved.
     std::function<void(const gcode::BlockResult&, const ProgramPlace&)> before_block;
+    // Says of a block what the distance core would; empty: that is measured.
+    std::function<core::Result<core::Judgement>(std::span<const core::Event>,
+                                                const core::SimulatorState&)>
+        judge;
 
     const core::Setup& setup() const { return *setup_; }
     /// From the next block on. The set-up must outlive the runner.

@@ -3,10 +3,13 @@
 #include <algorithm>
 
 #include "app/session/conclusion.h"
+#include "app/session/device_judge.h"
 #include "app/session/program_runner.h"
 #include "app/session/stopwatch.h"
 
 namespace app {
+
+const char* name_of(Engine engine) { return engine == Engine::exact ? "exact" : "coprocessor"; }
 
 bool CheckRun::has_errors() const {
     return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
@@ -25,6 +28,17 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const Stopwatch checking;
     ProgramRunner runner(check);
     runner.after_block = job.after_block;
+    std::optional<DeviceJudge> device;
+    if (job.engine == Engine::coprocessor) {
+        FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.place().machine.stock));
+        runner.let_judge([&](std::span<const core::Event> block, const auto& before) {
+            return device->judge(block, before);
+        });
+        check.run.engine = Engine::coprocessor;
+        check.run.assumptions.push_back("clearances are judged by the coprocessor alone, which may "
+                                        "refuse what is clear: its models stand out of the bodies "
+                                        "by about a mesh size");
+    }
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));

@@ -30,11 +30,19 @@ struct CheckTimes {
     double check = 0.0; // interpreting, cutting, measuring
 };
 
+/// Who says how near bodies come: the distance core, or a coprocessor of which the functional model
+/// is asked.
+enum class Engine : uint8_t { exact, coprocessor };
+
+/// "exact" or "coprocessor".
+const char* name_of(Engine engine);
+
 /// A program that was run against a set-up, to its end or to its first error.
 struct CheckRun {
     std::string program_file;
     std::string sha256;
     gcode::DialectId dialect{};
+    Engine engine = Engine::exact;
     core::Setup setup;
     std::vector<std::string> assumptions;
     std::vector<CheckedBlock> blocks;
@@ -80,7 +88,8 @@ struct CheckJob {
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace what the set-up says under [program]
-    SetupEdits edits = {};       // replace what the set-up says, or what would be inferred
+    Engine engine = Engine::exact;
+    SetupEdits edits = {}; // replace what the set-up says, or what would be inferred
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

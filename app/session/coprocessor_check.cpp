@@ -16,6 +16,22 @@ bool stands_upright(const core::MovingBody& body, const core::RelativeLeg& way) 
                         : way.orientation == core::Mat3(1.0);
 }
 
+bool can_be_asked(const core::MovingBody& body, const core::RelativeLeg& way) {
+    return !way.turns && stands_upright(body, way) && std::isfinite(way.error);
+}
+
+hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, SlotNumber work,
+                              double distance) {
+    return {.from = way.places.front(), .to = way.places.back(), .pairs = {{tool, work, distance}}};
+}
+
+/// The pair among those of a block, begun here if it was not there.
+AskedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Setup& setup) {
+    for (AskedPair& known : permit.pairs)
+        if (known.pair == pair) return known;
+    return permit.pairs.emplace_back(AskedPair{pair, allowance_of(setup, pair)});
+}
+
 /// The mesh size for a body: the set-up's, or coarser for a large one.
 double spacing_for(const core::Aabb& box, double mesh_size) {
     constexpr double most_cells = 200.0;
@@ -25,9 +41,9 @@ double spacing_for(const core::Aabb& box, double mesh_size) {
 } // namespace
 
 Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const core::Setup& setup,
-                                                const core::CutModel& stock) {
+                                                const core::CutModel& stock, Asking asking) {
     FEELER_TRY(hwsim::Driver driver, hwsim::open_device(std::move(port)));
-    CoprocessorCheck check(std::move(driver), setup);
+    CoprocessorCheck check(std::move(driver), setup, asking);
     FEELER_TRY(check.stock_, hwsim::load_stock(check.driver_, stock));
     return check;
 }
@@ -35,7 +51,6 @@ Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const co
 Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
                                           const core::SimulatorState& before) {
     BlockPermit permit;
-    asked_.clear();
     if (auto updated = hwsim::update_stock(driver_, stock_, before.stock); !updated)
         return tl::unexpected(std::move(updated).error());
     At at{.stock = before.stock,
@@ -46,18 +61,27 @@ Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
     if (before.tool)
         if (const auto found = setup_->tools.find(*before.tool); found != setup_->tools.end())
             at.tool = &found->second;
-    const uint32_t first = driver_.next_sequence;
     for (const core::Event& event : block)
         if (auto asked = ask_event(event, at, permit); !asked)
             return tl::unexpected(std::move(asked).error());
-    permit.segments = asked_.size();
-    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
-    permit.permitted = permit.not_asked.empty() && now.stop == hwsim::Stop::none;
-    if (now.stop == hwsim::Stop::none) return permit;
-    permit.stop = now.stop;
-    if (now.stop_sequence - first < asked_.size()) permit.pair = asked_[now.stop_sequence - first];
-    hwsim::recover(driver_);
+    take_answers(permit);
+    permit.permitted = permit.not_asked.empty() && permit.stop == hwsim::Stop::none;
     return permit;
+}
+
+hwsim::Stop CoprocessorCheck::take_answers(BlockPermit& permit) {
+    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
+    if (now.stop != hwsim::Stop::none) {
+        if (permit.stop == hwsim::Stop::none) permit.stop = now.stop;
+        if (now.stop_sequence - first_asked_ < asked_.size()) {
+            const core::Pair& refused = asked_[now.stop_sequence - first_asked_];
+            if (!permit.pair) permit.pair = refused;
+            entry_of(permit, refused, *setup_).refused = true;
+        }
+        hwsim::recover(driver_);
+    }
+    asked_.clear();
+    return now.stop;
 }
 
 Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, BlockPermit& permit) {
@@ -91,6 +115,7 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Bl
     if (!at.tool && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
         permit.not_asked = "nobody knows where the motion begins";
+        permit.from_unknown = true;
         return {};
     }
     const bool cutting = motion.kind != core::MotionKind::rapid && at.tool
@@ -118,8 +143,9 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
         };
         if (!cuts) {
             const Question stock = question(setup_->stock_mount);
-            if (!is_in_own_cut(stock, at))
-                if (auto asked = ask_pair(stock, stock_, permit); !asked) return asked;
+            const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
+                                                      : &CoprocessorCheck::ask_pair;
+            if (auto asked = (this->*ask)(stock, stock_, permit); !asked) return asked;
         }
         for (size_t i = 0; i < setup_->fixtures.size(); ++i) {
             const core::Fixture& fixture = setup_->fixtures[i];
@@ -158,23 +184,50 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
 }
 
 Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, BlockPermit& permit) {
-    if (q.way.turns || !stands_upright(q.body, q.way) || !std::isfinite(q.way.error)) {
+    if (!can_be_asked(q.body, q.way)) {
         permit.not_asked = "a body turns or is held at an angle";
         return {};
     }
+    if (auto measured = measure_pair(q, work, permit); !measured) return measured;
     // Bodies that may touch are held against each other with the one shrunk by what is contact.
     const bool may_touch = q.allowance.distance <= core::resolution;
     const double shrink =
         may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
     FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
     const double off = q.way.error + (may_touch ? 0.0 : q.off_path);
-    const auto pushed = hwsim::push(driver_, {.from = q.way.places.front(),
-                                              .to = q.way.places.back(),
-                                              .pairs = {{tool, work, q.allowance.distance + off}}});
-    if (pushed)
-        asked_.push_back(q.pair);
-    else
+    if (asked_.empty()) first_asked_ = driver_.next_sequence;
+    if (const auto pushed =
+            hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
+        !pushed) {
         permit.not_asked = pushed.error().message;
+        return {};
+    }
+    asked_.push_back(q.pair);
+    ++permit.segments;
+    if (asking_ == Asking::everything) take_answers(permit);
+    return {};
+}
+
+Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
+                                            BlockPermit& permit) {
+    if (asking_ != Asking::everything) return {};
+    AskedPair& asked = entry_of(permit, q.pair, *setup_);
+    if (!can_be_asked(q.body, q.way)) {
+        asked.lower = 0.0;
+        return {};
+    }
+    FEELER_TRY(const SlotNumber tool, model_of(q.body, 0.0));
+    const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, 0.0));
+    if (!found) permit.not_asked = found.error().message;
+    if (!found || take_answers(permit) != hwsim::Stop::none) {
+        asked.lower = 0.0;
+        return {};
+    }
+    // Without a pair one of the models is empty: there is nothing to come near to.
+    if (!*found) return {};
+    asked.lower = std::min(
+        asked.lower, std::max(0.0, hwsim::least_clearance(**found) - q.way.error - q.off_path));
+    asked.may_overlap = asked.may_overlap || (*found)->squared == 0;
     return {};
 }
 

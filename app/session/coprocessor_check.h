@@ -7,6 +7,15 @@
 
 namespace app {
 
+/// A pair of bodies that the coprocessor was asked about in a block.
+struct AskedPair {
+    core::Pair pair;
+    core::Allowance allowance;
+    bool refused = false;
+    double lower = core::infinity; // they keep at least this, if it was measured
+    bool may_overlap = false;      // their models met
+};
+
 /// What the coprocessor says of a block.
 struct BlockPermit {
     bool permitted = true; // also of a block that moves nothing
@@ -14,7 +23,13 @@ struct BlockPermit {
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // that was refused
     std::string not_asked;          // why a motion could not be asked; it is not permitted then
+    bool from_unknown = false;      // it is, because nobody knows where a motion begins
+    std::vector<AskedPair> pairs;   // each of them once
 };
+
+/// How much is asked of a coprocessor: nothing behind the first refusal of a block, as a machine
+/// would; or each question for itself, and how near the bodies come as well.
+enum class Asking : uint8_t { until_refused, everything };
 
 /// Asks a coprocessor for every motion of a program: each part of the tool and body of the machine
 /// against the stock, as it is before each leg of the motion, and against each fixture. Refers to
@@ -29,7 +44,8 @@ public:
     ///
     /// Errors: those of the driver.
     static core::Result<CoprocessorCheck> with(hwsim::DevicePort port, const core::Setup& setup,
-                                               const core::CutModel& stock);
+                                               const core::CutModel& stock,
+                                               Asking asking = Asking::until_refused);
 
     /// Errors: models that do not fit into the device.
     core::Result<BlockPermit> ask(std::span<const core::Event> block,
@@ -58,8 +74,11 @@ private:
     /// A body's kind, which of the machine's it is, and by how much it is shrunk.
     using ModelKey = std::tuple<core::PartKind, size_t, double>;
 
-    CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup)
-        : driver_(std::move(driver)), setup_(&setup), fixtures_(setup.fixtures.size()) {}
+    CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup, Asking asking)
+        : driver_(std::move(driver)),
+          setup_(&setup),
+          asking_(asking),
+          fixtures_(setup.fixtures.size()) {}
 
     core::Result<void> ask_event(const core::Event& event, At& at, BlockPermit& permit);
     core::Result<void> ask_motion(const core::Motion& motion, At& at, BlockPermit& permit);
@@ -69,6 +88,11 @@ private:
     core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, BlockPermit& permit);
     core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
                                 BlockPermit& permit);
+    /// How near the bodies come, if everything is asked.
+    core::Result<void> measure_pair(const Question& question, hwsim::SlotNumber work,
+                                    BlockPermit& permit);
+    /// Waits for the answers, and takes them in; why the device stopped, if it did.
+    hwsim::Stop take_answers(BlockPermit& permit);
     core::Result<hwsim::SlotNumber> model_of(const core::MovingBody& body, double shrink);
     core::Result<hwsim::SlotNumber> model_of(size_t fixture);
     void use_tool(const core::ToolAssembly* tool);
@@ -76,11 +100,13 @@ private:
 
     hwsim::Driver driver_;
     const core::Setup* setup_;
+    Asking asking_;
     hwsim::SlotNumber stock_{};
     std::vector<std::optional<hwsim::SlotNumber>> fixtures_;
     const core::ToolAssembly* tool_ = nullptr; // whose parts are in the device
     std::map<ModelKey, hwsim::SlotNumber> bodies_;
-    std::vector<core::Pair> asked_; // in this block, in order
+    std::vector<core::Pair> asked_; // and not answered yet, in order
+    uint32_t first_asked_ = 0;      // number of the first
 };
 
 } // namespace app

@@ -64,6 +64,11 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
     };
 }
 
+void ProgramRunner::let_judge(decltype(BlockRunner::judge) judge) {
+    runner_.judge = std::move(judge);
+    runner_.before_block = {};
+}
+
 core::Result<void> ProgramRunner::start_at(const std::string& line) {
     const gcode::Dialect& dialect = gcode::dialect(check_.file.environment.dialect);
     FEELER_TRY(const uint32_t number, gcode::line_meant(*check_.program, dialect, line));

@@ -19,6 +19,10 @@ public:
     // Told of blocks in order, when their places in time have become known.
     std::function<void(const core::BlockTime&)> on_timed;
 
+    /// Lets somebody else than the distance core say what blocks keep (BlockRunner::judge). What
+    /// comes of wrong tool lengths is then not gathered, but told block by block.
+    void let_judge(decltype(BlockRunner::judge) judge);
+
     /// Begins in the middle of the program, at a line or "N210", as a control does that was just
     /// switched on.
     ///

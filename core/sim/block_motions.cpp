@@ -59,9 +59,9 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     std::vector<PairClearance> pairs;
     for (const Leg& leg : path.legs)
-        leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
+        if (!block.judgement) leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
     const PairClearance* worst = deciding_pair(pairs);
-    if (!path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
+    if (!block.judgement && !path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
         for (PairClearance& pair : pairs) result.pairs.push_back(pair);
         return;
     }
@@ -93,6 +93,8 @@ void BlockRun::carry_out(const Motion& motion) {
         // Nothing moves that could meet anything.
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
+    } else if (block.judgement) {
+        follow_path(motion, path);
     } else {
         check_path(motion, path);
     }
@@ -140,6 +142,17 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
     result.removed += removed;
     if (before) look_at_rapid(motion, path, *before);
     if (!rapid) look_at_feed(motion, path, removed);
+}
+
+void BlockRun::follow_path(const Motion& motion, const Path& path) {
+    const bool cuts = use(motion) == FluteUse::cutting;
+    LegCheck check = leg_check(use(motion));
+    for (const Leg& leg : path.legs) {
+        watch_centre(motion, leg);
+        if (cuts || block.judgement->runs_into_stock)
+            result.removed += check.only_cut(leg, state.stock);
+    }
+    state.watch.has_fed = state.watch.has_fed || motion.kind != MotionKind::rapid;
 }
 
 void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/pair_entry.h"
+
 namespace core {
 namespace {
 
@@ -62,12 +64,14 @@ void BlockRun::carry_out(const FixtureChange& change) {
     state.fixtures_there[change.fixture] = change.is_there;
     state.memory.cuts.erase(change.fixture); // another one may stand there
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
-    if (!change.is_there || path.legs.empty() || !path.legs[0].start_known) return;
+    if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
+        return;
     leg_check(FluteUse::not_cutting)
         .rest(path.legs[0].places[0], result.duration, state.stock, result.pairs);
 }
 
 void BlockRun::check_tool_change() {
+    if (block.judgement) return;
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
@@ -192,6 +196,27 @@ void BlockRun::conclude() {
     }
     for (const PairClearance& pair : result.pairs)
         if (pair.verdict != Verdict::clear) add(finding_about(pair));
+    if (result.checked) return;
+    result.verdict = std::max(result.verdict, Verdict::undecided);
+    result.deciding.reset();
+}
+
+void BlockRun::conclude(const Judgement& judgement) {
+    // A rule may have found a pair in collision by looking at what is cut.
+    for (const PairClearance& pair : judgement.pairs)
+        merge(entry(result.pairs, pair.pair, setup), pair);
+    const auto is_worse = [](const PairClearance& a, const PairClearance& b) {
+        return a.verdict != b.verdict ? a.verdict > b.verdict : a.margin() < b.margin();
+    };
+    const auto worst = std::min_element(result.pairs.begin(), result.pairs.end(), is_worse);
+    if (worst != result.pairs.end() && worst->lower < setup.search_limit)
+        result.deciding = static_cast<size_t>(worst - result.pairs.begin());
+    result.verdict = judgement.verdict;
+    for (const PairClearance& pair : result.pairs)
+        result.verdict = std::max(result.verdict, pair.verdict);
+    tell(judgement.finding);
+    if (pushes_centre) add(finding_about(entry(result.pairs, {PartKind::flutes}, setup)));
+    result.checked = result.checked && judgement.checked;
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();

@@ -86,6 +86,8 @@ struct BlockRun {
     void carry_out(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
+    /// The same where somebody else judges the block.
+    void follow_path(const Motion& motion, const Path& path);
     void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
     void look_at_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
@@ -102,6 +104,7 @@ struct BlockRun {
     bool follows_cuts() const;
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
+    void conclude(const Judgement& judgement);
 };
 
 } // namespace core

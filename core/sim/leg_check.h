@@ -49,6 +49,9 @@ public:
     /// the leg turns too far to say.
     double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
 
+    /// Cuts the stock along a leg and looks at nothing else; the volume removed, mm3.
+    double only_cut(const Leg& leg, CutModel& stock);
+
     /// Checks everything at rest, at `time` of the block, without cutting.
     void rest(const AxisValues& place, double time, const CutModel& stock,
               std::vector<PairClearance>& pairs);

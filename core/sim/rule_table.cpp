@@ -42,6 +42,7 @@ constexpr RuleEntry rules[] = {
     {"loose-piece", Severity::warning},
     {"holder-into-wall", Severity::error},
     {"air-cut", Severity::note},
+    {"refused", Severity::error},
     {"program", Severity::warning},
 };
 

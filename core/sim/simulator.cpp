@@ -46,7 +46,10 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
     for (Finding& finding :
          watch_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
         run.add(std::move(finding));
-    run.conclude();
+    if (block.judgement)
+        run.conclude(*block.judgement);
+    else
+        run.conclude();
     state.time += run.result.duration;
     return std::move(run.result);
 }

@@ -65,12 +65,23 @@ struct BlockResult {
     std::vector<Finding> findings;
 };
 
+/// What somebody other than the distance core says of a block.
+struct Judgement {
+    Verdict verdict = Verdict::clear;
+    std::vector<PairClearance> pairs = {}; // that were looked at
+    std::optional<Finding> finding = {};   // its severity is left open
+    bool checked = true;                   // false: nothing can be said about its clearance
+    bool runs_into_stock = false;          // with flutes that do not cut
+};
+
 /// What a run needs to know of a block.
 struct BlockEvents {
     BlockIndex block{};
     bool is_cycle = false; // one block with several motions: a canned cycle, G28
     std::span<const Event> events;
     bool goes_home = false; // G28 or G30
+    // In place of measuring: the stock is cut, and rules that need no clearance are told.
+    const Judgement* judgement = nullptr;
 };
 
 /// The state before the first block, with the machine at `position`.

@@ -23,6 +23,15 @@ bool LegCheck::turns_too_far(const Leg& leg) const {
     return false;
 }
 
+double LegCheck::only_cut(const Leg& leg, CutModel& stock) {
+    if (!leg.straight || tool_.parts.empty()) return 0.0;
+    const RelativeLeg flutes = against_stock(bodies_[0], leg);
+    const bool far = distance(bounds(bodies_[0], flutes), stock.outer_box) > flutes.error;
+    if (flutes.turns && far) return 0.0;
+    if (!turns_too_far(leg)) return cut_along(leg, stock);
+    return only_cut(stretch(leg, 0.0, 0.5), stock) + only_cut(stretch(leg, 0.5, 1.0), stock);
+}
+
 bool LegCheck::is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
                                  std::vector<PairClearance>& pairs) {
     std::vector<PairClearance> seen;

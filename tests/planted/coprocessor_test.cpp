@@ -53,5 +53,56 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     EXPECT_LT(all.counts.not_asked, all.counts.blocks / 50);
 }
 
+/// What one engine says of a program.
+CheckRun checked_by(CheckJob job, Engine engine) {
+    job.engine = engine;
+    auto checked = run_check(job);
+    EXPECT_TRUE(checked.has_value()) << job.program;
+    return checked ? *std::move(checked) : CheckRun();
+}
+
+/// Holds a block as the device judges it against the same by the exact engine.
+void expect_safe(const CheckedBlock& device, const CheckedBlock& exact, const std::string& file) {
+    const auto where = file + ":" + std::to_string(exact.line);
+    const core::BlockResult& a = exact.result;
+    const core::BlockResult& b = device.result;
+    if (a.verdict >= core::Verdict::violation) {
+        EXPECT_NE(b.verdict, core::Verdict::clear) << where;
+    }
+    if (b.verdict == core::Verdict::undecided) return; // it was not asked
+    EXPECT_NEAR(b.removed, a.removed, 1e-9) << where;
+    for (const core::PairClearance& pair : b.pairs)
+        for (const core::PairClearance& other : a.pairs)
+            if (other.pair == pair.pair) {
+                EXPECT_LE(pair.lower, other.upper + core::resolution) << where;
+            }
+}
+
+TEST(Coprocessor, AsTheEngineOfACheckItClaimsNoMoreThanTheExactOne) {
+    const std::set<std::string> rules = {"collision",        "near-miss",
+                                         "rapid-in-stock",   "low-retract",
+                                         "rapid-near-clamp", "rotary-with-tool-down",
+                                         "spindle-off",      "tool-change-unsafe"};
+    size_t blocks = 0;
+    for (const Program& program : programs()) {
+        if (!rules.contains(std::filesystem::path(program.file).parent_path())) continue;
+        CheckJob job{.program = folder / program.file,
+                     .setup = folder / "setups" / (program.setup + ".toml"),
+                     .detail = core::Detail::every_pair};
+        job.settings.dialect = gcode::dialect_named(program.dialect);
+        const CheckRun exact = checked_by(job, Engine::exact);
+        const CheckRun device = checked_by(job, Engine::coprocessor);
+        ASSERT_EQ(device.blocks.size(), exact.blocks.size());
+        blocks += exact.blocks.size();
+        for (size_t i = 0; i < exact.blocks.size(); ++i)
+            expect_safe(device.blocks[i], exact.blocks[i], program.file);
+        EXPECT_EQ(device.cycle_time, exact.cycle_time);
+        if (exact.verdict >= core::Verdict::violation) {
+            EXPECT_TRUE(device.has_errors()) << program.file;
+        }
+    }
+    EXPECT_GT(blocks, 500U);
+}
+
 } // namespace
 } // namespace app
