@@ -33,14 +33,14 @@ struct Trace {
 };
 
 core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
-    CoprocessorResult result;
+    DeviceFile file;
     if (!options.config.empty()) {
-        FEELER_TRY(result.file, read_device_file(options.config));
+        FEELER_TRY(file, read_device_file(options.config));
     }
     CoprocessorJob job;
     FEELER_TRY(job.check, job_of(options.what));
     job.check.detail = core::Detail::every_pair;
-    job.device = result.file.device;
+    job.device = file.device;
     if (!options.no_fit) job.other_elements = {1, 2, 4, 8, 16};
     if (!options.vcd.empty()) {
         trace.vcd.emplace(job.device);
@@ -50,12 +50,8 @@ core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
             trace.note(block, state);
         };
     }
-    FEELER_TRY(result.run, run_beside_coprocessor(job));
-    result.timing =
-        timed_with_permits(result.run.plan, services_of(result.run, result.file.device.clock_mhz),
-                           result.file.control, options.past_refusals);
-    result.fits = least_clocks(result.run, result.file.control);
-    return result;
+    FEELER_TRY(CoprocessorRun run, run_beside_coprocessor(job));
+    return in_time(std::move(run), file, options.past_refusals);
 }
 
 core::Result<ExitCode> coproc(const Options& options) {

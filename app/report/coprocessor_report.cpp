@@ -21,10 +21,6 @@ constexpr std::array<const char*, hwsim::counter_count> counter_names = {
     "record_misses", "lines_read", "lines_written", "wait_memory", "wait_port",
     "wait_retire",   "missed",     "deepest",       "least_slack", "longest"};
 
-double share(uint64_t part, uint64_t whole) {
-    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
 /// Seconds that blocks took, those that asked nothing left out, in order.
 std::vector<double> latencies(const CoprocessorResult& result) {
     std::vector<double> seconds;
@@ -49,27 +45,8 @@ double joules(const CoprocessorResult& result, double working) {
            + part(energy.memory_line, moved) + energy.idle_watts * working;
 }
 
-std::string refusal(const CoprocessorResult& result, size_t block) {
-    const BlockPermit& permit = result.run.blocks[block].permit;
-    if (!permit.not_asked.empty()) return permit.not_asked;
-    std::string why = hwsim::name_of(permit.stop);
-    if (permit.pair)
-        why = fmt::format("{} / {}", core::part_name(result.run.check.setup, *permit.pair),
-                          core::body_name(result.run.check.setup, *permit.pair));
-    return why;
-}
-
 std::string place(const CoprocessorResult& result, size_t block) {
     return fmt::format("block {}, line {}", block, result.run.check.blocks[block].line);
-}
-
-std::string time_text(double seconds) {
-    const double size = std::abs(seconds);
-    if (size < 1e-3) return fmt::format("{:.1f} us", 1e6 * seconds);
-    if (size < 1.0) return fmt::format("{:.1f} ms", 1e3 * seconds);
-    if (size < 120.0) return fmt::format("{:.2f} s", seconds);
-    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0),
-                       std::fmod(seconds, 60.0));
 }
 
 std::string verdict_text(const CoprocessorResult& result) {
@@ -95,16 +72,6 @@ std::string slack_text(const CoprocessorResult& result) {
                     place(result, *timing.tightest));
     if (timing.missed == 0) return "yes; " + least;
     return fmt::format("no: {} permits came late; {}", timing.missed, least);
-}
-
-std::string fit_text(const CoprocessorResult& result) {
-    if (result.fits.empty()) return "not looked for";
-    const auto best = smallest(result.fits);
-    if (!best)
-        return fmt::format("none of {} elements at up to {} MHz", result.fits.back().elements,
-                           clocks.back());
-    return fmt::format("{} {} at {} MHz would have met every deadline", best->elements,
-                       best->elements == 1 ? "element" : "elements", *best->clock_mhz);
 }
 
 Json config_json(const CoprocessorResult& result) {
@@ -151,6 +118,35 @@ Json block_json(const CoprocessorResult& result, size_t i) {
 
 } // namespace
 
+std::string refusal(const CoprocessorResult& result, size_t block) {
+    const BlockPermit& permit = result.run.blocks[block].permit;
+    if (!permit.not_asked.empty()) return permit.not_asked;
+    std::string why = hwsim::name_of(permit.stop);
+    if (permit.pair)
+        why = fmt::format("{} / {}", core::part_name(result.run.check.setup, *permit.pair),
+                          core::body_name(result.run.check.setup, *permit.pair));
+    return why;
+}
+
+std::string time_text(double seconds) {
+    const double size = std::abs(seconds);
+    if (size < 1e-3) return fmt::format("{:.1f} us", 1e6 * seconds);
+    if (size < 1.0) return fmt::format("{:.1f} ms", 1e3 * seconds);
+    if (size < 120.0) return fmt::format("{:.2f} s", seconds);
+    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0),
+                       std::fmod(seconds, 60.0));
+}
+
+std::string fit_text(const std::vector<DeviceFit>& fits) {
+    if (fits.empty()) return "not looked for";
+    const auto best = smallest(fits);
+    if (!best)
+        return fmt::format("none of {} elements at up to {} MHz", fits.back().elements,
+                           clocks.back());
+    return fmt::format("{} {} at {} MHz would have met every deadline", best->elements,
+                       best->elements == 1 ? "element" : "elements", *best->clock_mhz);
+}
+
 EngineAgreement agreement(const CoprocessorRun& run) {
     EngineAgreement found;
     for (size_t i = 0; i < run.blocks.size(); ++i)
@@ -176,14 +172,12 @@ DeviceFigures figures(const CoprocessorResult& result) {
         f.queries_per_second = static_cast<double>(totals[Counter::queries]) / working;
         f.bytes_per_second = 64.0 * static_cast<double>(totals[Counter::lines_read]) / working;
     }
-    const uint64_t threads = totals[Counter::busy] * result.file.device.threads;
-    f.memory_stall = share(totals[Counter::wait_memory], threads);
-    f.port_stall = share(totals[Counter::wait_port], threads);
-    f.order_stall = share(totals[Counter::wait_retire], threads);
-    f.node_hits = share(totals[Counter::node_hits],
-                        totals[Counter::node_hits] + totals[Counter::node_misses]);
-    f.record_hits = share(totals[Counter::record_hits],
-                          totals[Counter::record_hits] + totals[Counter::record_misses]);
+    const DeviceShares shares = shares_between({}, totals, result.file.device);
+    f.memory_stall = shares.memory;
+    f.port_stall = shares.ports;
+    f.order_stall = shares.order;
+    f.node_hits = shares.node_hits.value_or(0.0);
+    f.record_hits = shares.record_hits.value_or(0.0);
     f.joules = joules(result, working);
     return f;
 }
@@ -219,7 +213,7 @@ std::string coprocessor_text(const CoprocessorResult& result) {
                     "memory while it works",
                     100.0 * f.node_hits, 100.0 * f.record_hits, f.bytes_per_second / 1e6));
     add("energy", fmt::format("{:.3g} J while it works (an estimate)", f.joules));
-    add("smallest", fit_text(result));
+    add("smallest", fit_text(result.fits));
     add("engines", fmt::format("the exact one says {}; {} of its violations are permitted, {} of "
                                "its clear blocks refused, {} cannot be asked",
                                core::name_of(result.run.check.verdict), both.missed,

@@ -2,19 +2,10 @@
 
 #include <string>
 
-#include "app/session/device_fit.h"
+#include "app/session/coprocessor_result.h"
 #include "app/session/engine_agreement.h"
-#include "app/setup/device_file.h"
 
 namespace app {
-
-/// A program beside a coprocessor, with everything that reports tell of it.
-struct CoprocessorResult {
-    CoprocessorRun run;
-    DeviceFile file;
-    PermitTiming timing;
-    std::vector<DeviceFit> fits;
-};
 
 /// How the two engines stand to each other.
 EngineAgreement agreement(const CoprocessorRun& run);
@@ -31,6 +22,16 @@ struct DeviceFigures {
 };
 
 DeviceFigures figures(const CoprocessorResult& result);
+
+/// Why a block is not permitted: the pair of bodies, why the device stopped, or why it could not be
+/// asked.
+std::string refusal(const CoprocessorResult& result, size_t block);
+
+/// A time as a person reads it: 31.5 us, 2.1 ms, 3.40 s, 12 min 05 s.
+std::string time_text(double seconds);
+
+/// How small a device would have done.
+std::string fit_text(const std::vector<DeviceFit>& fits);
 
 std::string coprocessor_text(const CoprocessorResult& result);
 std::string coprocessor_json(const CoprocessorResult& result);

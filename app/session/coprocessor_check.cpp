@@ -71,6 +71,7 @@ Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
 
 hwsim::Stop CoprocessorCheck::take_answers(BlockPermit& permit) {
     const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
+    if (permit.stop == hwsim::Stop::none) permit.report = now;
     if (now.stop != hwsim::Stop::none) {
         if (permit.stop == hwsim::Stop::none) permit.stop = now.stop;
         if (now.stop_sequence - first_asked_ < asked_.size()) {

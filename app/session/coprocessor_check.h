@@ -25,6 +25,7 @@ struct BlockPermit {
     std::string not_asked;          // why a motion could not be asked; it is not permitted then
     bool from_unknown = false;      // it is, because nobody knows where a motion begins
     std::vector<AskedPair> pairs;   // each of them once
+    hwsim::DeviceReport report;     // the device's word, before a stop is cleared
 };
 
 /// How much is asked of a coprocessor: nothing behind the first refusal of a block, as a machine

@@ -25,18 +25,6 @@ bench_with(const hwsim::DeviceConfig& config, const core::Setup& setup, const co
     return bench;
 }
 
-core::Result<DeviceBlock> asked(Bench& bench, std::span<const core::Event> block,
-                                const core::SimulatorState& before) {
-    const uint64_t begin = bench.cycle();
-    const hwsim::SearchSums sums = bench.device.state.searched;
-    DeviceBlock found;
-    FEELER_TRY(found.permit, bench.check->ask(block, before));
-    found.cycles = bench.cycle() - begin;
-    found.nodes = bench.device.state.searched.nodes - sums.nodes;
-    found.pairs = bench.device.state.searched.pair_tests - sums.pair_tests;
-    return found;
-}
-
 DeviceTotals totals_of(hwsim::EmulatedDevice& device) {
     DeviceTotals totals;
     for (uint32_t i = 0; i < hwsim::counter_count; ++i) {
@@ -48,10 +36,24 @@ DeviceTotals totals_of(hwsim::EmulatedDevice& device) {
     return totals;
 }
 
+core::Result<DeviceBlock> asked(Bench& bench, std::span<const core::Event> block,
+                                const core::SimulatorState& before) {
+    const uint64_t begin = bench.cycle();
+    const hwsim::SearchSums sums = bench.device.state.searched;
+    DeviceBlock found;
+    FEELER_TRY(found.permit, bench.check->ask(block, before));
+    found.cycles = bench.cycle() - begin;
+    found.nodes = bench.device.state.searched.nodes - sums.nodes;
+    found.pairs = bench.device.state.searched.pair_tests - sums.pair_tests;
+    found.after = totals_of(bench.device);
+    return found;
+}
+
 class BesideCoprocessor {
 public:
     BesideCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
         : job_(job), check_(check), runner_(check), ahead_(check) {
+        runner_.after_block = job.check.after_block;
         runner_.on_timed = [this](const core::BlockTime& time) { plan(time); };
     }
 

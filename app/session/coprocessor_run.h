@@ -6,14 +6,6 @@
 
 namespace app {
 
-/// What the coprocessor did for a block.
-struct DeviceBlock {
-    BlockPermit permit;
-    uint64_t cycles = 0; // from the first word of the stock or the block to its permit
-    uint64_t nodes = 0;  // visited in both trees
-    uint64_t pairs = 0;  // of records compared
-};
-
 /// Sums over a whole run, in the device's own counters.
 struct DeviceTotals {
     std::array<uint64_t, hwsim::counter_count> counters{};
@@ -21,6 +13,15 @@ struct DeviceTotals {
     uint64_t operator[](hwsim::Counter counter) const {
         return counters[static_cast<size_t>(counter)];
     }
+};
+
+/// What the coprocessor did for a block.
+struct DeviceBlock {
+    BlockPermit permit;
+    uint64_t cycles = 0; // from the first word of the stock or the block to its permit
+    uint64_t nodes = 0;  // visited in both trees
+    uint64_t pairs = 0;  // of records compared
+    DeviceTotals after;  // from reset to the end of the block
 };
 
 /// A program run beside a coprocessor of which every cycle is emulated.
@@ -43,7 +44,7 @@ struct CoprocessorJob {
 };
 
 /// Runs a program: each block is asked of the device before the machine simulation carries it out,
-/// with the stock as it will be then.
+/// with the stock as it will be then. Where `check.after_block` says so it ends early.
 ///
 /// Errors: those of run_check and of the driver. An error inside the program ends the run.
 /// Cost:   that of the check, and for each device about 0.4 us a cycle.

@@ -96,6 +96,35 @@ TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
     EXPECT_LT(late.blocks[*late.tightest].slack(), 0.0);
 }
 
+TEST(CoprocessorRun, KeepsWhatTheDeviceHadCountedAfterEachBlock) {
+    const auto run = run_beside_coprocessor(plate("clamped_plate_low.nc"));
+    ASSERT_TRUE(run.has_value());
+    DeviceTotals before;
+    for (const DeviceBlock& block : run->blocks) {
+        const auto counted = [&](hwsim::Counter c) { return block.after[c] - before[c]; };
+        EXPECT_EQ(counted(hwsim::Counter::nodes), block.nodes);
+        EXPECT_EQ(counted(hwsim::Counter::pair_tests), block.pairs);
+        const DeviceShares shares = shares_between(before, block.after, {});
+        EXPECT_GE(shares.busy, 0.0);
+        EXPECT_LE(shares.busy, 1.0);
+        EXPECT_LE(shares.memory + shares.ports + shares.order, 1.0);
+        EXPECT_EQ(block.permit.report.stop, block.permit.stop);
+        before = block.after;
+    }
+    EXPECT_EQ(run->blocks[38].permit.report.stop, hwsim::Stop::violation);
+    EXPECT_GT(run->blocks[38].permit.report.stop_sequence, run->blocks[38].permit.report.permitted);
+    EXPECT_EQ(run->blocks.back().after[hwsim::Counter::nodes], run->totals[hwsim::Counter::nodes]);
+}
+
+TEST(CoprocessorRun, EndsEarlyWhereItIsTold) {
+    CoprocessorJob job = plate("clamped_plate.nc");
+    job.check.after_block = [](const CheckProgress& progress) { return progress.blocks < 7; };
+    const auto run = run_beside_coprocessor(job);
+    ASSERT_TRUE(run.has_value());
+    EXPECT_EQ(run->check.blocks.size(), 7U);
+    EXPECT_EQ(run->blocks.size(), 7U);
+}
+
 TEST(VcdTrace, IsAFileOfChanges) {
     hwsim::DeviceConfig config;
     config.elements = 1;
