@@ -10,6 +10,14 @@ namespace {
 using core::Result;
 using hwsim::SlotNumber;
 
+/// Who tells a person why a motion is not asked.
+enum class Teller : uint8_t { permit, run };
+
+void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {
+    permit.is_told = teller == Teller::run && (permit.not_asked.empty() || permit.is_told);
+    permit.not_asked = std::move(why);
+}
+
 /// A body of revolution looks the same however it is turned about its axis; others do not.
 bool stands_upright(const core::MovingBody& body, const core::RelativeLeg& way) {
     return body.profile ? way.orientation[2] == core::Vec3(0.0, 0.0, 1.0)
@@ -57,10 +65,10 @@ Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
           .spindle = before.spindle,
           .corners = before.corners,
           .position = before.position,
-          .fixtures_there = before.fixtures_there};
-    if (before.tool)
-        if (const auto found = setup_->tools.find(*before.tool); found != setup_->tools.end())
-            at.tool = &found->second;
+          .fixtures_there = before.fixtures_there,
+          .centre = before.centre};
+    hold(before.tool, at);
+    at.tool_known = before.tool_known;
     for (const core::Event& event : block)
         if (auto asked = ask_event(event, at, permit); !asked)
             return tl::unexpected(std::move(asked).error());
@@ -92,8 +100,7 @@ Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, Block
     if (const auto* change = std::get_if<core::PathModeChange>(&event))
         change_mode(at.corners, *change, setup_->machine);
     if (const auto* change = std::get_if<core::ToolChange>(&event)) {
-        const auto found = change->tool ? setup_->tools.find(*change->tool) : setup_->tools.end();
-        at.tool = found == setup_->tools.end() ? nullptr : &found->second;
+        hold(change->tool, at);
         return ask_rest(at, permit);
     }
     if (const auto* change = std::get_if<core::FixtureChange>(&event)) {
@@ -101,6 +108,13 @@ Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, Block
         if (change->is_there) return ask_rest(at, permit);
     }
     return {};
+}
+
+void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at) const {
+    const auto found = tool ? setup_->tools.find(*tool) : setup_->tools.end();
+    at.tool = found == setup_->tools.end() ? nullptr : &found->second;
+    at.is_empty = !tool;
+    at.tool_known = true;
 }
 
 Result<void> CoprocessorCheck::ask_rest(At& at, BlockPermit& permit) {
@@ -113,23 +127,45 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Bl
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
     at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
-    if (!at.tool && setup_->machine.bodies.empty()) return {};
-    if (path.legs.empty() || !path.legs[0].start_known) {
-        permit.not_asked = "nobody knows where the motion begins";
-        permit.from_unknown = true;
+    const bool rapid = motion.kind == core::MotionKind::rapid;
+    // A spindle of which nothing is known is taken to be empty until the program feeds.
+    if (!at.tool && !(at.is_empty && (at.tool_known || rapid))) {
+        deny(permit, "nobody knows the tool that moves", Teller::run);
         return {};
     }
-    const bool cutting = motion.kind != core::MotionKind::rapid && at.tool
-                         && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
-    for (const core::Leg& leg : path.legs)
+    if (!at.tool && setup_->machine.bodies.empty()) return {};
+    if (path.legs.empty() || !path.legs[0].start_known) {
+        deny(permit, "nobody knows where the motion begins", Teller::run);
+        return {};
+    }
+    const bool cutting =
+        !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
+    for (const core::Leg& leg : path.legs) {
         if (auto asked = ask_leg(leg, cutting, at, permit); !asked) return asked;
+        if (pushes_centre(leg, cutting, at))
+            deny(permit, "the tool's centre, which does not cut, is pushed into the stock",
+                 Teller::run);
+        if (cutting) note_cut(leg, at);
+    }
     return {};
+}
+
+bool CoprocessorCheck::pushes_centre(const core::Leg& leg, bool cutting, At& at) const {
+    if (!at.tool || at.tool->description.cuts_at_centre) return false;
+    if (!cutting || !leg.straight) {
+        at.centre = {};
+        return false;
+    }
+    const core::Mount tip{setup_->machine.spindle, core::translation({0.0, 0.0, -at.tool->length})};
+    const core::RelativeLeg way =
+        relative_leg(setup_->machine, setup_->stock_mount, {.mount = tip}, leg);
+    return follow(at.centre, at.tool->description, way, at.stock).has_value();
 }
 
 Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
                                        BlockPermit& permit) {
     if (!leg.straight) {
-        permit.not_asked = "nobody knows the way of the motion";
+        deny(permit, "nobody knows the way of the motion");
         return {};
     }
     static const core::ToolAssembly nothing;
@@ -158,7 +194,6 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
             if (auto asked = ask_pair(question(fixture.mount), work, permit); !asked) return asked;
         }
     }
-    if (cutting) note_cut(leg, at);
     return {};
 }
 
@@ -186,7 +221,7 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
 
 Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, BlockPermit& permit) {
     if (!can_be_asked(q.body, q.way)) {
-        permit.not_asked = "a body turns or is held at an angle";
+        deny(permit, "a body turns or is held at an angle");
         return {};
     }
     if (auto measured = measure_pair(q, work, permit); !measured) return measured;
@@ -200,7 +235,7 @@ Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, Bloc
     if (const auto pushed =
             hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
         !pushed) {
-        permit.not_asked = pushed.error().message;
+        deny(permit, pushed.error().message);
         return {};
     }
     asked_.push_back(q.pair);
@@ -219,7 +254,7 @@ Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
     }
     FEELER_TRY(const SlotNumber tool, model_of(q.body, 0.0));
     const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, 0.0));
-    if (!found) permit.not_asked = found.error().message;
+    if (!found) deny(permit, found.error().message);
     if (!found || take_answers(permit) != hwsim::Stop::none) {
         asked.lower = 0.0;
         return {};

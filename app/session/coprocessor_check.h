@@ -23,7 +23,7 @@ struct BlockPermit {
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // that was refused
     std::string not_asked;          // why a motion could not be asked; it is not permitted then
-    bool from_unknown = false;      // it is, because nobody knows where a motion begins
+    bool is_told = false;           // why is a thing that a run of the program tells of as well
     std::vector<AskedPair> pairs;   // each of them once
     hwsim::DeviceReport report;     // the device's word, before a stop is cleared
 };
@@ -37,8 +37,9 @@ enum class Asking : uint8_t { until_refused, everything };
 /// the set-up.
 ///
 /// What the flutes cut while they feed is no question, nor is where they have been before
-/// (core::runs_in_own_cut). A motion on which something turns, a body held at an angle and a way
-/// that is not known cannot be asked.
+/// (core::runs_in_own_cut). A motion on which something turns, a body held at an angle, a way and a
+/// tool that are not known cannot be asked. Whether a tool that does not cut at its centre is
+/// pushed into the stock is for the host to say (core::follow).
 class CoprocessorCheck {
 public:
     /// Brings the stock into the device.
@@ -63,6 +64,9 @@ private:
         double off_motion = 0.0; // that corners take the motion, mm
         core::AxisPosition position;
         std::vector<bool> fixtures_there;
+        core::CentreWatch centre; // of a tool that does not cut there
+        bool is_empty = true;     // the spindle, as far as is known
+        bool tool_known = false;  // what is in it
     };
     /// A body of the tool's side over a leg, and what it must keep.
     struct Question {
@@ -84,6 +88,8 @@ private:
     core::Result<void> ask_event(const core::Event& event, At& at, BlockPermit& permit);
     core::Result<void> ask_motion(const core::Motion& motion, At& at, BlockPermit& permit);
     core::Result<void> ask_rest(At& at, BlockPermit& permit);
+    void hold(const std::optional<core::ToolNumber>& tool, At& at) const;
+    bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
     core::Result<void> bring_up_to_date(At& at);
     void note_cut(const core::Leg& leg, At& at) const;
     core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, BlockPermit& permit);

@@ -92,11 +92,10 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
             || (asked.refused && asked.pair == core::Pair{core::PartKind::flutes});
     }
     if (permit.permitted) return judgement;
-    // Where the motion begins is the control's to know: the run says that nobody does.
-    const bool only_unknown = permit.from_unknown && permit.stop == hwsim::Stop::none;
     judgement.verdict = Verdict::undecided;
     judgement.checked = permit.not_asked.empty() || worst_of(permit);
-    if (!only_unknown) judgement.finding = refusal(*setup_, permit);
+    if (!permit.is_told || permit.stop != hwsim::Stop::none)
+        judgement.finding = refusal(*setup_, permit);
     return judgement;
 }
 

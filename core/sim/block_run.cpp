@@ -216,7 +216,7 @@ void BlockRun::conclude(const Judgement& judgement) {
         result.verdict = std::max(result.verdict, pair.verdict);
     tell(judgement.finding);
     if (pushes_centre) add(finding_about(entry(result.pairs, {PartKind::flutes}, setup)));
-    result.checked = result.checked && judgement.checked;
+    result.checked = result.checked && (judgement.checked || pushes_centre);
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();

@@ -81,6 +81,53 @@ TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     EXPECT_EQ(again->totals.counters, run->totals.counters);
 }
 
+/// What the device says of a short program in a bare machine with one tool.
+CoprocessorRun beside_a_block(const test_support::ScopedFolder& folder, const std::string& lines) {
+    CoprocessorJob job;
+    job.check.setup = folder.write("setup.toml", R"(
+[program]
+start = { X = 0, Y = 0, Z = 100 }
+[stock]
+box = [[-20, -20, -20], [20, 20, 0]]
+frame = "machine"
+[[tool]]
+number = 1
+shape = "flat"
+diameter = 10
+flute_length = 15
+shank = [[10, 10, 25]]
+spindle = "clockwise"
+cuts_at_centre = false
+)");
+    job.check.program = folder.write("program.nc", "G21 G90 G17\n" + lines + "M2\n");
+    job.check.detail = core::Detail::every_pair;
+    auto run = run_beside_coprocessor(job);
+    EXPECT_TRUE(run.has_value());
+    return run ? *std::move(run) : CoprocessorRun{};
+}
+
+TEST(CoprocessorRun, RefusesToPushAToolsCentreIntoTheStock) {
+    const test_support::ScopedFolder folder;
+    const CoprocessorRun down =
+        beside_a_block(folder, "T1 M6\nG43 H1\nS1000 M3\nG0 X0 Y0 Z5\nG1 Z-5 F100\nG0 Z20\n");
+    EXPECT_EQ(agreement(down).violations, 1U);
+    EXPECT_EQ(agreement(down).missed, 0U);
+    EXPECT_EQ(agreement(down).refused, 1U);
+    const CoprocessorRun ramp = beside_a_block(
+        folder, "T1 M6\nG43 H1\nS1000 M3\nG0 X0 Y0 Z5\nG1 Z0 F100\nX14 Z-0.5\nX0\nG0 Z20\n");
+    EXPECT_EQ(agreement(ramp).violations, 0U);
+    EXPECT_EQ(agreement(ramp).refused, 0U);
+}
+
+TEST(CoprocessorRun, PermitsNothingToAToolThatNobodyKnows) {
+    const test_support::ScopedFolder folder;
+    const CoprocessorRun run =
+        beside_a_block(folder, "T7 M6\nG0 X0 Y0 Z50\nG1 Z40 F100\nT1 M6\nG0 Z60\n");
+    std::vector<bool> permitted;
+    for (const DeviceBlock& block : run.blocks) permitted.push_back(block.permit.permitted);
+    EXPECT_EQ(permitted, (std::vector<bool>{true, true, false, false, true, true, true}));
+}
+
 TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
     const auto run = run_beside_coprocessor(plate("clamped_plate.nc"));
     ASSERT_TRUE(run.has_value());
