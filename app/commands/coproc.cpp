@@ -27,8 +27,8 @@ struct Trace {
     std::optional<hwsim::VcdTrace> vcd;
     size_t from = 0, to = 0;
 
-    void note(size_t block, const hwsim::CoprocessorState& state) {
-        if (vcd && block >= from && block <= to) vcd->note(state);
+    void note(const BlocksInDevice& blocks, const hwsim::CoprocessorState& state) {
+        if (vcd && blocks.newest >= from && blocks.oldest <= to) vcd->note(state);
     }
 };
 
@@ -46,8 +46,8 @@ core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
         trace.vcd.emplace(job.device);
         trace.from = options.from.value_or(0);
         trace.to = options.to.value_or(trace.from);
-        job.on_cycle = [&trace](size_t block, const hwsim::CoprocessorState& state) {
-            trace.note(block, state);
+        job.on_cycle = [&trace](const auto& blocks, const hwsim::CoprocessorState& state) {
+            trace.note(blocks, state);
         };
     }
     FEELER_TRY(CoprocessorRun run, run_beside_coprocessor(job));

@@ -46,7 +46,28 @@ double spacing_for(const core::Aabb& box, double mesh_size) {
     return std::max({mesh_size, box.size().x / most_cells, box.size().y / most_cells});
 }
 
+/// Of several stops the first is told.
+void note_stop(PushedBlock& block, const hwsim::DeviceReport& report, const core::Setup& setup) {
+    BlockPermit& permit = block.permit;
+    const bool is_first = permit.stop == hwsim::Stop::none;
+    if (is_first) permit.stop = report.stop;
+    if (is_first) permit.report = report;
+    if (report.stop_sequence - block.first >= block.asked.size()) return;
+    const core::Pair& refused = block.asked[report.stop_sequence - block.first];
+    if (!permit.pair) permit.pair = refused;
+    entry_of(permit, refused, setup).refused = true;
+}
+
 } // namespace
+
+BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
+                     const core::Setup& setup) {
+    if (report.stop != hwsim::Stop::none) note_stop(block, report, setup);
+    BlockPermit& permit = block.permit;
+    if (permit.stop == hwsim::Stop::none) permit.report = report;
+    permit.permitted = permit.not_asked.empty() && permit.stop == hwsim::Stop::none;
+    return std::move(permit);
+}
 
 Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const core::Setup& setup,
                                                 const core::CutModel& stock, Asking asking) {
@@ -56,9 +77,9 @@ Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const co
     return check;
 }
 
-Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
-                                          const core::SimulatorState& before) {
-    BlockPermit permit;
+Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
+                                           const core::SimulatorState& before) {
+    PushedBlock pushed{.first = driver_.next_sequence};
     if (auto updated = hwsim::update_stock(driver_, stock_, before.stock); !updated)
         return tl::unexpected(std::move(updated).error());
     At at{.stock = before.stock,
@@ -70,42 +91,43 @@ Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
     hold(before.tool, at);
     at.tool_known = before.tool_known;
     for (const core::Event& event : block)
-        if (auto asked = ask_event(event, at, permit); !asked)
+        if (auto asked = ask_event(event, at, pushed); !asked)
             return tl::unexpected(std::move(asked).error());
-    take_answers(permit);
-    permit.permitted = permit.not_asked.empty() && permit.stop == hwsim::Stop::none;
-    return permit;
+    return pushed;
 }
 
-hwsim::Stop CoprocessorCheck::take_answers(BlockPermit& permit) {
+Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
+                                          const core::SimulatorState& before) {
+    FEELER_TRY(PushedBlock pushed, push(block, before));
     const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
-    if (permit.stop == hwsim::Stop::none) permit.report = now;
+    if (now.stop != hwsim::Stop::none) hwsim::recover(driver_);
+    return answered(std::move(pushed), now, *setup_);
+}
+
+hwsim::Stop CoprocessorCheck::take_answers(PushedBlock& block) {
+    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
     if (now.stop != hwsim::Stop::none) {
-        if (permit.stop == hwsim::Stop::none) permit.stop = now.stop;
-        if (now.stop_sequence - first_asked_ < asked_.size()) {
-            const core::Pair& refused = asked_[now.stop_sequence - first_asked_];
-            if (!permit.pair) permit.pair = refused;
-            entry_of(permit, refused, *setup_).refused = true;
-        }
+        note_stop(block, now, *setup_);
         hwsim::recover(driver_);
     }
-    asked_.clear();
+    block.asked.clear();
+    block.first = driver_.next_sequence;
     return now.stop;
 }
 
-Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, BlockPermit& permit) {
+Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, PushedBlock& block) {
     if (const auto* motion = std::get_if<core::Motion>(&event))
-        return ask_motion(*motion, at, permit);
+        return ask_motion(*motion, at, block);
     if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
     if (const auto* change = std::get_if<core::PathModeChange>(&event))
         change_mode(at.corners, *change, setup_->machine);
     if (const auto* change = std::get_if<core::ToolChange>(&event)) {
         hold(change->tool, at);
-        return ask_rest(at, permit);
+        return ask_rest(at, block);
     }
     if (const auto* change = std::get_if<core::FixtureChange>(&event)) {
         at.fixtures_there[change->fixture] = change->is_there;
-        if (change->is_there) return ask_rest(at, permit);
+        if (change->is_there) return ask_rest(at, block);
     }
     return {};
 }
@@ -117,33 +139,33 @@ void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at)
     at.tool_known = true;
 }
 
-Result<void> CoprocessorCheck::ask_rest(At& at, BlockPermit& permit) {
+Result<void> CoprocessorCheck::ask_rest(At& at, PushedBlock& block) {
     const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return {};
-    return ask_leg({.places = {path.legs[0].places[0]}}, false, at, permit);
+    return ask_leg({.places = {path.legs[0].places[0]}}, false, at, block);
 }
 
-Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, BlockPermit& permit) {
+Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, PushedBlock& block) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
     at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
     const bool rapid = motion.kind == core::MotionKind::rapid;
     // A spindle of which nothing is known is taken to be empty until the program feeds.
     if (!at.tool && !(at.is_empty && (at.tool_known || rapid))) {
-        deny(permit, "nobody knows the tool that moves", Teller::run);
+        deny(block.permit, "nobody knows the tool that moves", Teller::run);
         return {};
     }
     if (!at.tool && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
-        deny(permit, "nobody knows where the motion begins", Teller::run);
+        deny(block.permit, "nobody knows where the motion begins", Teller::run);
         return {};
     }
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
     for (const core::Leg& leg : path.legs) {
-        if (auto asked = ask_leg(leg, cutting, at, permit); !asked) return asked;
+        if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
         if (pushes_centre(leg, cutting, at))
-            deny(permit, "the tool's centre, which does not cut, is pushed into the stock",
+            deny(block.permit, "the tool's centre, which does not cut, is pushed into the stock",
                  Teller::run);
         if (cutting) note_cut(leg, at);
     }
@@ -163,9 +185,9 @@ bool CoprocessorCheck::pushes_centre(const core::Leg& leg, bool cutting, At& at)
 }
 
 Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
-                                       BlockPermit& permit) {
+                                       PushedBlock& block) {
     if (!leg.straight) {
-        deny(permit, "nobody knows the way of the motion");
+        deny(block.permit, "nobody knows the way of the motion");
         return {};
     }
     static const core::ToolAssembly nothing;
@@ -182,7 +204,7 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
             const Question stock = question(setup_->stock_mount);
             const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
                                                       : &CoprocessorCheck::ask_pair;
-            if (auto asked = (this->*ask)(stock, stock_, permit); !asked) return asked;
+            if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
         }
         for (size_t i = 0; i < setup_->fixtures.size(); ++i) {
             const core::Fixture& fixture = setup_->fixtures[i];
@@ -191,7 +213,7 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
                 continue;
             pair.fixture = i;
             FEELER_TRY(const SlotNumber work, model_of(i));
-            if (auto asked = ask_pair(question(fixture.mount), work, permit); !asked) return asked;
+            if (auto asked = ask_pair(question(fixture.mount), work, block); !asked) return asked;
         }
     }
     return {};
@@ -219,43 +241,42 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
                          .orientation = way.orientation});
 }
 
-Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, BlockPermit& permit) {
+Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, PushedBlock& block) {
     if (!can_be_asked(q.body, q.way)) {
-        deny(permit, "a body turns or is held at an angle");
+        deny(block.permit, "a body turns or is held at an angle");
         return {};
     }
-    if (auto measured = measure_pair(q, work, permit); !measured) return measured;
+    if (auto measured = measure_pair(q, work, block); !measured) return measured;
     // Bodies that may touch are held against each other with the one shrunk by what is contact.
     const bool may_touch = q.allowance.distance <= core::resolution;
     const double shrink =
         may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
     FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
     const double off = q.way.error + (may_touch ? 0.0 : q.off_path);
-    if (asked_.empty()) first_asked_ = driver_.next_sequence;
     if (const auto pushed =
             hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
         !pushed) {
-        deny(permit, pushed.error().message);
+        deny(block.permit, pushed.error().message);
         return {};
     }
-    asked_.push_back(q.pair);
-    ++permit.segments;
-    if (asking_ == Asking::everything) take_answers(permit);
+    block.asked.push_back(q.pair);
+    ++block.permit.segments;
+    if (asking_ == Asking::everything) take_answers(block);
     return {};
 }
 
 Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
-                                            BlockPermit& permit) {
+                                            PushedBlock& block) {
     if (asking_ != Asking::everything) return {};
-    AskedPair& asked = entry_of(permit, q.pair, *setup_);
+    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
     if (!can_be_asked(q.body, q.way)) {
         asked.lower = 0.0;
         return {};
     }
     FEELER_TRY(const SlotNumber tool, model_of(q.body, 0.0));
     const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, 0.0));
-    if (!found) deny(permit, found.error().message);
-    if (!found || take_answers(permit) != hwsim::Stop::none) {
+    if (!found) deny(block.permit, found.error().message);
+    if (!found || take_answers(block) != hwsim::Stop::none) {
         asked.lower = 0.0;
         return {};
     }

@@ -28,6 +28,18 @@ struct BlockPermit {
     hwsim::DeviceReport report;     // the device's word, before a stop is cleared
 };
 
+/// A block whose questions are in the device.
+struct PushedBlock {
+    BlockPermit permit = {};            // what is known before the answers
+    uint32_t first = 0;                 // number of its first segment
+    std::vector<core::Pair> asked = {}; // by its segments, in order
+};
+
+/// What the coprocessor said of a block: `report` is of a time when it had permitted all of it, or
+/// had stopped.
+BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
+                     const core::Setup& setup);
+
 /// How much is asked of a coprocessor: nothing behind the first refusal of a block, as a machine
 /// would; or each question for itself, and how near the bodies come as well.
 enum class Asking : uint8_t { until_refused, everything };
@@ -49,9 +61,19 @@ public:
                                                const core::CutModel& stock,
                                                Asking asking = Asking::until_refused);
 
+    /// Asks about a block, and waits for the answers.
+    ///
     /// Errors: models that do not fit into the device.
     core::Result<BlockPermit> ask(std::span<const core::Event> block,
                                   const core::SimulatorState& before);
+
+    /// The same without waiting: the device goes on with what was pushed before.
+    core::Result<PushedBlock> push(std::span<const core::Event> block,
+                                   const core::SimulatorState& before);
+    /// What the device says now.
+    hwsim::DeviceReport report() { return hwsim::report(driver_); }
+    /// Clears a stop. What was pushed behind the segment that was refused is forgotten.
+    void recover() { hwsim::recover(driver_); }
 
 private:
     /// Where a block has got to.
@@ -85,21 +107,21 @@ private:
           asking_(asking),
           fixtures_(setup.fixtures.size()) {}
 
-    core::Result<void> ask_event(const core::Event& event, At& at, BlockPermit& permit);
-    core::Result<void> ask_motion(const core::Motion& motion, At& at, BlockPermit& permit);
-    core::Result<void> ask_rest(At& at, BlockPermit& permit);
+    core::Result<void> ask_event(const core::Event& event, At& at, PushedBlock& block);
+    core::Result<void> ask_motion(const core::Motion& motion, At& at, PushedBlock& block);
+    core::Result<void> ask_rest(At& at, PushedBlock& block);
     void hold(const std::optional<core::ToolNumber>& tool, At& at) const;
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
     core::Result<void> bring_up_to_date(At& at);
     void note_cut(const core::Leg& leg, At& at) const;
-    core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, BlockPermit& permit);
+    core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, PushedBlock& block);
     core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
-                                BlockPermit& permit);
+                                PushedBlock& block);
     /// How near the bodies come, if everything is asked.
     core::Result<void> measure_pair(const Question& question, hwsim::SlotNumber work,
-                                    BlockPermit& permit);
+                                    PushedBlock& block);
     /// Waits for the answers, and takes them in; why the device stopped, if it did.
-    hwsim::Stop take_answers(BlockPermit& permit);
+    hwsim::Stop take_answers(PushedBlock& block);
     core::Result<hwsim::SlotNumber> model_of(const core::MovingBody& body, double shrink);
     core::Result<hwsim::SlotNumber> model_of(size_t fixture);
     void use_tool(const core::ToolAssembly* tool);
@@ -112,8 +134,6 @@ private:
     std::vector<std::optional<hwsim::SlotNumber>> fixtures_;
     const core::ToolAssembly* tool_ = nullptr; // whose parts are in the device
     std::map<ModelKey, hwsim::SlotNumber> bodies_;
-    std::vector<core::Pair> asked_; // and not answered yet, in order
-    uint32_t first_asked_ = 0;      // number of the first
 };
 
 } // namespace app

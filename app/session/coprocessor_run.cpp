@@ -7,48 +7,6 @@
 namespace app {
 namespace {
 
-/// A device and its driver. It stays where it is.
-struct Bench {
-    hwsim::EmulatedDevice device;
-    std::optional<CoprocessorCheck> check;
-
-    uint64_t cycle() const { return device.state.cycle; }
-};
-
-core::Result<std::unique_ptr<Bench>>
-bench_with(const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
-           const std::function<void(const hwsim::CoprocessorState&)>& on_cycle) {
-    auto bench = std::make_unique<Bench>();
-    FEELER_TRY(bench->device, hwsim::emulated_device(config));
-    FEELER_TRY(bench->check,
-               CoprocessorCheck::with(hwsim::port_of(bench->device, on_cycle), setup, stock));
-    return bench;
-}
-
-DeviceTotals totals_of(hwsim::EmulatedDevice& device) {
-    DeviceTotals totals;
-    for (uint32_t i = 0; i < hwsim::counter_count; ++i) {
-        const uint32_t address = hwsim::address_of(static_cast<hwsim::Counter>(i));
-        const uint64_t low = hwsim::read(device.state, device.config, address);
-        totals.counters[i] =
-            low | uint64_t{hwsim::read(device.state, device.config, address + 4)} << 32;
-    }
-    return totals;
-}
-
-core::Result<DeviceBlock> asked(Bench& bench, std::span<const core::Event> block,
-                                const core::SimulatorState& before) {
-    const uint64_t begin = bench.cycle();
-    const hwsim::SearchSums sums = bench.device.state.searched;
-    DeviceBlock found;
-    FEELER_TRY(found.permit, bench.check->ask(block, before));
-    found.cycles = bench.cycle() - begin;
-    found.nodes = bench.device.state.searched.nodes - sums.nodes;
-    found.pairs = bench.device.state.searched.pair_tests - sums.pair_tests;
-    found.after = totals_of(bench.device);
-    return found;
-}
-
 class BesideCoprocessor {
 public:
     BesideCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
@@ -63,6 +21,8 @@ private:
     core::Result<void> open();
     /// Asks all devices for the next block.
     core::Result<void> ask();
+    /// Waits for their answers, and keeps them.
+    core::Result<void> finish();
     void plan(const core::BlockTime& time) {
         for (const core::BlockStretch& stretch : time.stretches)
             if (stretch.time.duration > 0.0)
@@ -73,25 +33,21 @@ private:
     PreparedCheck& check_;
     ProgramRunner runner_;
     BlockRunner ahead_;
-    std::unique_ptr<Bench> bench_;
-    std::map<uint32_t, std::unique_ptr<Bench>> others_;
+    std::unique_ptr<DevicePipeline> device_;
+    std::map<uint32_t, std::unique_ptr<DevicePipeline>> others_;
     CoprocessorRun made_;
 };
 
 core::Result<void> BesideCoprocessor::open() {
-    std::function<void(const hwsim::CoprocessorState&)> on_cycle;
-    if (job_.on_cycle)
-        on_cycle = [this](const hwsim::CoprocessorState& state) {
-            job_.on_cycle(made_.blocks.size(), state);
-        };
     const core::CutModel& stock = runner_.place().machine.stock;
-    FEELER_TRY(bench_, bench_with(job_.device, check_.run.setup, stock, on_cycle));
+    FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle));
     for (const uint32_t elements : job_.other_elements) {
         hwsim::DeviceConfig config = job_.device;
         config.elements = elements;
-        FEELER_TRY(others_[elements], bench_with(config, check_.run.setup, stock, {}));
+        FEELER_TRY(others_[elements], DevicePipeline::with(config, check_.run.setup, stock));
     }
-    return {};
+    if (job_.check.start_line.empty()) return {};
+    return runner_.start_at(job_.check.start_line);
 }
 
 core::Result<void> BesideCoprocessor::ask() {
@@ -99,11 +55,23 @@ core::Result<void> BesideCoprocessor::ask() {
     const auto events = first_events(
         [&](const BlockVisit& look) { ahead_.visit_ahead(place.control, place.lowering, look); });
     if (!events) return {};
-    FEELER_TRY(DeviceBlock asked_of_it, asked(*bench_, *events, place.machine));
-    made_.blocks.push_back(std::move(asked_of_it));
-    for (auto& [elements, bench] : others_) {
-        FEELER_TRY(const DeviceBlock other, asked(*bench, *events, place.machine));
-        made_.cycles_by_elements[elements].push_back(other.cycles);
+    if (auto pushed = device_->push(*events, place.machine); !pushed) return pushed;
+    for (auto& [elements, device] : others_)
+        if (auto pushed = device->push(*events, place.machine); !pushed) return pushed;
+    return {};
+}
+
+core::Result<void> BesideCoprocessor::finish() {
+    if (auto finished = device_->finish(); !finished) return finished;
+    made_.blocks = device_->blocks();
+    made_.blocks.resize(check_.run.blocks.size());
+    made_.totals = device_->totals();
+    for (auto& [elements, device] : others_) {
+        if (auto finished = device->finish(); !finished) return finished;
+        std::vector<BlockCycles>& cycles = made_.cycles_by_elements[elements];
+        for (const DeviceBlock& block : device->blocks())
+            cycles.push_back({block.cycles, block.interval});
+        cycles.resize(made_.blocks.size());
     }
     return {};
 }
@@ -114,9 +82,7 @@ core::Result<CoprocessorRun> BesideCoprocessor::run() {
     do
         if (auto done = ask(); !done) return tl::unexpected(std::move(done).error());
     while (runner_.advance() && (!runner_.after_block || runner_.after_block(runner_.progress())));
-    made_.blocks.resize(check_.run.blocks.size());
-    for (auto& [elements, cycles] : made_.cycles_by_elements) cycles.resize(made_.blocks.size());
-    made_.totals = totals_of(bench_->device);
+    if (auto finished = finish(); !finished) return tl::unexpected(std::move(finished).error());
     check_.run.times.check = checking.seconds();
     conclude(check_, runner_.place().machine, runner_.length_doubts(), false);
     made_.check = std::move(check_.run);

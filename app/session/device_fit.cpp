@@ -5,14 +5,18 @@
 namespace app {
 namespace {
 
+double seconds_of(uint64_t cycles, uint32_t clock_mhz) {
+    return static_cast<double>(cycles) / (1e6 * clock_mhz);
+}
+
 /// Whether no permit is late, where the machine never has to wait.
-bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<uint64_t>& cycles,
+bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<BlockCycles>& cycles,
               uint32_t clock_mhz) {
-    double free = 0.0;
+    double permitted = 0.0;
     for (size_t i = 0; i < undisturbed.size(); ++i) {
-        free = std::max(free, undisturbed[i].asked)
-               + static_cast<double>(cycles[i]) / (1e6 * clock_mhz);
-        if (free > undisturbed[i].due) return false;
+        permitted = std::max(permitted + seconds_of(cycles[i].interval, clock_mhz),
+                             undisturbed[i].asked + seconds_of(cycles[i].latency, clock_mhz));
+        if (permitted > undisturbed[i].due) return false;
     }
     return true;
 }
@@ -22,8 +26,8 @@ bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<uin
 std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz) {
     std::vector<BlockService> services;
     for (const DeviceBlock& block : run.blocks)
-        services.push_back(
-            {static_cast<double>(block.cycles) / (1e6 * clock_mhz), !block.permit.permitted});
+        services.push_back({seconds_of(block.cycles, clock_mhz), !block.permit.permitted,
+                            seconds_of(block.interval, clock_mhz)});
     return services;
 }
 

@@ -43,10 +43,11 @@ private:
         for (; asked_ < end; ++asked_) {
             BlockTiming& block = made_.blocks[asked_];
             block.asked = machine_.time();
-            device_free_ = std::max(device_free_, block.asked) + services_[asked_].seconds;
-            block.permitted = device_free_;
-            made_.busy += services_[asked_].seconds;
-            if (is_refused(asked_)) device_free_ = core::infinity; // it has stopped
+            const BlockService& service = services_[asked_];
+            block.permitted =
+                std::max(last_permit_ + service.interval, block.asked + service.seconds);
+            made_.busy += service.interval;
+            last_permit_ = is_refused(asked_) ? core::infinity : block.permitted; // it has stopped
         }
     }
 
@@ -79,7 +80,7 @@ private:
     PermitTiming made_;
     size_t asked_ = 0;
     uint32_t permitted_ = 0;
-    double device_free_ = 0.0;
+    double last_permit_ = 0.0;
 };
 
 } // namespace

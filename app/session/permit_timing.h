@@ -13,10 +13,12 @@ struct ControlConfig {
     uint32_t look_ahead = 256; // blocks that it reads, and asks permits for, ahead of the machine
 };
 
-/// How long a device takes for each block, and which of them it refuses.
+/// How long a device takes for each block, and which of them it refuses. Measured while the blocks
+/// follow each other as fast as the device takes them in.
 struct BlockService {
-    double seconds = 0.0;
+    double seconds = 0.0; // from when it is asked for to its permit
     bool refused = false;
+    double interval = 0.0; // behind the permit of the block before
 };
 
 /// When a block was asked for, permitted, needed and begun, seconds after the start of the program.
@@ -42,8 +44,9 @@ struct PermitTiming {
     double busy = 0.0;              // seconds that the device worked
 };
 
-/// Lets the machine run its plan against the device, which works on one block after the other, from
-/// when the control has read it.
+/// Lets the machine run its plan against the device, which works on a block from when the control
+/// has read it: it is permitted its time after that, and its interval after the block before, at
+/// the latest. A device that has less to do than when it was measured answers sooner.
 ///
 /// `past_refusals`: what is refused is run all the same, as if a person had let it.
 PermitTiming timed_with_permits(const std::vector<core::PermitMotion>& plan,

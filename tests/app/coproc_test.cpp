@@ -25,11 +25,24 @@ TEST(PermitTiming, WaitsForALateDeviceAndGoesOnByItself) {
     EXPECT_NEAR(quick.taken, 3.0, 0.003);
     EXPECT_EQ(quick.missed, 0U);
     EXPECT_FALSE(quick.refused);
-    const PermitTiming slow = timed_with_permits(plan, {{0.5}, {2.0}, {0.1}}, {});
+    const PermitTiming slow =
+        timed_with_permits(plan, {{0.5, false, 0.5}, {2.0, false, 2.0}, {0.1, false, 0.1}}, {});
     EXPECT_EQ(slow.missed, 1U);
     EXPECT_EQ(slow.tightest, 1U);
     EXPECT_NEAR(slow.taken, 2.5 + 2.0, 0.005) << "the second begins at 2.5 s";
     EXPECT_NEAR(slow.blocks[1].permitted, 2.5, 0.002);
+}
+
+TEST(PermitTiming, TakesBlocksThatOverlapInTheDeviceForNoLongerThanTheyDid) {
+    const std::vector<core::PermitMotion> plan = {
+        {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
+    const PermitTiming made =
+        timed_with_permits(plan, {{0.5, false, 0.5}, {0.6, false, 0.1}, {1.5, false, 0.1}}, {});
+    EXPECT_NEAR(made.blocks[0].permitted, 0.5, 1e-9);
+    EXPECT_NEAR(made.blocks[1].permitted, 0.6, 1e-9);
+    EXPECT_NEAR(made.blocks[2].permitted, 1.5, 1e-9) << "it is in the device for so long";
+    EXPECT_NEAR(made.busy, 0.7, 1e-9);
+    EXPECT_EQ(made.missed, 0U);
 }
 
 TEST(PermitTiming, AsksNoFartherAheadThanTheControlReads) {
@@ -135,7 +148,10 @@ TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
     EXPECT_EQ(fast.missed, 0U);
     EXPECT_NEAR(fast.taken, fast.planned, 0.01);
     std::vector<BlockService> slow = services_of(*run, 1);
-    for (BlockService& service : slow) service.seconds *= 1e4;
+    for (BlockService& service : slow) {
+        service.seconds *= 1e4;
+        service.interval *= 1e4;
+    }
     const PermitTiming late = timed_with_permits(run->plan, slow, {}, true);
     EXPECT_GT(late.missed, 0U);
     EXPECT_GT(late.taken, late.planned + 1.0);

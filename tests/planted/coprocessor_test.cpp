@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/session/coprocessor_run.h"
 #include "gcode/dialect.h"
 #include "tests/support/device_judgement.h"
 
@@ -35,13 +36,18 @@ std::set<Program> programs() {
     return found;
 }
 
+CheckJob job_of(const Program& program) {
+    CheckJob job{.program = folder / program.file,
+                 .setup = folder / "setups" / (program.setup + ".toml"),
+                 .detail = core::Detail::every_pair};
+    job.settings.dialect = gcode::dialect_named(program.dialect);
+    return job;
+}
+
 TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     test_support::DeviceJudgement all;
     for (const Program& program : programs()) {
-        CheckJob job{.program = folder / program.file,
-                     .setup = folder / "setups" / (program.setup + ".toml"),
-                     .detail = core::Detail::every_pair};
-        job.settings.dialect = gcode::dialect_named(program.dialect);
+        const CheckJob job = job_of(program);
         hwsim::FunctionalDevice device = hwsim::functional_device({}).value();
         judge_by_device(job, port_of(device), all);
     }
@@ -78,6 +84,36 @@ void expect_safe(const CheckedBlock& device, const CheckedBlock& exact, const st
             }
 }
 
+TEST(Coprocessor, GivesTheSamePermitsWhenBlocksOverlapInIt) {
+    const std::set<std::string> rules = {"collision", "near-miss", "rapid-in-stock",
+                                         "rest-material", "tool-change-unsafe"};
+    size_t refused = 0;
+    for (const Program& program : programs()) {
+        if (!rules.contains(std::filesystem::path(program.file).parent_path())) continue;
+        const CheckJob job = job_of(program);
+        hwsim::FunctionalDevice device = hwsim::functional_device({}).value();
+        const auto alone = test_support::judged_by_device(job, port_of(device));
+        const auto beside = run_beside_coprocessor({.check = job});
+        ASSERT_TRUE(alone && beside) << program.file;
+        ASSERT_EQ(beside->blocks.size(), alone->permits.size());
+        uint64_t last = 0;
+        for (size_t i = 0; i < beside->blocks.size(); ++i) {
+            const BlockPermit& a = alone->permits[i];
+            const DeviceBlock& b = beside->blocks[i];
+            const auto where = program.file + ":" + std::to_string(alone->blocks[i].line);
+            EXPECT_EQ(b.permit.permitted, a.permitted) << where;
+            EXPECT_EQ(b.permit.stop, a.stop) << where;
+            EXPECT_EQ(b.permit.pair, a.pair) << where;
+            EXPECT_EQ(b.permit.segments, a.segments) << where;
+            EXPECT_LE(b.interval, b.cycles) << where;
+            EXPECT_GE(b.after[hwsim::Counter::cycles], last) << where;
+            last = b.after[hwsim::Counter::cycles];
+            refused += !a.permitted;
+        }
+    }
+    EXPECT_GT(refused, 20U);
+}
+
 TEST(Coprocessor, AsTheEngineOfACheckItClaimsNoMoreThanTheExactOne) {
     const std::set<std::string> rules = {"collision",        "near-miss",
                                          "rapid-in-stock",   "low-retract",
@@ -86,10 +122,7 @@ TEST(Coprocessor, AsTheEngineOfACheckItClaimsNoMoreThanTheExactOne) {
     size_t blocks = 0;
     for (const Program& program : programs()) {
         if (!rules.contains(std::filesystem::path(program.file).parent_path())) continue;
-        CheckJob job{.program = folder / program.file,
-                     .setup = folder / "setups" / (program.setup + ".toml"),
-                     .detail = core::Detail::every_pair};
-        job.settings.dialect = gcode::dialect_named(program.dialect);
+        const CheckJob job = job_of(program);
         const CheckRun exact = checked_by(job, Engine::exact);
         const CheckRun device = checked_by(job, Engine::coprocessor);
         ASSERT_EQ(device.blocks.size(), exact.blocks.size());

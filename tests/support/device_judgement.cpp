@@ -6,29 +6,39 @@
 
 namespace test_support {
 
-void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJudgement& judgement) {
-    const auto fail = [&](const core::Error& error) {
-        judgement.errors += job.program + ": " + error.message + "\n";
-    };
-    auto check = app::prepare_check(job);
-    if (!check) return fail(check.error());
-    auto coprocessor =
-        app::CoprocessorCheck::with(std::move(port), check->run.setup, check->machine.stock);
-    if (!coprocessor) return fail(coprocessor.error());
-    app::ProgramRunner runner(*check);
-    app::BlockRunner ahead(*check);
+core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::DevicePort port) {
+    FEELER_TRY(app::PreparedCheck check, app::prepare_check(job));
+    FEELER_TRY(app::CoprocessorCheck coprocessor,
+               app::CoprocessorCheck::with(std::move(port), check.run.setup, check.machine.stock));
+    JudgedProgram judged;
+    app::ProgramRunner runner(check);
+    app::BlockRunner ahead(check);
     while (true) {
         const app::RunPlace& place = runner.place();
         const auto events = app::first_events([&](const app::BlockVisit& look) {
             ahead.visit_ahead(place.control, place.lowering, look);
         });
-        core::Result<app::BlockPermit> permit;
-        if (events) permit = coprocessor->ask(*events, place.machine);
-        if (!permit) return fail(permit.error());
-        if (!runner.advance()) return;
-        const app::CheckedBlock& block = check->run.blocks.back();
+        app::BlockPermit permit;
+        if (events) {
+            FEELER_TRY(permit, coprocessor.ask(*events, place.machine));
+        }
+        if (!runner.advance()) break;
+        judged.permits.push_back(std::move(permit));
+    }
+    judged.blocks = std::move(check.run.blocks);
+    return judged;
+}
+
+void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJudgement& judgement) {
+    const auto judged = judged_by_device(job, std::move(port));
+    if (!judged) {
+        judgement.errors += job.program + ": " + judged.error().message + "\n";
+        return;
+    }
+    for (size_t i = 0; i < judged->permits.size(); ++i) {
+        const app::CheckedBlock& block = judged->blocks[i];
         const size_t missed = judgement.counts.missed;
-        add(judgement.counts, *permit, block.result);
+        add(judgement.counts, judged->permits[i], block.result);
         if (judgement.counts.missed > missed)
             judgement.missed += job.program + ":" + std::to_string(block.line) + "\n";
     }

@@ -17,6 +17,15 @@ struct DeviceJudgement {
     bool operator==(const DeviceJudgement&) const = default;
 };
 
+/// A program of which each block was asked of a device, one after the other.
+struct JudgedProgram {
+    std::vector<app::BlockPermit> permits;
+    std::vector<app::CheckedBlock> blocks; // by the exact engine
+};
+
+/// Errors: those of the check and of the driver.
+core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::DevicePort port);
+
 /// Writes the counts into the report of the test that runs.
 void record(const app::EngineAgreement& counts);
 
