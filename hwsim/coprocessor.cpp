@@ -173,7 +173,7 @@ void retire_with(CoprocessorState& s, const Answer& answer) {
 
 bool store(CoprocessorState& s, uint32_t address, const Line& line) {
     if (address >= s.memory.lines.size() || s.memory.writes.full()) return false;
-    s.memory.writes.push({address, line});
+    s.memory.writes.push({address, line, s.cycle});
     return true;
 }
 

@@ -17,9 +17,27 @@ void write(Driver& driver, Register r, uint32_t value) { driver.port.write(addre
 
 bool is_stopped(Driver& driver) { return (read(driver, Register::status) & status_stopped) != 0; }
 
-void store(Driver& driver, const std::vector<AddressedLine>& lines) {
+bool store(Driver& driver, const AddressedLine& line) {
+    for (int tries = 0; !driver.port.store(line.address, line.line); ++tries) {
+        constexpr int patience = 100'000;
+        const auto stop = static_cast<Stop>(read(driver, Register::stop));
+        if (stop == Stop::memory_stalled || tries == patience) return false;
+        write(driver, Register::heartbeat, 1);
+        driver.port.wait();
+    }
+    return true;
+}
+
+core::Result<void> store(Driver& driver, const std::vector<AddressedLine>& lines) {
+    uint32_t end = 0;
+    for (const AddressedLine& line : lines) end = std::max(end, line.address + 1);
+    if (end > driver.written.size()) driver.written.resize(end);
+    for (const AddressedLine& line : lines) driver.written[line.address] = line.line;
     for (const AddressedLine& line : lines)
-        while (!driver.port.store(line.address, line.line)) driver.port.wait();
+        if (!store(driver, line))
+            return core::fail(core::ErrorCode::unsupported,
+                              "the coprocessor's memory takes no lines any more");
+    return {};
 }
 
 /// Gives back the lines of models that no search needs any more. Counts may wrap round.
@@ -67,13 +85,14 @@ core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace s
     if (free == driver.slots.end() && driver.slots.size() == model_slots)
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the coprocessor holds no more than {} models", model_slots));
+    if (auto stored = store(driver, lines); !stored)
+        return tl::unexpected(std::move(stored).error());
     driver.space = std::move(space);
     const auto number = static_cast<SlotNumber>(free - driver.slots.begin());
     if (free == driver.slots.end())
         driver.slots.push_back(std::move(slot));
     else
         *free = std::move(slot);
-    store(driver, lines);
     push_model(driver, number);
     return number;
 }
@@ -180,22 +199,28 @@ core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock)
 }
 
 void unload(Driver& driver, SlotNumber number) {
+    if (index_of(number) >= driver.slots.size()) return;
     Driver::Slot& slot = driver.slots[index_of(number)];
     if (slot.is_free) return;
     slot.is_free = true;
-    driver.released.push_back({driver.entries, std::move(slot.runs)});
+    driver.released.push_back(
+        {driver.entries, slot.stock ? lines_of(*slot.stock) : std::move(slot.runs)});
     reclaim(driver);
 }
 
 core::Result<size_t> update_stock(Driver& driver, SlotNumber number, const core::CutModel& stock) {
     reclaim(driver);
+    if (index_of(number) >= driver.slots.size() || driver.slots[index_of(number)].is_free
+        || !driver.slots[index_of(number)].stock)
+        return core::fail(core::ErrorCode::invalid_value, "only a stock can be cut");
     Driver::Slot& slot = driver.slots[index_of(number)];
     FEELER_TRY(const StockUpdate done, update(*slot.stock, driver.space, stock.columns));
     slot.header = done.header;
     slot.epoch = done.epoch;
-    store(driver, done.lines);
-    push_model(driver, number);
+    auto stored = store(driver, done.lines);
+    if (stored) push_model(driver, number);
     driver.released.push_back({driver.entries, done.released});
+    if (!stored) return tl::unexpected(std::move(stored).error());
     return done.tiles;
 }
 
@@ -264,7 +289,11 @@ std::optional<FoundPair> found_pair(Driver& driver) {
 
 void recover(Driver& driver) {
     if (!is_stopped(driver)) return;
+    const auto reason = static_cast<Stop>(read(driver, Register::stop));
+    const uint32_t line = read(driver, Register::stop_line);
     write(driver, Register::control, control_clear | control_enable);
+    if (reason == Stop::bad_check && line < driver.written.size())
+        store(driver, {line, driver.written[line]});
     driver.next_sequence = read(driver, Register::next_seq);
     // Nothing is under way any more, so nothing needs the models of before.
     driver.entries = read(driver, Register::retired);

@@ -31,6 +31,7 @@ struct Driver {
     DevicePort port;
     LineSpace space;
     std::vector<Slot> slots;
+    std::vector<Line> written; // by address: what a line with a wrong bit is written again from
     std::deque<Released> released;
     uint32_t next_sequence = 1;
     uint32_t entries = 0;   // pushed since reset
@@ -81,7 +82,8 @@ core::Result<Driver> open_device(DevicePort port);
 
 /// Brings a tool into the device: a body of revolution, upright, by cylinders.
 ///
-/// Errors: those of cylinders_round(); no free slot; the memory is full, or what does not fit.
+/// Errors: those of cylinders_round(); no free slot; the memory is full, or takes no lines; what
+///         does not fit.
 core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& profile,
                                    double tolerance = 0.02);
 
@@ -91,14 +93,15 @@ core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Rec
 /// Brings a stock in; to be updated when it is cut.
 core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock);
 
-/// Takes a model that does not change out of the device. Segments pushed before are still held
+/// Takes a model out of the device. Segments pushed before are still held
 /// against it; its slot may be given to another one.
 void unload(Driver& driver, SlotNumber slot);
 
 /// From the next segment on the stock is as it is now: changed tiles go by DMA, and the new epoch
 /// through the FIFO. Returns how many tiles.
 ///
-/// Errors: the memory is full; the stock is then the one before, which is larger.
+/// Errors: no stock; the memory is full, and the stock is then the one before, which is larger; the
+///         memory takes no lines, and segments are then refused.
 core::Result<size_t> update_stock(Driver& driver, SlotNumber slot, const core::CutModel& stock);
 
 /// Asks for a permit, and returns the segment's number. Into a device that has stopped nothing
@@ -120,8 +123,8 @@ DeviceReport wait_for_all(Driver& driver);
 /// The pair of the violation that stopped the device, or of the last measurement.
 std::optional<FoundPair> found_pair(Driver& driver);
 
-/// Clears the reason of a stop, and gives the device its models again. The next segment has the
-/// number after the last one permitted.
+/// Clears the reason of a stop, and gives the device its models again; a line with a wrong bit is
+/// written anew. The next segment has the number after the last one permitted.
 void recover(Driver& driver);
 
 } // namespace hwsim

@@ -1,5 +1,7 @@
 #include "hwsim/memory_unit.h"
 
+#include <algorithm>
+
 namespace hwsim {
 namespace {
 
@@ -57,10 +59,15 @@ void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const Re
 }
 
 bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
-    const auto late = [&](const Ring<MemoryUnit::Pending>& queue) {
-        return !queue.empty() && cycle > queue.front().cycle + config.memory_limit;
+    const auto is_late = [&](uint64_t since) {
+        return cycle > std::max(since, unit.watched_from) + config.memory_limit;
     };
-    return late(unit.asked) || late(unit.under_way);
+    const auto is_read_late = [&](const Ring<MemoryUnit::Pending>& queue) {
+        return !queue.empty() && is_late(queue.front().cycle);
+    };
+    // Reads may keep the port from a write, and then it is not free for long.
+    return is_read_late(unit.asked) || is_read_late(unit.under_way)
+           || (!unit.writes.empty() && is_late(std::max(unit.writes.front().cycle, unit.free_at)));
 }
 
 } // namespace hwsim

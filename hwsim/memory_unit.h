@@ -35,6 +35,7 @@ struct MemoryUnit {
     struct Write {
         uint32_t address = 0;
         Line line;
+        uint64_t cycle = 0; // when it was given
         bool operator==(const Write&) const = default;
     };
 
@@ -43,6 +44,7 @@ struct MemoryUnit {
     Ring<Write> writes;
     uint64_t free_at = 0;        // the port
     bool write_was_last = false; // so a read goes first
+    uint64_t watched_from = 0;   // cycle; who waited before it counts from there
     bool stalled = false;        // answers nothing: a fault to be injected
 
     ReadResponse response;    // output
@@ -66,7 +68,8 @@ inline uint64_t lines_given(const MemoryUnit& unit) {
 /// One rising clock edge.
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);
 
-/// Whether a request has waited longer than the limit.
+/// Whether a request has waited longer than the limit, or a line to be written has while the port
+/// did nothing.
 bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle);
 
 } // namespace hwsim

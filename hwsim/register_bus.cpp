@@ -134,13 +134,16 @@ uint32_t read_of_stop(CoprocessorState& s, Register r) {
     }
 }
 
+/// Host and memory have their whole time from now on.
+void watch_from_here(CoprocessorState& s) { s.host.heartbeat = s.memory.watched_from = s.cycle; }
+
 void clear(CoprocessorState& s) {
     if (s.permits.stopped == Stop::none) return;
     s.permits.stopped = Stop::none;
     s.permits.stop_sequence = s.permits.stop_line = 0;
     s.fifo.next_sequence = s.permits.permit_sequence + 1;
     s.slots = {};
-    s.host.heartbeat = s.cycle;
+    watch_from_here(s);
 }
 
 void reset(CoprocessorState& s, const DeviceConfig& config) {
@@ -157,7 +160,7 @@ void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t val
     if ((value & control_reset) != 0) return reset(s, config);
     if ((value & control_clear) != 0) clear(s);
     const bool enable = (value & control_enable) != 0;
-    if (enable && !s.host.enabled) s.host.heartbeat = s.cycle;
+    if (enable && !s.host.enabled) watch_from_here(s);
     s.host.enabled = enable;
 }
 

@@ -25,7 +25,7 @@ enum class Register : uint32_t {
     fifo_used = 0x030,
     permit_seq = 0x034, // every segment up to this one may be entered
     retired = 0x038,    // entries finished since reset: models they needed are needed no more
-    next_seq = 0x03C,   // read; write while stopped: the sequence number expected next
+    next_seq = 0x03C,   // the sequence number expected next; 0: none, for all are used up
 
     stop = 0x040,      // `Stop`: why there are no permits
     stop_seq = 0x044,  // the segment that stopped the device

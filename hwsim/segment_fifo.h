@@ -14,7 +14,7 @@ struct SegmentFifo {
         bool operator==(const Entry&) const = default;
     };
     Ring<Entry> entries;
-    uint32_t next_sequence = 1;
+    uint32_t next_sequence = 1; // 0: all numbers are used up
 
     bool operator==(const SegmentFifo&) const = default;
 };

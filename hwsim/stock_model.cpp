@@ -115,6 +115,15 @@ StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size) {
     return model;
 }
 
+std::vector<LineRun> lines_of(const StockModel& model) {
+    std::vector<LineRun> runs;
+    if (model.header) runs.push_back({*model.header, 1});
+    for (const auto* parts : {&model.tiles, &model.above})
+        for (const StockModel::Part& part : *parts)
+            runs.insert(runs.end(), part.runs.begin(), part.runs.end());
+    return runs;
+}
+
 core::Result<StockUpdate> update(StockModel& model, LineSpace& space, const ScanLines& columns) {
     assert(columns.u_count() == model.columns.u_count()
            && columns.v_count() == model.columns.v_count());

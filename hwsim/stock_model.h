@@ -33,6 +33,9 @@ struct StockUpdate {
     size_t tiles = 0; // rebuilt
 };
 
+/// All lines that a stock has in the memory.
+std::vector<LineRun> lines_of(const StockModel& model);
+
 StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
 
 /// Takes over the columns as they are now: makes the lines of all tiles that the columns do not

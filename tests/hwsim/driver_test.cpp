@@ -282,7 +282,6 @@ TEST(Driver, GoesOnAfterAWrongBit) {
         device.state.memory.lines[line].word[bit / 32] ^= 1U << (bit % 32);
         EXPECT_EQ(push(driver, above).value(), 1U);
         const DeviceReport now = wait_for_all(driver);
-        device.state.memory.lines[line].word[bit / 32] ^= 1U << (bit % 32);
         EXPECT_EQ(now.stop, Stop::bad_check);
         EXPECT_EQ(now.stop_line, line);
         EXPECT_EQ(now.permitted, 0U);
@@ -290,6 +289,64 @@ TEST(Driver, GoesOnAfterAWrongBit) {
         EXPECT_EQ(push(driver, above).value(), 1U);
         EXPECT_EQ(wait_for_all(driver).permitted, 1U);
     }
+}
+
+TEST(Driver, GoesOnAfterAMemoryThatTookNoLines) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    core::CutModel stock = raw.uncut(1.0);
+    const SlotNumber work = load_stock(driver, stock).value();
+    const PathSegment above{{-20, 0, 1.2}, {20, 0, 1.2}, {{tool, work, 1.0}}};
+    const auto cutter = std::make_shared<core::Cutter>(
+        core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
+    core::cut(stock, {cutter, {-20, 0, -4}, {20, 0, -4}});
+    wait_for_all(driver);
+    device.state.memory.stalled = true;
+    EXPECT_FALSE(update_stock(driver, work, stock));
+    EXPECT_FALSE(load_tool(driver, holder));
+    EXPECT_EQ(driver.slots.size(), 2U);
+    EXPECT_EQ(report(driver).stop, Stop::memory_stalled);
+    EXPECT_TRUE(push(driver, above));
+    EXPECT_EQ(wait_for_all(driver).permitted, 0U);
+    device.state.memory.stalled = false;
+    // Lines that never came are found one by one, and written.
+    uint32_t permitted = 0;
+    for (int tries = 0; tries < 200 && permitted == 0; ++tries) {
+        recover(driver);
+        EXPECT_EQ(push(driver, above).value(), 1U);
+        permitted = wait_for_all(driver).permitted;
+    }
+    EXPECT_EQ(permitted, 1U);
+}
+
+TEST(Driver, FeelsForTheHostWhileASlowMemoryTakesItsLines) {
+    DeviceConfig config = bench_config();
+    config.cycles_per_line = 1'000;
+    EmulatedDevice device = emulated_device(config).value();
+    Driver driver = open_device(port_of(device)).value();
+    driver.port.write(address_of(Register::watchdog), 50'000);
+    const SlotNumber tool = load_tool(driver, holder).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    EXPECT_GT(device.state.cycle, 100'000U);
+    EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), 1U);
+    EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+}
+
+TEST(Driver, GivesTheLinesOfAStockBackWhenItIsTakenOut) {
+    FunctionalDevice device = functional_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    for (int i = 0; i < 500; ++i) {
+        const auto stock = load_stock(driver, raw.uncut(1.0));
+        ASSERT_TRUE(stock) << i;
+        unload(driver, *stock);
+        EXPECT_FALSE(update_stock(driver, *stock, raw.uncut(1.0)));
+    }
+    EXPECT_FALSE(update_stock(driver, tool, raw.uncut(1.0)));
+    EXPECT_FALSE(update_stock(driver, SlotNumber{30}, raw.uncut(1.0)));
+    unload(driver, SlotNumber{30});
+    EXPECT_EQ(driver.slots.size(), 2U);
 }
 
 } // namespace

@@ -302,7 +302,7 @@ TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
 }
 
 TEST(Fault, AMemoryThatDoesNotAnswerStopsTheDevice) {
-    for (const uint32_t delay : {0U, 20U, 50U}) {
+    for (const uint32_t delay : {0U, 1U, 20U, 50U}) {
         TestDevice device;
         device.set_models({tool}, row_of_posts());
         device.clock(200);
@@ -314,9 +314,61 @@ TEST(Fault, AMemoryThatDoesNotAnswerStopsTheDevice) {
         device.clock(300);
         expect_stopped(device, Stop::memory_stalled, 0);
         device.state.memory.stalled = false;
-        device.clock(100);
+        // Whether the old requests are answered by now, or still to come.
+        device.clock(delay == 1 ? 0 : 100);
         expect_recovers(device);
     }
+}
+
+TEST(Fault, AMemoryThatTakesNoLinesStopsTheDevice) {
+    TestDevice device = working_device();
+    device.clock(5'000);
+    device.state.memory.stalled = true;
+    ASSERT_TRUE(store(device.state, 4'000, {}));
+    device.clock(1'000);
+    EXPECT_EQ(device.reason(), Stop::none);
+    device.clock(2);
+    expect_stopped(device, Stop::memory_stalled);
+    device.state.memory.stalled = false;
+    expect_recovers(device);
+}
+
+TEST(Fault, ALineThatWaitsForReadsIsNoStall) {
+    DeviceConfig config = small_config();
+    config.memory_limit = 400;
+    config.cycles_per_line = 40;
+    TestDevice device(config);
+    ASSERT_TRUE(store(device.state, 4'000, {}));
+    for (int cycle = 0; cycle < 2'000; ++cycle) {
+        if (accepts(device.state.memory))
+            device.state.memory.asked.push({{.valid = true, .run = 99}, device.state.cycle});
+        device.clock();
+    }
+    EXPECT_FALSE(device.state.memory.writes.empty());
+    EXPECT_EQ(device.reason(), Stop::none);
+    device.clock(500);
+    EXPECT_TRUE(device.state.memory.writes.empty());
+    EXPECT_EQ(device.reason(), Stop::none);
+}
+
+TEST(Fault, BehindTheLastNumberNothingIsTakenIn) {
+    constexpr uint32_t last = 0xFFFF'FFFF;
+    TestDevice device = working_device();
+    device.state.permits.permit_sequence = last - 1;
+    device.state.fifo.next_sequence = last;
+    device.push(along_the_row(last));
+    EXPECT_TRUE(device.finish());
+    EXPECT_EQ(device.permitted(), last);
+    for (int again = 0; again < 2; ++again) {
+        device.push(along_the_row(0));
+        device.clock(3'000);
+        EXPECT_EQ(device.permitted(), last);
+        EXPECT_EQ(device.reason(), Stop::sequence);
+        device.write(Register::control, control_clear | control_enable);
+    }
+    device.write(Register::control, control_reset);
+    EXPECT_EQ(device.permitted(), 0U);
+    EXPECT_EQ(device.read(Register::next_seq), 1U);
 }
 
 TEST(Fault, AHostWithoutHeartbeatGetsNoMorePermits) {
