@@ -10,7 +10,7 @@ struct DeviceConfig {
     uint32_t elements = 8;           // processing elements, at most 64
     uint32_t threads = 4;            // of each, at most 16
     uint32_t stack_depth = 64;       // waiting pairs of a thread, at most `most_stack`
-    uint32_t node_cache_lines = 256; // of each element; powers of two
+    uint32_t node_cache_lines = 256; // of each element; powers of two up to `most_cache_lines`
     uint32_t record_cache_lines = 256;
     uint32_t fifo_depth = 32;          // segments
     uint32_t memory_lines = 1U << 20;  // 64 MiB
@@ -24,6 +24,7 @@ struct DeviceConfig {
     static constexpr uint32_t most_elements = 64;
     static constexpr uint32_t most_threads = 16;
     static constexpr uint32_t most_stack = 64;
+    static constexpr uint32_t most_cache_lines = 1U << 14; // 1 MiB
     bool operator==(const DeviceConfig&) const = default;
 };
 

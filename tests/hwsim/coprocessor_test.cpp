@@ -326,6 +326,10 @@ TEST(DeviceConfig, IsRefusedWhereItCannotBeBuilt) {
     EXPECT_FALSE(checked({.threads = 17}));
     EXPECT_FALSE(checked({.stack_depth = 65}));
     EXPECT_FALSE(checked({.node_cache_lines = 100}));
+    EXPECT_TRUE(checked({.node_cache_lines = 1U << 14, .record_cache_lines = 1}));
+    EXPECT_FALSE(checked({.node_cache_lines = 1U << 15}));
+    EXPECT_FALSE(checked({.record_cache_lines = 1U << 30}));
+    EXPECT_FALSE(checked({.record_cache_lines = 0}));
     EXPECT_FALSE(checked({.memory_lines = 0}));
 }
 
