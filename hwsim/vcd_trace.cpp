@@ -32,14 +32,14 @@ constexpr DeviceSignal device_signals[] = {
     {"permit_seq", 32,
      [](const CoprocessorState& s) { return uint64_t{s.permits.permit_sequence}; }},
     {"retired", 32, [](const CoprocessorState& s) { return uint64_t{s.permits.retired}; }},
-    {"fifo_used", 8, [](const CoprocessorState& s) { return uint64_t{s.fifo.entries.size()}; }},
-    {"dispatched", 8,
+    {"fifo_used", 16, [](const CoprocessorState& s) { return uint64_t{s.fifo.entries.size()}; }},
+    {"dispatched", 16,
      [](const CoprocessorState& s) { return uint64_t{s.permits.in_order.size()}; }},
     {"searching", 16, [](const CoprocessorState& s) { return uint64_t{s.searching}; }},
-    {"memory_asked", 8, [](const CoprocessorState& s) { return uint64_t{s.memory.asked.size()}; }},
-    {"memory_under_way", 8,
+    {"memory_asked", 16, [](const CoprocessorState& s) { return uint64_t{s.memory.asked.size()}; }},
+    {"memory_under_way", 16,
      [](const CoprocessorState& s) { return uint64_t{s.memory.under_way.size()}; }},
-    {"memory_writes", 8,
+    {"memory_writes", 16,
      [](const CoprocessorState& s) { return uint64_t{s.memory.writes.size()}; }},
     {"memory_response", 1,
      [](const CoprocessorState& s) { return uint64_t{s.memory.response.request.valid}; }},
@@ -60,7 +60,7 @@ constexpr ElementSignal element_signals[] = {{"busy", &SearchElement::busy},
 
 } // namespace
 
-VcdTrace::VcdTrace(const DeviceConfig& config) : picoseconds_(1'000'000 / config.clock_mhz) {
+VcdTrace::VcdTrace(const DeviceConfig& config) : clock_mhz_(config.clock_mhz) {
     text_ = "$version feeler $end\n$timescale 1ps $end\n$scope module coprocessor $end\n";
     for (const DeviceSignal& signal : device_signals) declare(signal.name, signal.bits);
     for (uint32_t i = 0; i < config.elements; ++i)
@@ -78,7 +78,7 @@ void VcdTrace::write(size_t signal, uint64_t value, bool& has_time, uint64_t cyc
     Signal& known = signals_[signal];
     if (known.value == value) return;
     known.value = value;
-    if (!has_time) text_ += fmt::format("#{}\n", cycle * picoseconds_);
+    if (!has_time) text_ += fmt::format("#{}\n", cycle * 1'000'000 / clock_mhz_);
     has_time = true;
     text_ += known.bits == 1 ? fmt::format("{}{}\n", value, known.id)
                              : fmt::format("b{:b} {}\n", value, known.id);

@@ -9,7 +9,7 @@ namespace hwsim {
 
 /// The signals of a device over time, as a value change dump (IEEE 1364) that GTKWave reads.
 ///
-/// Units: nanoseconds, a cycle of the clock to each period of it.
+/// Units: picoseconds; the device's cycles at its clock.
 class VcdTrace {
 public:
     explicit VcdTrace(const DeviceConfig& config);
@@ -29,7 +29,7 @@ private:
     void declare(const std::string& name, uint32_t bits);
     void write(size_t signal, uint64_t value, bool& has_time, uint64_t cycle);
 
-    uint64_t picoseconds_;
+    uint64_t clock_mhz_;
     std::vector<Signal> signals_;
     std::string text_;
 };

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
@@ -60,8 +62,14 @@ core::Result<ExitCode> coproc(const Options& options) {
                 check_output(output, {options.what.program, options.what.setup, options.config});
             !safe)
             return tl::unexpected(std::move(safe).error());
+    if (options.to && *options.to < *options.from)
+        return core::fail(core::ErrorCode::invalid_value, "--to must not lie before --from");
     Trace trace;
     FEELER_TRY(const CoprocessorResult result, run(options, trace));
+    if (trace.vcd && trace.from >= result.run.blocks.size())
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("--from {}: the program has {} blocks, numbered from 0",
+                                      trace.from, result.run.blocks.size()));
     FEELER_TRY(const std::string report, report_of(options, result));
     if (auto written = write_output(options.output, report); !written)
         return tl::unexpected(std::move(written).error());
@@ -92,8 +100,12 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("-o,--output", options->output, "Write the report to this file");
     auto* vcd = command.add_option("--vcd", options->vcd,
                                    "Write the device's signals to this file, for GTKWave");
-    auto* from = command.add_option("--from", options->from, "... from this block on")->needs(vcd);
-    command.add_option("--to", options->to, "... to this one")->needs(from);
+    auto* from = command.add_option("--from", options->from, "... from this block on")
+                     ->needs(vcd)
+                     ->check(CLI::NonNegativeNumber);
+    command.add_option("--to", options->to, "... to this one")
+        ->needs(from)
+        ->check(CLI::NonNegativeNumber);
     command.add_flag("--past-refusals", options->past_refusals,
                      "Run refused blocks all the same, as if a person had let them");
     command.add_flag("--no-fit", options->no_fit, "Do not look for the smallest device");

@@ -113,7 +113,8 @@ Json block_json(const CoprocessorResult& result, size_t i) {
             {"entered", known(timing.entered)},
             {"slack", known(timing.slack())},
             {"refused", block.permit.permitted ? Json(nullptr) : Json(refusal(result, i))},
-            {"verdict", core::name_of(result.run.check.blocks[i].result.verdict)}};
+            {"verdict", core::name_of(result.run.check.blocks[i].result.verdict)},
+            {"interval", block.interval}};
 }
 
 } // namespace
@@ -121,11 +122,12 @@ Json block_json(const CoprocessorResult& result, size_t i) {
 std::string refusal(const CoprocessorResult& result, size_t block) {
     const BlockPermit& permit = result.run.blocks[block].permit;
     if (!permit.not_asked.empty()) return permit.not_asked;
-    std::string why = hwsim::name_of(permit.stop);
-    if (permit.pair)
-        why = fmt::format("{} / {}", core::part_name(result.run.check.setup, *permit.pair),
-                          core::body_name(result.run.check.setup, *permit.pair));
-    return why;
+    const std::string why = hwsim::name_of(permit.stop);
+    if (!permit.pair) return why;
+    const std::string pair =
+        fmt::format("{} / {}", core::part_name(result.run.check.setup, *permit.pair),
+                    core::body_name(result.run.check.setup, *permit.pair));
+    return permit.stop == hwsim::Stop::violation ? pair : why + ": " + pair;
 }
 
 std::string time_text(double seconds) {
@@ -161,7 +163,8 @@ DeviceFigures figures(const CoprocessorResult& result) {
     const double working = std::accumulate(sorted.begin(), sorted.end(), 0.0);
     if (!sorted.empty()) {
         const auto at = [&](double part) {
-            return sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1))];
+            const double rank = std::ceil(part * static_cast<double>(sorted.size()));
+            return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
         };
         f.p50 = at(0.5);
         f.p99 = at(0.99);
@@ -271,7 +274,7 @@ std::string coprocessor_json(const CoprocessorResult& result) {
 
 std::string coprocessor_csv(const CoprocessorResult& result) {
     std::string text = "block,line,segments,cycles,nodes,pairs,asked,permitted,due,entered,slack,"
-                       "refused,verdict\r\n";
+                       "refused,verdict,interval\r\n";
     for (size_t i = 0; i < result.run.blocks.size(); ++i) {
         std::string row;
         const Json block = block_json(result, i);

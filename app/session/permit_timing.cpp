@@ -24,6 +24,7 @@ public:
             core::step(machine_, permitted_);
         }
         made_.taken = machine_.time();
+        if (machine_.is_done()) ask_for_the_rest();
         conclude();
         return std::move(made_);
     }
@@ -51,6 +52,12 @@ private:
         }
     }
 
+    /// What moves nothing holds no machine up, but may be refused.
+    void ask_for_the_rest() {
+        ask_ahead();
+        while (permitted_ < asked_ && !is_refused(permitted_)) ++permitted_;
+    }
+
     void permit() {
         while (permitted_ < asked_ && !is_refused(permitted_)
                && made_.blocks[permitted_].permitted <= machine_.time())
@@ -58,7 +65,7 @@ private:
     }
 
     void conclude() {
-        if (!machine_.is_done()) made_.refused = permitted_;
+        if (permitted_ < services_.size()) made_.refused = permitted_;
         for (size_t i = machine_.motions.size(); i-- > 0;) { // the first motion of a block last
             BlockTiming& block = made_.blocks[machine_.motions[i].segment];
             block.due = machine_.entries[i].due;

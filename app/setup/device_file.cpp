@@ -1,5 +1,7 @@
 #include "app/setup/device_file.h"
 
+#include <fmt/format.h>
+
 #include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
 
@@ -15,11 +17,11 @@ void read_count(TableReader& table, const char* key, uint32_t& value) {
         value = static_cast<uint32_t>(*stated);
 }
 
-void read_positive(TableReader& table, const char* key, double& value) {
+void read_within(TableReader& table, const char* key, double least, double most, double& value) {
     const auto stated = table.number(key);
     if (!stated) return;
-    if (!(*stated > 0.0))
-        table.refuse(key, "must be above 0");
+    if (*stated < least || *stated > most)
+        table.refuse(key, fmt::format("must be from {:g} to {:g}", least, most));
     else
         value = *stated;
 }
@@ -43,19 +45,20 @@ void read_device(TableReader& table, hwsim::DeviceConfig& device) {
 }
 
 void read_control(TableReader& table, ControlConfig& control) {
-    read_positive(table, "servo_period", control.servo.period);
-    read_positive(table, "io_latency", control.servo.latency);
-    read_positive(table, "feed_override", control.servo.feed);
+    read_within(table, "servo_period", 1e-5, 1.0, control.servo.period);
+    read_within(table, "io_latency", 0.0, 10.0, control.servo.latency);
+    read_within(table, "feed_override", 0.01, 10.0, control.servo.feed);
     read_count(table, "look_ahead", control.look_ahead);
     table.finish();
 }
 
 void read_energy(TableReader& table, EnergyTable& energy) {
-    read_positive(table, "box_test", energy.box_test);
-    read_positive(table, "pair_test", energy.pair_test);
-    read_positive(table, "cache_line", energy.cache_line);
-    read_positive(table, "memory_line", energy.memory_line);
-    read_positive(table, "idle_watts", energy.idle_watts);
+    for (const auto& [key, value] : {std::pair{"box_test", &energy.box_test},
+                                     {"pair_test", &energy.pair_test},
+                                     {"cache_line", &energy.cache_line},
+                                     {"memory_line", &energy.memory_line},
+                                     {"idle_watts", &energy.idle_watts}})
+        read_within(table, key, 0.0, 1e9, *value);
     table.finish();
 }
 

@@ -1,3 +1,7 @@
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "app/report/coprocessor_report.h"
@@ -63,6 +67,22 @@ TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
     EXPECT_NEAR(stands.taken, 1.0, 0.1) << "it brakes towards the place";
     EXPECT_EQ(stands.blocks[2].entered, core::infinity);
     EXPECT_FALSE(timed_with_permits(plan, services, {}, true).refused);
+}
+
+TEST(PermitTiming, AsksForWhatMovesNothingBehindTheLastMotion) {
+    const std::vector<core::PermitMotion> plan = {{hop(1.0, 10), 0}};
+    const ControlConfig short_sighted{.look_ahead = 1};
+    std::vector<BlockService> services(5, {1e-6});
+    const PermitTiming all = timed_with_permits(plan, services, short_sighted);
+    EXPECT_FALSE(all.refused);
+    EXPECT_LT(all.blocks[4].permitted, 1.1);
+    EXPECT_NEAR(all.busy, 5e-6, 1e-12);
+    services[3].refused = true;
+    EXPECT_EQ(timed_with_permits(plan, services, short_sighted).refused, 3U);
+    EXPECT_FALSE(timed_with_permits(plan, services, short_sighted, true).refused);
+    const PermitTiming nothing_moves = timed_with_permits({}, services, short_sighted);
+    EXPECT_EQ(nothing_moves.taken, 0.0);
+    EXPECT_EQ(nothing_moves.refused, 3U);
 }
 
 CoprocessorJob plate(const std::string& program) {
@@ -206,6 +226,81 @@ TEST(VcdTrace, IsAFileOfChanges) {
     EXPECT_EQ(times, 2U) << "the first cycle, and that of the change";
 }
 
+TEST(VcdTrace, WritesNoValueWiderThanItsSignal) {
+    hwsim::DeviceConfig config;
+    config.fifo_depth = config.memory_queue = config.write_queue = 4096;
+    config.elements = 64;
+    config.threads = 16;
+    hwsim::CoprocessorState state = power_up(config);
+    for (int i = 0; i < 4096; ++i) {
+        state.fifo.entries.push({});
+        state.memory.asked.push({});
+        state.memory.under_way.push({});
+        state.memory.writes.push({});
+    }
+    while (!state.permits.in_order.full()) state.permits.in_order.push({});
+    state.searching = 1024;
+    state.permits.stopped = hwsim::Stop::host_silent;
+    for (hwsim::SearchElement& element : state.elements)
+        element.busy = element.waiting = element.done = 0xFFFF;
+    hwsim::VcdTrace trace(config);
+    trace.note(state);
+    std::istringstream lines(trace.text());
+    std::map<std::string, size_t> bits;
+    size_t values = 0;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string first, kind, name;
+        size_t width = 0;
+        words >> first;
+        if (first == "$var" && words >> kind >> width >> name) bits[name] = width;
+        if (first[0] != 'b') continue;
+        words >> name;
+        EXPECT_LE(first.size() - 1, bits.at(name)) << line;
+        ++values;
+    }
+    EXPECT_EQ(bits.size(), 15U + 3 * 64);
+    EXPECT_GT(values, 3U * 64);
+}
+
+TEST(VcdTrace, KeepsToTheClock) {
+    hwsim::DeviceConfig config;
+    config.clock_mhz = 300;
+    config.elements = 1;
+    hwsim::CoprocessorState state = power_up(config);
+    state.cycle = 3'000'000'000;
+    hwsim::VcdTrace trace(config);
+    trace.note(state);
+    EXPECT_NE(trace.text().find("\n#10000000000000\n"), std::string::npos) << "ten seconds";
+}
+
+TEST(CoprocessorReport, NamesALatencyThatNinetyNineOfAHundredBlocksKeep) {
+    CoprocessorResult result;
+    result.file.device.clock_mhz = 1;
+    for (uint64_t i = 1; i <= 50; ++i) {
+        DeviceBlock block;
+        block.permit.segments = 1;
+        block.cycles = i;
+        result.run.blocks.push_back(block);
+    }
+    const DeviceFigures of_fifty = figures(result);
+    EXPECT_NEAR(of_fifty.p50, 25e-6, 1e-12);
+    EXPECT_NEAR(of_fifty.p99, 50e-6, 1e-12) << "49 of 50 are less than 99 of 100";
+    result.run.blocks.insert(result.run.blocks.end(), 150, result.run.blocks[0]);
+    EXPECT_NEAR(figures(result).p99, 48e-6, 1e-12) << "two of 200 are slower";
+}
+
+TEST(CoprocessorReport, SaysWhyABlockIsRefused) {
+    CoprocessorJob job = plate("clamped_plate_low.nc");
+    job.device.search_limit = 1;
+    CoprocessorResult result;
+    auto run = run_beside_coprocessor(job);
+    ASSERT_TRUE(run.has_value());
+    result.run = *std::move(run);
+    result.timing = timed_with_permits(result.run.plan, services_of(result.run, 100), {});
+    EXPECT_NE(coprocessor_csv(result).find("too-long: "), std::string::npos);
+}
+
 TEST(DeviceFile, SaysWhatIsWrongAndWhere) {
     const test_support::ScopedFolder folder;
     const auto error_of = [&](const std::string& text) {
@@ -217,7 +312,15 @@ TEST(DeviceFile, SaysWhatIsWrongAndWhere) {
     EXPECT_NE(error_of("[device]\nelement = 4\n").find("element"), std::string::npos);
     EXPECT_NE(error_of("[device]\nelements = 0\n").find("above 0"), std::string::npos);
     EXPECT_NE(error_of("[device]\nelements = 1000\n"), "none");
-    EXPECT_NE(error_of("[control]\nservo_period = -1\n").find("above 0"), std::string::npos);
+    for (const char* line : {"servo_period = -1", "servo_period = 1e-9", "feed_override = 0",
+                             "feed_override = 1e-9", "io_latency = -0.1"})
+        EXPECT_NE(error_of(fmt::format("[control]\n{}\n", line)).find("must be from"),
+                  std::string::npos)
+            << line;
+    EXPECT_EQ(error_of("[control]\nio_latency = 0\n[energy]\nidle_watts = 0\n"), "none");
+    EXPECT_NE(error_of("[energy]\nidle_watts = -1\n").find("must be from"), std::string::npos);
+    EXPECT_NE(error_of("[device]\nnode_cache_lines = 1073741824\n").find("caches"),
+              std::string::npos);
     EXPECT_NE(error_of("device\n"), "none");
 }
 
