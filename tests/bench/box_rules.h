@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "hwsim/traversal.h"
+
+namespace bench {
+
+/// A search by the device's own volumes, so that what is asked of spheres is asked of them as well.
+class BoxRules {
+public:
+    using Pair = hwsim::SearchPair;
+    using Halves = std::array<std::optional<Pair>, 2>;
+
+    explicit BoxRules(const hwsim::Query& query) : query_(query) {}
+
+    Pair first_pair() const { return hwsim::first_pair(query_); }
+    hwsim::Division division_of(const Pair& pair) const {
+        return hwsim::division_of(pair, query_.segment);
+    }
+    static Halves halves_of_node(const Pair& pair, hwsim::Division division, uint32_t /*line*/,
+                                 const hwsim::Node& node) {
+        return those_there(hwsim::halves_of_node(pair, division, node));
+    }
+    static Halves halves_of_way(const Pair& pair) {
+        return those_there(hwsim::halves_of_way(pair));
+    }
+    bool test(Pair& pair) const {
+        const auto gap = hwsim::squared_gap(pair, query_.segment);
+        pair.squared = gap.value_or(0);
+        return gap.has_value();
+    }
+    static bool is_below(const Pair& pair, uint64_t squared) { return pair.squared < squared; }
+    static uint64_t bound_of(const Pair& pair) { return pair.squared; }
+
+private:
+    static Halves those_there(const hwsim::Halves& halves) {
+        Halves there;
+        for (size_t i = 0; i < 2; ++i)
+            if (halves.there[i]) there[i] = halves.pair[i];
+        return there;
+    }
+
+    const hwsim::Query& query_;
+};
+
+} // namespace bench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "hwsim/box_unit.h"
+#include "hwsim/device_config.h"
+#include "hwsim/line_cache.h"
+#include "hwsim/pair_unit.h"
+
+namespace bench {
+
+/// Stages of the two pipelines.
+struct UnitStages {
+    uint32_t volume = hwsim::BoxUnit::latency;
+    uint32_t pair = hwsim::PairUnit::latency;
+};
+
+/// The cycles of a device with one element of one thread, which nobody makes wait. A step of a
+/// thread takes a cycle; a unit as many more as it has stages; a line that is not in the cache the
+/// memory's latency and four more: to ask, to be granted, to enter the memory, to come back.
+///
+/// With the device's own units that is what the emulator counts, cycle for cycle.
+struct LoneThread {
+    hwsim::LineCache nodes, records;
+    UnitStages stages;
+    uint32_t memory_latency = 0;
+    uint64_t cycles = 0;
+    uint64_t lines = 0; // from memory
+
+    explicit LoneThread(const hwsim::DeviceConfig& config, UnitStages units = {})
+        : stages(units), memory_latency(config.memory_latency) {
+        nodes.entries.resize(config.node_cache_lines);
+        records.entries.resize(config.record_cache_lines);
+    }
+
+    void step() { ++cycles; }
+    void test() { cycles += 1 + stages.volume; }
+    void compare(uint32_t pairs) { cycles += pairs; }
+    void drain() { cycles += stages.pair; }
+    void read(hwsim::LineCache& cache, uint32_t address) {
+        constexpr uint32_t way_to_memory = 4;
+        ++cycles;
+        if (hwsim::looked_up(cache, address)) return;
+        hwsim::fill(cache, address, {});
+        cycles += way_to_memory + memory_latency;
+        ++lines;
+    }
+};
+
+} // namespace bench
