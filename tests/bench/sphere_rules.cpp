@@ -88,6 +88,7 @@ bool SphereRules::test(SpherePair& pair) const {
                               - pair.work_sphere.centre[axis];
         square += apart * apart;
     }
+    pair.apart = static_cast<uint64_t>(square);
     const int64_t radii = int64_t{pair.tool_sphere.radius} + pair.work_sphere.radius + at.radius;
     pair.bound = static_cast<uint64_t>(std::max(root_down(square) - radii, int64_t{0}));
     return true;

@@ -14,6 +14,7 @@ struct SpherePair {
     Sphere tool_sphere, work_sphere; // the tool's before it is moved
     uint16_t first = 0, last = 0;    // samples
     uint64_t bound = 0;              // no records of the two are nearer than this many steps
+    uint64_t apart = 0;              // squared, of the centres
 };
 
 /// A search by the paper's spheres, along a way. A stretch of the way is a sphere, too: the tool's
@@ -21,7 +22,7 @@ struct SpherePair {
 ///
 /// The test: floor(root(squared distance of the centres)) less all three radii, never below 0. It
 /// goes on if the square of that is below the best squared distance. In a circuit the best is kept
-/// as a root, rounded up, once for each that is found, and the bounds are compared with it: for
+/// as a root, rounded up, once for each that is found, and bounds are compared with it: for
 /// integers that is the same, and no square has to be taken.
 class SphereRules {
 public:
@@ -55,6 +56,15 @@ private:
     const hwsim::Query& query_;
     int64_t way_ = 0; // its length, rounded up: a word of the segment that the host works out
     bool in_range_ = true;
+};
+
+/// The same without a root in the test: squared distance of the centres against the square of best
+/// and radii. For integers that is the same as well, as long as the best is not 0. But which of two
+/// halves is nearer it does not say, so that with the nearer centres goes first.
+class RootlessSphereRules : public SphereRules {
+public:
+    using SphereRules::SphereRules;
+    static uint64_t bound_of(const Pair& pair) { return pair.apart; }
 };
 
 } // namespace bench

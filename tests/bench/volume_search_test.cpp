@@ -21,12 +21,13 @@ const std::vector<SceneKind> kinds{{},
                                    {.reach = 5, .most_records = 80, .bare = true},
                                    {.reach = 3'000'000}};
 
+template <typename Rules>
 Answer by_spheres(const hwsim::Scene& scene) {
     SphereTable table;
     add_spheres(table, scene.memory, scene.query.tool_header, Side::tool);
     add_spheres(table, scene.memory, scene.query.work_header, Side::work);
     LoneThread time{hwsim::DeviceConfig{}};
-    const SphereRules rules(scene.memory, table, scene.query);
+    const Rules rules(scene.memory, table, scene.query);
     return VolumeSearch(scene.memory, scene.query, rules, time).run();
 }
 
@@ -44,38 +45,72 @@ TEST(VolumeSearch, ByBoxesIsTheDevicesOwn) {
     std::mt19937 rng(1);
     for (const SceneKind& kind : kinds)
         for (int i = 0; i < 300; ++i) {
-            const hwsim::Scene scene = random_scene(rng, kind);
+            const hwsim::Scene scene = hwsim::random_scene(rng, kind);
             LoneThread time{hwsim::DeviceConfig{}};
             ASSERT_EQ(by_boxes(scene.memory, scene.query, time),
                       hwsim::search(scene.memory, scene.query));
         }
 }
 
+/// What became of scenes.
+struct Tally {
+    int below = 0, above = 0, zero = 0, out = 0, by_other_ways = 0;
+
+    void note(const Answer& boxes, const Answer& spheres) {
+        const bool answered = boxes.stop == Stop::none;
+        ++(!answered ? out : boxes.squared == 0 ? zero : boxes.found ? below : above);
+        by_other_ways += spheres.counts != boxes.counts ? 1 : 0;
+    }
+};
+
 /// The same distance to the step, so the same permits. Of equally near pairs it may name another.
-TEST(VolumeSearch, BySpheresFindsTheSameDistance) {
-    std::mt19937 rng(2);
-    int below = 0, above = 0, zero = 0, out = 0, unlike = 0;
+void expect_the_same_distance(const hwsim::Scene& scene, const Answer& boxes,
+                              const Answer& spheres) {
+    ASSERT_EQ(spheres.stop, boxes.stop);
+    if (boxes.stop != Stop::none) return;
+    ASSERT_EQ(spheres.squared, boxes.squared);
+    ASSERT_EQ(spheres.found, boxes.found);
+    if (!boxes.found) return;
+    const hwsim::FixedVec offset = hwsim::offset_at(scene.query.segment, spheres.sample);
+    ASSERT_EQ(hwsim::squared_distance(record_named(scene, spheres.tool_record), offset,
+                                      record_named(scene, spheres.work_record)),
+              boxes.squared);
+}
+
+template <typename Rules>
+void expect_the_same_distances(uint32_t seed) {
+    std::mt19937 rng(seed);
+    Tally tally;
     for (const SceneKind& kind : kinds)
-        for (int i = 0; i < 1'000; ++i) {
-            const hwsim::Scene scene = random_scene(rng, kind);
+        for (int i = 0; i < 1'000 && !testing::Test::HasFatalFailure(); ++i) {
+            const hwsim::Scene scene = hwsim::random_scene(rng, kind);
             const Answer boxes = hwsim::search(scene.memory, scene.query);
-            const Answer spheres = by_spheres(scene);
-            ASSERT_EQ(spheres.stop, boxes.stop);
-            ++(boxes.stop != Stop::none
-                   ? out
-                   : (boxes.squared == 0 ? zero : (boxes.found ? below : above)));
-            if (boxes.stop != Stop::none) continue;
-            ASSERT_EQ(spheres.squared, boxes.squared);
-            ASSERT_EQ(spheres.found, boxes.found);
-            unlike += spheres.counts != boxes.counts ? 1 : 0;
-            if (!boxes.found) continue;
-            ASSERT_EQ(hwsim::squared_distance(record_named(scene, spheres.tool_record),
-                                              hwsim::offset_at(scene.query.segment, spheres.sample),
-                                              record_named(scene, spheres.work_record)),
-                      boxes.squared);
+            const Answer spheres = by_spheres<Rules>(scene);
+            expect_the_same_distance(scene, boxes, spheres);
+            tally.note(boxes, spheres);
         }
-    for (const int seen : {below, above, zero, out}) EXPECT_GT(seen, 150);
-    EXPECT_GT(unlike, 2'000);
+    for (const int seen : {tally.below, tally.above, tally.zero, tally.out}) EXPECT_GT(seen, 150);
+    EXPECT_GT(tally.by_other_ways, 2'000);
+}
+
+TEST(VolumeSearch, BySpheresFindsTheSameDistance) { expect_the_same_distances<SphereRules>(2); }
+
+TEST(VolumeSearch, BySpheresWithoutARootFindsTheSameDistance) {
+    expect_the_same_distances<RootlessSphereRules>(6);
+}
+
+/// That the squares may be compared instead: floor(root(d2)) - r against the best's root, and d2
+/// against the square of both.
+TEST(RootlessSphereRules, DecidesAsTheRootDoes) {
+    for (int64_t square = 0; square < 600; ++square)
+        for (int64_t radii = 0; radii < 30; ++radii)
+            for (int64_t best = 1; best < 200; ++best) {
+                int64_t root = hwsim::root_up(square);
+                if (root * root > square) --root;
+                const int64_t bound = std::max(root - radii, int64_t{0});
+                const int64_t reach = hwsim::root_up(best) + radii;
+                ASSERT_EQ(bound * bound < best, square < reach * reach);
+            }
 }
 
 /// Asks one segment of a device, and returns the cycles from its push to its permit.
