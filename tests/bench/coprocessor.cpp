@@ -1,5 +1,6 @@
 // The tables of hwsim/README.md: what a device of so many parts does, in its own cycles, so that
-// they are the same on every machine. With --speed also how fast the emulator runs on this one.
+// they are the same on every machine. With --speed how fast the emulator runs on this one; with
+// --volumes what the paper's spheres would do (a minute).
 
 #include <ctime>
 #include <string_view>
@@ -140,6 +141,42 @@ void memory_table(const std::vector<Scene>& scenes) {
     }
 }
 
+/// Nanoseconds to the memory and for a line: what a board has, whatever the device's clock.
+constexpr uint32_t memory_ns = 300, line_ns = 20;
+
+/// A device whose memory's times are given in nanoseconds.
+DeviceConfig clocked(uint32_t elements, uint32_t clock_mhz) {
+    const auto cycles = [clock_mhz](uint32_t ns) { return (ns * clock_mhz + 999) / 1000; };
+    DeviceConfig config = bench_config();
+    config.elements = elements;
+    config.clock_mhz = clock_mhz;
+    config.memory_latency = cycles(memory_ns);
+    config.cycles_per_line = cycles(line_ns);
+    return config;
+}
+
+/// Million segments a second in each scene, by elements and clock.
+void clock_table(const std::vector<Scene>& scenes) {
+    constexpr std::array<uint32_t, 4> clocks{50, 100, 150, 200};
+    fmt::print("\n| elements: {}", scenes[0].name);
+    for (size_t i = 1; i < scenes.size(); ++i) fmt::print(" / {}", scenes[i].name);
+    for (const uint32_t clock : clocks) fmt::print(" | {} MHz", clock);
+    fmt::print(" |\n|---|---|---|---|---|\n");
+    for (const uint32_t elements : {1U, 2U, 4U, 8U, 16U}) {
+        fmt::print("| {} |", elements);
+        for (const uint32_t clock : clocks) {
+            const DeviceConfig config = clocked(elements, clock);
+            const char* between = " ";
+            for (const Scene& scene : scenes) {
+                fmt::print("{}{:.2f}", between, clock / measured(scene, config).cycles);
+                between = " / ";
+            }
+            fmt::print(" |");
+        }
+        fmt::print("\n");
+    }
+}
+
 void leaf_table(const std::vector<Scene>& scenes) {
     head("records to a leaf of the work: cycles, nodes, pairs", scenes);
     for (const uint32_t leaf : {1U, 2U, 4U, 8U, 16U})
@@ -177,5 +214,6 @@ int main(int count, char** words) {
     parts_table(scenes);
     memory_table(scenes);
     leaf_table(scenes);
+    clock_table(scenes);
     return 0;
 }
