@@ -11,7 +11,7 @@ namespace bench {
 /// A ball, in steps of the device.
 struct Sphere {
     hwsim::FixedVec centre{};
-    int32_t radius = 0; // below 2^25: half the diagonal of everything, rounded up
+    int32_t radius = 0; // 24 bits: half the diagonal of everything at most
 };
 
 /// For each line of a memory that is a node: spheres round what its two children hold.

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Prints the feed at which the default coprocessor no longer keeps up, for the jobs in assets.
+
+usage: feed_limit.py FEELER ASSETS [--only NAME] [--config DEVICE.toml]
+
+The whole plan is run faster and faster, as by a feed override (`feeler coproc`), until a permit comes late;
+then the override is halved in between until it is known to 5 %. The feed is the programmed one of the block
+that is late first, times the override. Beside it stands at which override the device would have no time
+left in the busiest stretch of the program, and how much of its time goes into writing segments over the bus.
+"""
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+JOBS = (  # program, set-up
+    ("TEST_G90.NC", "test_g90"),
+    ("TEST_G90.NC", "test_g90_vise6"),
+    ("PARALLEL.NC", "parallel"),
+    ("clamped_plate.nc", "clamped_plate"),
+    ("indexed_flats.nc", "indexed_flats"),
+    ("tilted_faces.nc", "tilted_faces"),
+)
+PRECISION = 1.05
+MOST = 1024.0  # times the programmed feed
+BUS_CYCLES = 60  # to push a segment and to look at the status: 15 words of 4 cycles
+
+
+def bracket(keeps_up, most=MOST, precision=PRECISION):
+    """The greatest override found at which `keeps_up`, and the least at which it does not, or None."""
+    kept, missed = 0.0, 1.0
+    while keeps_up(missed):
+        kept, missed = missed, 2.0 * missed
+        if kept >= most:
+            return kept, None
+    if kept == 0.0:
+        return 0.0, 1.0
+    while missed > precision * kept:
+        middle = (kept * missed) ** 0.5
+        if keeps_up(middle):
+            kept = middle
+        else:
+            missed = middle
+    return kept, missed
+
+
+def first_late(report):
+    """The first block of which the permit came late, or None."""
+    for block in report["blocks"]:
+        if block["slack"] is not None and block["slack"] < 0.0:
+            return block
+    return None
+
+
+def feeds(trace):
+    """What blocks do, from lines of a trace: a feed in mm/min, or "rapid"; a feed counts for more."""
+    found = {}
+    for line in trace.splitlines():
+        command = json.loads(line)
+        if command.get("feed"):
+            found[command["block"]] = command["feed"]
+        elif command["command"] == "straight_traverse":
+            found.setdefault(command["block"], "rapid")
+    return found
+
+
+def sustained(report):
+    """The override at which the device would be busy all the time in the busiest stretch of the program.
+
+    A stretch is as long as the look-ahead: what the device does for a block may be spread over those
+    before it. The report must be of a run in which nothing was late.
+    """
+    ahead = report["config"]["control"]["look_ahead"]
+    clock = 1e6 * report["config"]["device"]["clock_mhz"]
+    moving = [b for b in report["blocks"] if b["entered"] is not None]
+    starts = [b["entered"] for b in moving] + [report["totals"]["taken"]]
+    work = [0.0]
+    for block in moving:
+        work.append(work[-1] + block["cycles"] / clock)
+    length = min(ahead, len(moving))
+    ratios = [(starts[i + length] - starts[i]) / (work[i + length] - work[i])
+              for i in range(len(moving) - length + 1) if work[i + length] > work[i]]
+    return min(ratios, default=math.inf)
+
+
+def bus_share(report):
+    """How much of the device's time is the register bus, on which segments come."""
+    segments = sum(block["segments"] for block in report["blocks"])
+    cycles = sum(block["cycles"] for block in report["blocks"])
+    return min(1.0, BUS_CYCLES * segments / max(cycles, 1))
+
+
+def reason(report, block):
+    """What made a block late."""
+    if block["asked"] >= block["due"]:
+        return "look-ahead: the way to brake is longer"
+    own = block["cycles"] / (1e6 * report["config"]["device"]["clock_mhz"])
+    if own > 0.5 * (block["permitted"] - block["asked"]):
+        return "device: the block itself"
+    return "device: the blocks before it"
+
+
+def number(value):
+    """Three digits, without an exponent."""
+    value = float(f"{value:.3g}")
+    return f"{value:.0f}" if value >= 100.0 or value == int(value) else f"{value:g}"
+
+
+class Job:
+    """A program with its set-up, and the device that it is run beside."""
+
+    def __init__(self, feeler, assets, program, setup, config=""):
+        self.feeler = feeler
+        self.program = os.path.join(assets, "programs", program)
+        self.setup = os.path.join(assets, "setups", setup + ".toml")
+        self.config = config
+        self.reports = {}
+
+    def report(self, override):
+        """The device's report at an override. What is refused is run all the same."""
+        if override not in self.reports:
+            with tempfile.NamedTemporaryFile("w", suffix=".toml", encoding="utf-8") as file:
+                file.write(f"{self.config}\n[control]\nfeed_override = {override!r}\n")
+                file.flush()
+                self.reports[override] = json.loads(self.run(
+                    "coproc", "--setup", self.setup, "--config", file.name, "--format", "json",
+                    "--no-fit", "--past-refusals"))
+        return self.reports[override]
+
+    def run(self, command, *options):
+        done = subprocess.run([self.feeler, command, self.program, *options], capture_output=True,
+                              text=True, check=False)
+        if done.returncode not in (0, 1):
+            sys.exit(f"feed_limit.py: {done.stderr.strip()}")
+        return done.stdout
+
+    def keeps_up(self, override):
+        return self.report(override)["totals"]["missed"] == 0
+
+    def row(self):
+        normal = self.report(1.0)
+        cells = [f"{100.0 * bus_share(normal):.0f} %", number(sustained(normal))]
+        kept, missed = bracket(self.keeps_up)
+        if missed is None:
+            return cells + [f"beyond {number(kept)}", "-", "-", "-"]
+        report = self.report(missed)
+        block = first_late(report)
+        feed = feeds(self.run("trace", "--format", "jsonl")).get(block["block"], "-")
+        if not isinstance(feed, str):
+            feed = number(feed * missed)
+        return cells + [number(missed), feed, f"{block['line']}", reason(report, block)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Prints the feed at which the coprocessor is too slow.")
+    parser.add_argument("feeler")
+    parser.add_argument("assets")
+    parser.add_argument("--only", help="a set-up")
+    parser.add_argument("--config", help="a device file with [device], without [control]")
+    options = parser.parse_args()
+    config = ""
+    if options.config:
+        with open(options.config, encoding="utf-8") as file:
+            config = file.read()
+    print("| set-up | bus | device busy at override | late at override | feed, mm/min | line | limit |")
+    print("|---|---|---|---|---|---|---|")
+    for program, setup in JOBS:
+        if options.only not in (None, setup):
+            continue
+        job = Job(options.feeler, options.assets, program, setup, config)
+        print("| " + " | ".join([f"`{setup}`"] + job.row()) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

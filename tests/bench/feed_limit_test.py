@@ -1,0 +1,146 @@
+"""What feed_limit.py says of reports that were worked out by hand."""
+
+import json
+import math
+import os
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import feed_limit
+
+
+def block(number, **what):
+    return {"block": number, "line": number + 5, "segments": 10, "cycles": 1000, "asked": 0.0,
+            "permitted": 0.1, "due": 1.0, "entered": float(number), "slack": 0.9} | what
+
+
+def report(blocks, look_ahead=2, taken=None):
+    return {"config": {"device": {"clock_mhz": 100}, "control": {"look_ahead": look_ahead}},
+            "totals": {"missed": sum(1 for b in blocks if (b["slack"] or 0.0) < 0.0),
+                       "taken": taken if taken is not None else float(len(blocks))},
+            "blocks": blocks}
+
+
+class Bracket(unittest.TestCase):
+    def test_it_closes_in_on_the_limit_from_both_sides(self):
+        asked = []
+
+        def keeps_up(override):
+            asked.append(override)
+            return override < 37.0
+
+        kept, missed = feed_limit.bracket(keeps_up)
+        self.assertLess(kept, 37.0)
+        self.assertGreaterEqual(missed, 37.0)
+        self.assertLessEqual(missed, 1.05 * kept)
+        self.assertEqual(len(asked), len(set(asked)))
+
+    def test_what_is_late_as_programmed_says_so(self):
+        self.assertEqual(feed_limit.bracket(lambda override: False), (0.0, 1.0))
+
+    def test_what_is_never_late_has_no_limit(self):
+        kept, missed = feed_limit.bracket(lambda override: True)
+        self.assertGreaterEqual(kept, feed_limit.MOST)
+        self.assertIsNone(missed)
+
+
+class Reports(unittest.TestCase):
+    def test_the_first_late_block_is_the_first_below_no_slack(self):
+        blocks = [block(0, slack=None), block(1), block(2, slack=-0.1), block(3, slack=-5.0)]
+        self.assertEqual(feed_limit.first_late(report(blocks))["block"], 2)
+        self.assertIsNone(feed_limit.first_late(report(blocks[:2])))
+
+    def test_a_feed_counts_for_more_than_a_rapid_of_the_same_block(self):
+        commands = [{"block": 1, "command": "select_plane"},
+                    {"block": 2, "command": "straight_traverse"},
+                    {"block": 3, "command": "straight_traverse"},
+                    {"block": 3, "command": "straight_feed", "feed": 200},
+                    {"block": 3, "command": "straight_traverse"},
+                    {"block": 4, "command": "arc_feed", "feed": 500.5}]
+        trace = "\n".join(json.dumps(command) for command in commands)
+        self.assertEqual(feed_limit.feeds(trace), {2: "rapid", 3: 200, 4: 500.5})
+
+    def test_the_busiest_stretch_counts_and_not_the_mean(self):
+        # 10 us of work a block and a second each, but for two that take 1 ms and are over in 0.5 s.
+        blocks = [block(0), block(1), block(2, cycles=100_000), block(3, cycles=100_000, entered=2.25),
+                  block(4, entered=2.5), block(5, entered=3.5)]
+        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=4.5)), 0.5 / 2e-3)
+        # Of all six together: 4.5 s of way, 2.04 ms of work.
+        self.assertAlmostEqual(feed_limit.sustained(report(blocks, look_ahead=100, taken=4.5)),
+                               4.5 / 2.04e-3)
+
+    def test_blocks_that_do_not_move_are_no_stretch(self):
+        blocks = [block(0), block(1, entered=None, cycles=0), block(2)]
+        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=3.0)), 3.0 / 2e-5)
+        self.assertEqual(feed_limit.sustained(report([block(0, cycles=0)])), math.inf)
+
+    def test_the_bus_has_sixty_cycles_of_a_segment(self):
+        self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=2000)])), 0.4)
+        self.assertEqual(feed_limit.bus_share(report([block(0, cycles=500)])), 1.0)
+
+    def test_the_reason_is_the_look_ahead_the_block_or_those_before_it(self):
+        late = {"slack": -0.5, "due": 0.5, "permitted": 1.0}
+        whole = report([])
+        self.assertIn("look-ahead", feed_limit.reason(whole, block(1, **late, asked=0.5)))
+        self.assertIn("itself", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=60e6)))
+        self.assertIn("before it", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=1e6)))
+
+
+FAKE = f"""#!{sys.executable}
+import json, re, sys
+if sys.argv[1] == "trace":
+    print(json.dumps({{"block": 1, "command": "straight_feed", "feed": 300}}))
+    sys.exit(0)
+assert "--past-refusals" in sys.argv and "--no-fit" in sys.argv
+config = open(sys.argv[sys.argv.index("--config") + 1]).read()
+override = float(re.search(r"feed_override = (.*)", config).group(1))
+assert "elements = 3" in config
+late = override > 10.0
+block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "asked": 0.0, "permitted": 0.2,
+         "due": 0.1 if late else 0.3, "entered": 0.0, "slack": -0.1 if late else 0.1}}
+print(json.dumps({{"config": {{"device": {{"clock_mhz": 100}}, "control": {{"look_ahead": 256}}}},
+                  "totals": {{"missed": int(late), "taken": 6.0}}, "blocks": [block]}}))
+sys.exit(1 if late else 0)
+"""
+
+
+class Program(unittest.TestCase):
+    def test_a_row_comes_from_the_runs_of_feeler(self):
+        with tempfile.TemporaryDirectory() as folder:
+            feeler, device = os.path.join(folder, "feeler"), os.path.join(folder, "device.toml")
+            with open(feeler, "w", encoding="utf-8") as file:
+                file.write(FAKE)
+            os.chmod(feeler, stat.S_IRWXU)
+            with open(device, "w", encoding="utf-8") as file:
+                file.write("[device]\nelements = 3\n")
+            done = subprocess.run([sys.executable, feed_limit.__file__, feeler, folder, "--only",
+                                   "parallel", "--config", device],
+                                  capture_output=True, text=True, check=True)
+        cells = [cell.strip() for cell in done.stdout.splitlines()[-1].strip("|").split("|")]
+        self.assertEqual(cells[0], "`parallel`")
+        self.assertEqual(cells[1:3], ["50 %", "1000000"])
+        self.assertTrue(10.0 < float(cells[3]) <= 10.5)
+        self.assertAlmostEqual(float(cells[4]), 300.0 * float(cells[3]), delta=20.0)
+        self.assertEqual(cells[5:], ["7", "device: the blocks before it"])
+
+    def test_a_run_that_fails_ends_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            feeler = os.path.join(folder, "feeler")
+            with open(feeler, "w", encoding="utf-8") as file:
+                file.write("#!/bin/sh\necho the reason >&2\nexit 2\n")
+            os.chmod(feeler, stat.S_IRWXU)
+            with self.assertRaisesRegex(SystemExit, "the reason"):
+                feed_limit.Job(feeler, folder, "none.nc", "none").run("trace")
+
+    def test_every_job_is_there(self):
+        assets = os.path.join(os.path.dirname(feed_limit.__file__), "..", "..", "assets")
+        for program, setup in feed_limit.JOBS:
+            self.assertTrue(os.path.exists(os.path.join(assets, "programs", program)))
+            self.assertTrue(os.path.exists(os.path.join(assets, "setups", setup + ".toml")))
+
+
+if __name__ == "__main__":
+    unittest.main()
