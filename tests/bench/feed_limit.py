@@ -69,7 +69,8 @@ def feeds(trace):
 
 
 def sustained(report):
-    """The override at which the device would be busy all the time in the busiest stretch of the program.
+    """The override at which the device is busy all the time in the busiest stretch of the program, and
+    the last block of that.
 
     A stretch is as long as the look-ahead: what the device does for a block may be spread over those
     before it. The report must be of a run in which nothing was late.
@@ -82,9 +83,10 @@ def sustained(report):
     for block in moving:
         work.append(work[-1] + block["cycles"] / clock)
     length = min(ahead, len(moving))
-    ratios = [(starts[i + length] - starts[i]) / (work[i + length] - work[i])
-              for i in range(len(moving) - length + 1) if work[i + length] > work[i]]
-    return min(ratios, default=math.inf)
+    stretches = [((starts[end] - starts[end - length]) / (work[end] - work[end - length]), end)
+                 for end in range(length, len(moving) + 1) if work[end] > work[end - length]]
+    override, end = min(stretches, default=(math.inf, 0))
+    return override, moving[end - 1] if end else None
 
 
 def bus_share(report):
@@ -98,6 +100,9 @@ def reason(report, block):
     """What made a block late."""
     if block["asked"] >= block["due"]:
         return "look-ahead: the way to brake is longer"
+    at_once = sum(1 for b in report["blocks"] if b["due"] == block["due"])
+    if at_once > 1:
+        return f"device: {at_once} blocks due at once"
     own = block["cycles"] / (1e6 * report["config"]["device"]["clock_mhz"])
     if own > 0.5 * (block["permitted"] - block["asked"]):
         return "device: the block itself"
@@ -142,17 +147,21 @@ class Job:
         return self.report(override)["totals"]["missed"] == 0
 
     def row(self):
+        feed_of = feeds(self.run("trace", "--format", "jsonl"))
+
+        def cells(override, block):
+            """An override, the feed of a block then, and its line."""
+            if block is None:
+                return ["-", "-", "-"]
+            feed = feed_of.get(block["block"], "-")
+            return [number(override), feed if isinstance(feed, str) else number(feed * override),
+                    f"{block['line']}"]
+
         normal = self.report(1.0)
-        cells = [f"{100.0 * bus_share(normal):.0f} %", number(sustained(normal))]
-        kept, missed = bracket(self.keeps_up)
-        if missed is None:
-            return cells + [f"beyond {number(kept)}", "-", "-", "-"]
-        report = self.report(missed)
-        block = first_late(report)
-        feed = feeds(self.run("trace", "--format", "jsonl")).get(block["block"], "-")
-        if not isinstance(feed, str):
-            feed = number(feed * missed)
-        return cells + [number(missed), feed, f"{block['line']}", reason(report, block)]
+        _, missed = bracket(self.keeps_up)
+        late = first_late(self.report(missed)) if missed else None
+        return ([f"{100.0 * bus_share(normal):.0f} %"] + cells(*sustained(normal))
+                + cells(missed, late) + [reason(self.report(missed), late) if late else "none"])
 
 
 def main():
@@ -166,8 +175,8 @@ def main():
     if options.config:
         with open(options.config, encoding="utf-8") as file:
             config = file.read()
-    print("| set-up | bus | device busy at override | late at override | feed, mm/min | line | limit |")
-    print("|---|---|---|---|---|---|---|")
+    print("| set-up | bus | busy at override | feed, mm/min | line | late at override | feed, mm/min | line | by |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for program, setup in JOBS:
         if options.only not in (None, setup):
             continue

@@ -67,26 +67,31 @@ class Reports(unittest.TestCase):
         # 10 us of work a block and a second each, but for two that take 1 ms and are over in 0.5 s.
         blocks = [block(0), block(1), block(2, cycles=100_000), block(3, cycles=100_000, entered=2.25),
                   block(4, entered=2.5), block(5, entered=3.5)]
-        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=4.5)), 0.5 / 2e-3)
+        override, last = feed_limit.sustained(report(blocks, taken=4.5))
+        self.assertAlmostEqual(override, 0.5 / 2e-3)
+        self.assertEqual(last["block"], 3)
         # Of all six together: 4.5 s of way, 2.04 ms of work.
-        self.assertAlmostEqual(feed_limit.sustained(report(blocks, look_ahead=100, taken=4.5)),
-                               4.5 / 2.04e-3)
+        override, last = feed_limit.sustained(report(blocks, look_ahead=100, taken=4.5))
+        self.assertAlmostEqual(override, 4.5 / 2.04e-3)
+        self.assertEqual(last["block"], 5)
 
     def test_blocks_that_do_not_move_are_no_stretch(self):
         blocks = [block(0), block(1, entered=None, cycles=0), block(2)]
-        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=3.0)), 3.0 / 2e-5)
-        self.assertEqual(feed_limit.sustained(report([block(0, cycles=0)])), math.inf)
+        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=3.0))[0], 3.0 / 2e-5)
+        self.assertEqual(feed_limit.sustained(report([block(0, cycles=0)])), (math.inf, None))
 
     def test_the_bus_has_sixty_cycles_of_a_segment(self):
         self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=2000)])), 0.4)
         self.assertEqual(feed_limit.bus_share(report([block(0, cycles=500)])), 1.0)
 
-    def test_the_reason_is_the_look_ahead_the_block_or_those_before_it(self):
+    def test_the_reason_is_the_look_ahead_a_crowd_the_block_or_those_before_it(self):
         late = {"slack": -0.5, "due": 0.5, "permitted": 1.0}
         whole = report([])
         self.assertIn("look-ahead", feed_limit.reason(whole, block(1, **late, asked=0.5)))
         self.assertIn("itself", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=60e6)))
         self.assertIn("before it", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=1e6)))
+        crowd = [block(i, **late, asked=0.1) for i in range(3)] + [block(3)]
+        self.assertIn("3 blocks due at once", feed_limit.reason(report(crowd), crowd[1]))
 
 
 FAKE = f"""#!{sys.executable}
@@ -121,10 +126,10 @@ class Program(unittest.TestCase):
                                   capture_output=True, text=True, check=True)
         cells = [cell.strip() for cell in done.stdout.splitlines()[-1].strip("|").split("|")]
         self.assertEqual(cells[0], "`parallel`")
-        self.assertEqual(cells[1:3], ["50 %", "1000000"])
-        self.assertTrue(10.0 < float(cells[3]) <= 10.5)
-        self.assertAlmostEqual(float(cells[4]), 300.0 * float(cells[3]), delta=20.0)
-        self.assertEqual(cells[5:], ["7", "device: the blocks before it"])
+        self.assertEqual(cells[1:5], ["50 %", "1000000", "300000000", "7"])
+        self.assertTrue(10.0 < float(cells[5]) <= 10.5)
+        self.assertAlmostEqual(float(cells[6]), 300.0 * float(cells[5]), delta=20.0)
+        self.assertEqual(cells[7:], ["7", "device: the blocks before it"])
 
     def test_a_run_that_fails_ends_it(self):
         with tempfile.TemporaryDirectory() as folder:
