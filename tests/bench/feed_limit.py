@@ -5,8 +5,8 @@ usage: feed_limit.py FEELER ASSETS [--only NAME] [--config DEVICE.toml]
 
 The whole plan is run faster and faster, as by a feed override (`feeler coproc`), until a permit comes late;
 then the override is halved in between until it is known to 5 %. The feed is the programmed one of the block
-that is late first, times the override. Beside it stands at which override the device would have no time
-left in the busiest stretch of the program, and how much of its time goes into writing segments over the bus.
+that is late first, times the override. Beside it stands at which override a machine that stops at once would
+come upon a block without a permit, and how much of the device's time goes into writing segments over the bus.
 """
 
 import argparse
@@ -68,25 +68,28 @@ def feeds(trace):
     return found
 
 
-def sustained(report):
-    """The override at which the device is busy all the time in the busiest stretch of the program, and
-    the last block of that.
+def without_braking(report):
+    """The least override at which a permit would come after its block is reached, and that block: what
+    limits a machine that stops at once. The report must be of a run in which nothing was late.
 
-    A stretch is as long as the look-ahead: what the device does for a block may be spread over those
-    before it. The report must be of a run in which nothing was late.
+    Block i is late if the device, from when block j was asked for until i is reached, has not the time for
+    all blocks from j to i. Block j is asked for when the machine enters the one a look-ahead before it.
     """
     ahead = report["config"]["control"]["look_ahead"]
     clock = 1e6 * report["config"]["device"]["clock_mhz"]
     moving = [b for b in report["blocks"] if b["entered"] is not None]
-    starts = [b["entered"] for b in moving] + [report["totals"]["taken"]]
-    work = [0.0]
+    done = [0.0]  # seconds of work up to a block and with it
     for block in moving:
-        work.append(work[-1] + block["cycles"] / clock)
-    length = min(ahead, len(moving))
-    stretches = [((starts[end] - starts[end - length]) / (work[end] - work[end - length]), end)
-                 for end in range(length, len(moving) + 1) if work[end] > work[end - length]]
-    override, end = min(stretches, default=(math.inf, 0))
-    return override, moving[end - 1] if end else None
+        done.append(done[-1] + block["cycles"] / clock)
+    least, late = math.inf, None
+    for i in range(1, len(moving)):
+        # Of those asked for at the start, the second: the machine waits for the first.
+        for j in [1] + list(range(ahead + 1, i + 1)):
+            work = done[i + 1] - done[j]
+            way = moving[i]["entered"] - moving[max(j - ahead, 0)]["entered"]
+            if way < least * work:
+                least, late = way / work, moving[i]
+    return least, late
 
 
 def bus_share(report):
@@ -160,7 +163,7 @@ class Job:
         normal = self.report(1.0)
         _, missed = bracket(self.keeps_up)
         late = first_late(self.report(missed)) if missed else None
-        return ([f"{100.0 * bus_share(normal):.0f} %"] + cells(*sustained(normal))
+        return ([f"{100.0 * bus_share(normal):.0f} %"] + cells(*without_braking(normal))
                 + cells(missed, late) + [reason(self.report(missed), late) if late else "none"])
 
 
@@ -175,7 +178,7 @@ def main():
     if options.config:
         with open(options.config, encoding="utf-8") as file:
             config = file.read()
-    print("| set-up | bus | busy at override | feed, mm/min | line | late at override | feed, mm/min | line | by |")
+    print("| set-up | bus | late without braking at | feed, mm/min | line | late at override | feed, mm/min | line | by |")
     print("|---|---|---|---|---|---|---|---|---|")
     for program, setup in JOBS:
         if options.only not in (None, setup):

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import random
 import stat
 import subprocess
 import sys
@@ -63,22 +64,48 @@ class Reports(unittest.TestCase):
         trace = "\n".join(json.dumps(command) for command in commands)
         self.assertEqual(feed_limit.feeds(trace), {2: "rapid", 3: 200, 4: 500.5})
 
-    def test_the_busiest_stretch_counts_and_not_the_mean(self):
-        # 10 us of work a block and a second each, but for two that take 1 ms and are over in 0.5 s.
-        blocks = [block(0), block(1), block(2, cycles=100_000), block(3, cycles=100_000, entered=2.25),
-                  block(4, entered=2.5), block(5, entered=3.5)]
-        override, last = feed_limit.sustained(report(blocks, taken=4.5))
-        self.assertAlmostEqual(override, 0.5 / 2e-3)
-        self.assertEqual(last["block"], 3)
-        # Of all six together: 4.5 s of way, 2.04 ms of work.
-        override, last = feed_limit.sustained(report(blocks, look_ahead=100, taken=4.5))
-        self.assertAlmostEqual(override, 4.5 / 2.04e-3)
-        self.assertEqual(last["block"], 5)
+    def test_without_braking_the_slowest_stretch_counts(self):
+        # A second and 10 us a block, but the fourth takes 1 ms and has 0.5 s.
+        blocks = [block(0), block(1), block(2, entered=2.0), block(3, cycles=100_000, entered=2.5),
+                  block(4, entered=3.5), block(5, entered=4.5)]
+        # With all asked for at the start, 2.5 s are left for blocks 1 to 3.
+        override, late = feed_limit.without_braking(report(blocks, look_ahead=100))
+        self.assertAlmostEqual(override, 2.5 / 1.02e-3)
+        self.assertEqual(late["block"], 3)
+        # Asked for one block before, block 3 has the time of block 2.
+        override, late = feed_limit.without_braking(report(blocks, look_ahead=1))
+        self.assertAlmostEqual(override, 0.5 / 1e-3)
+        self.assertEqual(late["block"], 3)
 
-    def test_blocks_that_do_not_move_are_no_stretch(self):
+    def test_without_braking_is_what_a_queue_does(self):
+        for seed in range(20):
+            rng = random.Random(seed)
+            blocks, entered = [], 0.0
+            for i in range(30):
+                blocks.append(block(i, cycles=rng.randrange(1000, 200_000), entered=entered))
+                entered += rng.uniform(0.01, 2.0)
+            ahead = rng.randrange(1, 8)
+            override, late = feed_limit.without_braking(report(blocks, look_ahead=ahead))
+            self.assertEqual(self.late_in_queue(blocks, ahead, 0.999 * override), [])
+            self.assertIn(late["block"], self.late_in_queue(blocks, ahead, 1.001 * override))
+
+    @staticmethod
+    def late_in_queue(blocks, ahead, override):
+        """The blocks that a device, one after the other, permits after they are reached."""
+        start = blocks[0]["cycles"] / 1e8
+        reached = [start + b["entered"] / override for b in blocks]
+        free, late = start, []
+        for i, each in enumerate(blocks[1:], 1):
+            asked = reached[i - ahead] if i > ahead else 0.0
+            free = max(free, asked) + each["cycles"] / 1e8
+            if free > reached[i]:
+                late.append(each["block"])
+        return late
+
+    def test_blocks_that_do_not_move_are_never_late(self):
         blocks = [block(0), block(1, entered=None, cycles=0), block(2)]
-        self.assertAlmostEqual(feed_limit.sustained(report(blocks, taken=3.0))[0], 3.0 / 2e-5)
-        self.assertEqual(feed_limit.sustained(report([block(0, cycles=0)])), (math.inf, None))
+        self.assertAlmostEqual(feed_limit.without_braking(report(blocks))[0], 2.0 / 1e-5)
+        self.assertEqual(feed_limit.without_braking(report(blocks[:2])), (math.inf, None))
 
     def test_the_bus_has_sixty_cycles_of_a_segment(self):
         self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=2000)])), 0.4)
@@ -104,10 +131,12 @@ config = open(sys.argv[sys.argv.index("--config") + 1]).read()
 override = float(re.search(r"feed_override = (.*)", config).group(1))
 assert "elements = 3" in config
 late = override > 10.0
+first = {{"block": 0, "line": 6, "segments": 5, "cycles": 600, "asked": 0.0, "permitted": 0.1,
+         "due": None, "entered": 0.0, "slack": None}}
 block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "asked": 0.0, "permitted": 0.2,
-         "due": 0.1 if late else 0.3, "entered": 0.0, "slack": -0.1 if late else 0.1}}
+         "due": 0.1 if late else 0.3, "entered": 6.0, "slack": -0.1 if late else 0.1}}
 print(json.dumps({{"config": {{"device": {{"clock_mhz": 100}}, "control": {{"look_ahead": 256}}}},
-                  "totals": {{"missed": int(late), "taken": 6.0}}, "blocks": [block]}}))
+                  "totals": {{"missed": int(late), "taken": 9.0}}, "blocks": [first, block]}}))
 sys.exit(1 if late else 0)
 """
 
