@@ -7,6 +7,7 @@
 
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
+#include "app/commands/device_arguments.h"
 #include "app/commands/film_writer.h"
 #include "app/commands/output.h"
 #include "app/viewer/navigation.h"
@@ -24,6 +25,7 @@ constexpr size_t most_frames = 500; // of a film: 20 seconds
 
 struct Options {
     CheckArguments what;
+    viewer::DeviceChoice device;
     std::string output, view = "iso", theme = "dark", size = "1440x900";
     std::optional<size_t> block, finding, from, to;
     bool worst = false, sheet = false, no_ui = false;
@@ -162,7 +164,9 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
 core::Result<void> shoot(const Options& options) {
     FEELER_TRY(const CheckJob job, job_of(options.what));
     FEELER_TRY(const render::Viewport size, size_in(options.size));
-    if (auto safe = check_output(options.output, {options.what.program, options.what.setup}); !safe)
+    if (auto safe = check_output(options.output,
+                                 {options.what.program, options.what.setup, options.device.file});
+        !safe)
         return safe;
     const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
     FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
@@ -171,6 +175,8 @@ core::Result<void> shoot(const Options& options) {
         return tl::unexpected(*studio->model.stopped);
     if (!studio->model.has_rows())
         return core::fail(core::ErrorCode::missing_value, "the program runs no block");
+    if (options.device.shown)
+        if (const auto run = studio->run_device(options.device.file); !run) return run;
     if (options.sheet) return shoot_sheet(options, *studio);
     if (options.from || options.to) return shoot_film(options, size, *studio);
     return shoot_block(options, size, *studio);
@@ -216,6 +222,7 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
             "Picture (.png); of a film .mp4 or another that ffmpeg writes, else numbered pictures")
         ->required();
     add_looks(command, *options);
+    add_device_arguments(command, options->device);
     command.callback([options, &exit_code] {
         const auto done = shoot(*options);
         exit_code = done ? ExitCode::clear : ExitCode::failed;

@@ -5,8 +5,8 @@
 
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
+#include "app/commands/device_arguments.h"
 #include "app/commands/output.h"
-#include "app/viewer/window.h"
 
 namespace app {
 namespace {
@@ -29,6 +29,7 @@ std::filesystem::path pictures_folder(const std::string& program) {
 
 struct Options {
     CheckArguments what;
+    viewer::DeviceChoice device;
     std::string frame_log;
 };
 
@@ -45,6 +46,7 @@ ExitCode view(const Options& options) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";
     }
+    job.device = options.device;
     job.write = write_output;
     job.pictures = pictures_folder(arguments.program);
     job.frame_log = options.frame_log;
@@ -63,6 +65,7 @@ void add_view(CLI::App& cli, ExitCode& exit_code) {
         *cli.add_subcommand("view", "Step through a program in a window and see it");
     add_check_arguments(command, options->what)
         ->description("NC program; it can also be dropped in");
+    add_device_arguments(command, options->device);
     command.add_option("--frame-log", options->frame_log)->group(""); // for measuring
     command.callback([options, &exit_code] { exit_code = view(*options); });
 }

@@ -48,6 +48,8 @@ constexpr KeyBinding bindings[] = {
     {C::next_stretch, G::stops, key::down, control, "Ctrl+Down", "Next one in that list"},
     {C::previous_stretch, G::stops, key::up, control, "Ctrl+Up", "The one before"},
     {C::write_note, G::stops, key::of('R'), 0, "R", "Write a note on a finding"},
+    {C::next_stop, G::stops, key::of('L'), 0, "L", "Next block late or refused"},
+    {C::previous_stop, G::stops, key::of('L'), shift, "Shift+L", "The one before"},
     {C::filter, G::stops, key::of('F'), control, "Ctrl+F", "Filter the list"},
     {C::filter, G::stops, key::slash, 0, "/", ""},
     {C::what_if, G::stops, key::of('W'), 0, "W", "What if: change lengths, offsets, allowance"},
@@ -77,6 +79,7 @@ constexpr KeyBinding bindings[] = {
     {C::show_tool, G::show, key::of('H'), shift, "Shift+H", "Tool and holder"},
     {C::show_machine, G::show, key::of('M'), shift, "Shift+M", "Machine"},
     {C::show_path, G::show, key::of('P'), shift, "Shift+P", "Path"},
+    {C::show_device, G::show, key::of('D'), 0, "D", "Coprocessor: run beside it, panel"},
     {C::section, G::show, key::of('X'), 0, "X", "Section through the closest pair"},
     {C::measure, G::show, key::of('M'), 0, "M", "Measure between two clicks"},
 

@@ -35,47 +35,74 @@ float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
     return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }
 
+/// How wide a column is. In a small window the view keeps the larger part.
+float width_of(const Frame& frame, const Area& area, double wanted, double share) {
+    return std::min(frame.px(wanted), static_cast<float>(share) * area.width);
+}
+
+/// What is dragged at a splitter, in a setting that stays within its limits.
+void drag(double& setting, float by, const Frame& frame, double least, double most) {
+    setting = std::clamp(setting + by / frame.fonts.scale, least, most);
+}
+
+constexpr double least_view = 560.0; // beside which both columns at the right stand
+
 } // namespace
 
-void Desk::draw_body(Frame& frame, const Area& area) {
-    ViewModel& model = frame.model;
-    Settings& settings = model.settings;
-    const auto scale = static_cast<float>(frame.fonts.scale);
-    const float top = frame.px(48), grip = frame.px(5);
-    // In a small window the view keeps the larger part.
-    const auto width_of = [&](double wanted, double share) {
-        return std::min(static_cast<float>(wanted) * scale, static_cast<float>(share) * area.width);
+Desk::Parts Desk::parts_of(const Frame& frame, const Area& area) {
+    const Settings& settings = frame.model.settings;
+    const float top = area.y + frame.px(48);
+    const float bottom = std::min(frame.px(settings.timeline_height), 0.4F * area.height);
+    const float height = std::max(area.height - frame.px(48) - bottom, 16.0F);
+    const float left = width_of(frame, area, settings.list_width, 0.31);
+    float inspector = width_of(frame, area, settings.inspector_width, 0.25);
+    float device = 0.0F;
+    if (frame.model.device.shown) {
+        device = width_of(frame, area, settings.device_width, 0.3);
+        // Where there is no room for both, the device stands in the inspector's place.
+        if (area.width - left - inspector - device < frame.px(least_view)) inspector = 0.0F;
+    }
+    Parts parts;
+    parts.toolbar = {area.x, area.y, area.width, frame.px(48)};
+    parts.list = {area.x, top, left, height};
+    parts.view = {area.x + left, top, std::max(area.width - left - device - inspector, 16.0F),
+                  height};
+    parts.device = {parts.view.x + parts.view.width, top, device, height};
+    parts.inspector = {parts.device.x + device, top, inspector, height};
+    parts.timeline = {area.x, top + height, area.width, bottom};
+    return parts;
+}
+
+void Desk::draw_splitters(Frame& frame, const Parts& parts) {
+    Settings& settings = frame.model.settings;
+    const float grip = frame.px(5);
+    const auto upright = [&](const char* name, float x) {
+        return splitter(frame, name, {x, parts.view.y, grip, parts.view.height}, true);
     };
-    const float right = width_of(settings.inspector_width, 0.25);
-    const float left = width_of(settings.list_width, 0.31);
-    const float bottom =
-        std::min(static_cast<float>(settings.timeline_height) * scale, 0.4F * area.height);
-    const float middle = std::max(area.height - top - bottom, 16.0F);
-    const Area view{area.x + left, area.y + top, std::max(area.width - left - right, 16.0F),
-                    middle};
-    place(frame, toolbar_, "toolbar", {area.x, area.y, area.width, top}, ImVec2(0, 0));
-    Panel& list = model.shows_findings ? static_cast<Panel&>(findings_) : program_;
-    place(frame, list, model.shows_findings ? "findings" : "program",
-          {area.x, area.y + top, left, middle}, ImVec2(frame.px(12), frame.px(10)));
-    place(frame, scene_, "view", view, ImVec2(0, 0));
-    place(frame, inspector_, "inspector", {view.x + view.width, area.y + top, right, middle},
-          ImVec2(frame.px(12), frame.px(10)), true);
-    place(frame, timeline_, "timeline", {area.x, area.y + top + middle, area.width, bottom},
-          ImVec2(frame.px(12), frame.px(7)));
-    settings.list_width = std::clamp(
-        settings.list_width
-            + splitter(frame, "left", {view.x - grip, view.y, grip, middle}, true) / scale,
-        200.0, 900.0);
-    settings.inspector_width = std::clamp(
-        settings.inspector_width
-            - splitter(frame, "right", {view.x + view.width, view.y, grip, middle}, true) / scale,
-        200.0, 700.0);
-    settings.timeline_height = std::clamp(
-        settings.timeline_height
-            - splitter(frame, "bottom",
-                       {area.x, area.y + top + middle - 0.5F * grip, area.width, grip}, false)
-                  / scale,
-        90.0, 500.0);
+    drag(settings.list_width, upright("left", parts.view.x - grip), frame, 200.0, 900.0);
+    if (parts.device.width > 0.0F)
+        drag(settings.device_width, -upright("device edge", parts.device.x), frame, 220.0, 700.0);
+    if (parts.inspector.width > 0.0F)
+        drag(settings.inspector_width, -upright("right", parts.inspector.x), frame, 200.0, 700.0);
+    const Area& foot = parts.timeline;
+    drag(settings.timeline_height,
+         -splitter(frame, "bottom", {foot.x, foot.y - 0.5F * grip, foot.width, grip}, false), frame,
+         90.0, 500.0);
+}
+
+void Desk::draw_body(Frame& frame, const Area& area) {
+    const Parts parts = parts_of(frame, area);
+    const ImVec2 room(frame.px(12), frame.px(10));
+    place(frame, toolbar_, "toolbar", parts.toolbar, ImVec2(0, 0));
+    const bool findings = frame.model.shows_findings;
+    place(frame, findings ? static_cast<Panel&>(findings_) : program_,
+          findings ? "findings" : "program", parts.list, room);
+    place(frame, scene_, "view", parts.view, ImVec2(0, 0));
+    if (parts.device.width > 0.0F) place(frame, device_, "device", parts.device, room, true);
+    if (parts.inspector.width > 0.0F)
+        place(frame, inspector_, "inspector", parts.inspector, room, true);
+    place(frame, timeline_, "timeline", parts.timeline, ImVec2(frame.px(12), frame.px(7)));
+    draw_splitters(frame, parts);
 }
 
 void Desk::draw(ViewModel& model, const Fonts& fonts, double now) {

@@ -20,13 +20,21 @@ public:
     ScenePanel& scene() { return scene_; }
 
 private:
+    /// Where everything stands; what is not shown has no width.
+    struct Parts {
+        Area toolbar, list, view, device, inspector, timeline;
+    };
+
+    static Parts parts_of(const Frame& frame, const Area& area);
     void draw_body(Frame& frame, const Area& area);
+    void draw_splitters(Frame& frame, const Parts& parts);
 
     ToolbarPanel toolbar_;
     ProgramPanel program_;
     FindingsPanel findings_;
     ScenePanel scene_;
     InspectorPanel inspector_;
+    DevicePanel device_;
     TimelinePanel timeline_;
     PopupPanel popups_;
     WelcomePanel welcome_;

@@ -109,6 +109,8 @@ IconText text_of(Icon icon) {
         return {"\xEF\x83\xAB", "->"};
     case Icon::changed:
         return {"\xEF\x84\x91", "*"};
+    case Icon::device:
+        return {"\xEF\x8B\x9B", "dev"};
     }
     return {"", ""};
 }

@@ -35,7 +35,8 @@ enum class Icon : uint8_t {
     chevron,
     note,
     bulb,
-    changed
+    changed,
+    device
 };
 
 /// The fonts of the window at one scale. Where a file is missing ImGui's own font stands in, and

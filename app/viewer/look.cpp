@@ -52,6 +52,11 @@ ImVec4 Look::vector(Role role, double alpha) const {
     return ImGui::ColorConvertU32ToFloat4(color(role, alpha));
 }
 
+ImU32 Look::ink(Role role) const {
+    const bool is_pale = role == Role::near && theme == render::Theme::light;
+    return is_pale ? mixed(role, Role::text, 0.55) : color(role);
+}
+
 ImU32 Look::mixed(Role a, Role b, double share) const {
     return packed(render::mixed(render::color(theme, a), render::color(theme, b), share));
 }

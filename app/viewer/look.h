@@ -13,6 +13,8 @@ struct Look {
 
     ImU32 color(render::Role role, double alpha = 1.0) const;
     ImVec4 vector(render::Role role, double alpha = 1.0) const;
+    /// Of words. What is too pale for them on white is darker.
+    ImU32 ink(render::Role role) const;
     /// A mixture of two roles: the first at share 0.
     ImU32 mixed(render::Role a, render::Role b, double share) const;
     /// Of a block's clearance; `otherwise` where it is clear.

@@ -8,7 +8,8 @@ namespace app::viewer {
 
 /// What a stretch of blocks comes to: a column of the timeline.
 struct TimelineCell {
-    double least = core::infinity; // clearance beyond the allowance, mm; infinite: nothing is near
+    double least = core::infinity; // what is kept beyond need: clearance beyond the
+                                   // allowance, mm, or slack, s; infinite: nothing is near
     bool moves = false;            // any of them
     bool known = false;            // the check has been at any of them
     bool near = false;

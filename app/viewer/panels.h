@@ -55,7 +55,13 @@ private:
     std::string watch_;
 };
 
-/// The least clearance of every block, along the lower edge.
+/// The coprocessor: what it says of the current block, and how it stood then.
+class DevicePanel : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+};
+
+/// The least clearance of every block, along the lower edge; slack below it where a device was run.
 class TimelinePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;

@@ -77,6 +77,14 @@ void open_popup(ViewModel& model, Popup popup) {
     model.popup = model.popup == popup ? Popup::none : popup;
 }
 
+void find_stop(ViewModel& model, bool forward, double now) {
+    if (go_to_stop(model, forward)) return;
+    say(model,
+        model.device.study ? "The machine has to wait for no block"
+                           : "The coprocessor has not answered yet; D runs the program beside it",
+        now);
+}
+
 bool walk(ViewModel& model, Command command, double now) {
     switch (command) {
     case Command::step:
@@ -123,6 +131,10 @@ bool walk(ViewModel& model, Command command, double now) {
         return true;
     case Command::previous_offending:
         find_offending(model, false, now);
+        return true;
+    case Command::next_stop:
+    case Command::previous_stop:
+        find_stop(model, command == Command::next_stop, now);
         return true;
     case Command::next_bookmark:
         go_to_bookmark(model);
@@ -234,6 +246,9 @@ bool show(ViewModel& model, Command command) {
         return true;
     case Command::show_path:
         toggle(settings.shown.path);
+        return true;
+    case Command::show_device:
+        show_device(model, !model.device.shown);
         return true;
     case Command::units:
         toggle(settings.inch);

@@ -54,6 +54,7 @@ Settings settings_in(const std::string& text) {
     take(table, "maximised", settings.maximised);
     take_within(table, "list_width", settings.list_width, 120.0, 2000.0);
     take_within(table, "inspector_width", settings.inspector_width, 120.0, 2000.0);
+    take_within(table, "device_width", settings.device_width, 120.0, 2000.0);
     take_within(table, "timeline_height", settings.timeline_height, 60.0, 1000.0);
     take(table, "show_stock", settings.shown.stock);
     take(table, "show_fixtures", settings.shown.fixtures);
@@ -71,14 +72,15 @@ std::string text_of(const Settings& s) {
         "# The window of feeler, as it was closed last.\n"
         "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nscale = {:.2f}\nmouse = {}\n"
         "width = {}\nheight = {}\nx = {}\ny = {}\nmaximised = {}\n"
-        "list_width = {:.1f}\ninspector_width = {:.1f}\ntimeline_height = {:.1f}\n"
+        "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
+        "{:.1f}\n"
         "show_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = {}\n"
         "show_path = {}\nshow_witness = {}\nholder_xray = {}\n",
         s.theme == render::Theme::light ? "light" : "dark",
         s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
         s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y, s.maximised, s.list_width,
-        s.inspector_width, s.timeline_height, shown.stock, shown.fixtures, shown.tool,
-        shown.machine, shown.path, shown.witness, shown.holder_xray);
+        s.inspector_width, s.device_width, s.timeline_height, shown.stock, shown.fixtures,
+        shown.tool, shown.machine, shown.path, shown.witness, shown.holder_xray);
 }
 
 Settings read_settings(const std::filesystem::path& file) {

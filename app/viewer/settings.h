@@ -39,6 +39,7 @@ struct Settings {
     int x = -1, y = -1;             // of its corner; -1: where the system puts it
     bool maximised = false;
     double list_width = 372.0, inspector_width = 272.0, timeline_height = 152.0; // at scale 1
+    double device_width = 300.0;
 
     bool operator==(const Settings&) const = default;
 };

@@ -104,9 +104,7 @@ void source_mark(Frame& frame, SetupSource source, bool is_in_heading) {
                                                         : Role::dim;
     ImGui::SameLine(0, frame.px(10));
     if (!is_in_heading) ImGui::AlignTextToFramePadding();
-    // Amber words cannot be read on white.
-    const bool is_pale = role == Role::near && frame.model.settings.theme == render::Theme::light;
-    text(frame.fonts.small, frame.look.color(is_pale ? Role::dim : role),
+    text(frame.fonts.small, frame.look.ink(role),
          source == SetupSource::stated ? "stated by you" : name_of(source));
 }
 

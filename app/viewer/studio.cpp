@@ -52,16 +52,19 @@ Studio::Studio(render::Offscreen context, render::Renderer renderer, render::The
     ImGui_ImplOpenGL3_Init("#version 330 core");
     fonts_ = load_fonts(scale);
     apply_style(Look{theme}, scale);
-    worker_ = std::make_unique<SessionWorker>([this] {
+    const auto wake = [this] {
         {
             const std::lock_guard lock(mutex_);
             is_woken_ = true;
         }
         woken_.notify_all();
-    });
+    };
+    worker_ = std::make_unique<SessionWorker>(wake);
+    device_ = std::make_unique<DeviceWorker>(wake);
 }
 
 Studio::~Studio() {
+    device_.reset();
     worker_.reset();
     desk_.reset();
     ImGui_ImplOpenGL3_Shutdown();
@@ -76,17 +79,32 @@ void Studio::wait() {
 
 void Studio::update() {
     take_in(model, worker_->take(), 0.0);
+    take_in(model, device_->take());
     model.message.clear();
+    send_device_orders(model, *device_, job_);
     send_requests(model, *worker_);
 }
 
 core::Result<void> Studio::open(const CheckJob& job) {
+    job_ = job;
     worker_->open(job);
     while (!model.failure && !model.is_recorded) {
         wait();
         update();
     }
     if (model.failure) return tl::unexpected(*model.failure);
+    return {};
+}
+
+core::Result<void> Studio::run_device(const std::string& file) {
+    model.device.file = file;
+    model.device.shown = true;
+    update();
+    while (model.device.is_running) {
+        wait();
+        update();
+    }
+    if (model.device.failure) return tl::unexpected(*model.device.failure);
     return {};
 }
 

@@ -26,6 +26,11 @@ public:
     /// Errors: as DebugSession::open.
     core::Result<void> open(const CheckJob& job);
 
+    /// Runs the program that is open beside a coprocessor, to its end, and shows its panel.
+    ///
+    /// Errors: those of read_device_file and run_beside_coprocessor.
+    core::Result<void> run_device(const std::string& file);
+
     ViewModel model;
 
     /// Waits for the view of the cursor's block.
@@ -58,7 +63,9 @@ private:
     std::mutex mutex_;
     std::condition_variable woken_;
     bool is_woken_ = false;
+    std::optional<CheckJob> job_; // that is open
     std::unique_ptr<SessionWorker> worker_;
+    std::unique_ptr<DeviceWorker> device_;
 };
 
 } // namespace app::viewer

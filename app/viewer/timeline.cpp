@@ -61,6 +61,11 @@ std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& 
     return cells;
 }
 
+double slack_height(double seconds) {
+    if (!(seconds > least_slack)) return 0.0;
+    return std::min(std::log10(seconds / least_slack) / std::log10(most_slack / least_slack), 1.0);
+}
+
 std::vector<ToolBand> tool_bands(const std::vector<BlockRow>& rows) {
     std::vector<ToolBand> bands;
     for (size_t i = 0; i < rows.size(); ++i) {

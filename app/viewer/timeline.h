@@ -36,6 +36,11 @@ double place_of(const TimelineRange& range, size_t block);
 std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& range,
                                   size_t pixels);
 
+/// How high the bar of a slack is, as a share of its row's height: by decades, from `least_slack`
+/// seconds to `most_slack`, as slack goes from microseconds to minutes.
+double slack_height(double seconds);
+constexpr double least_slack = 1e-4, most_slack = 100.0;
+
 /// Blocks in a row with one tool in the spindle.
 struct ToolBand {
     size_t first = 0, last = 0; // one past the last

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "app/viewer/device_sheet.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panels.h"
+#include "app/viewer/slack_bars.h"
 #include "app/viewer/widgets.h"
 
 namespace app::viewer {
@@ -146,6 +148,10 @@ void show_hovered(Frame& frame, size_t block) {
         text(frame.fonts.text, frame.look.of(row, Role::text),
              fmt::format("{} {} {}", length_text(frame.model, *row.lower), length_unit(frame.model),
                          row.part.empty() ? "" : row.part + " \xE2\x80\x93 " + row.body));
+    if (const std::string slack = slack_words(frame.model, block); !slack.empty()) {
+        const bool stops = stops_machine(answer_of(frame.model.device.study.get(), block));
+        text(frame.fonts.text, frame.look.color(stops ? Role::violation : Role::text), slack);
+    }
     ImGui::EndTooltip();
 }
 
@@ -177,34 +183,46 @@ void take_mouse(Frame& frame, const Area& area, bool& scrubbing) {
     if (!scrubbing) show_hovered(frame, block);
 }
 
-} // namespace
-
-void TimelinePanel::draw(Frame& frame, const Area& area) {
-    ViewModel& model = frame.model;
-    const std::string title = fmt::format("MIN CLEARANCE PER BLOCK ({})", length_unit(model));
+/// What the rows show, and how far those are that make them.
+void draw_title(Frame& frame) {
+    const ViewModel& model = frame.model;
+    std::string title = fmt::format("MIN CLEARANCE PER BLOCK ({})", length_unit(model));
+    if (model.device.study) title += "  \xC2\xB7  SLACK OF THE COPROCESSOR, BELOW";
     text(frame.fonts.small, frame.look.color(Role::dim), title);
     if (!model.is_recorded && model.has_rows()) {
         ImGui::SameLine(0, frame.px(14));
         text(frame.fonts.small, frame.look.color(Role::accent),
              fmt::format("checking \xE2\x80\xA6 {:.0f} %", 100.0 * model.share));
     }
+}
+
+} // namespace
+
+void TimelinePanel::draw(Frame& frame, const Area& area) {
+    ViewModel& model = frame.model;
+    draw_title(frame);
     if (!model.has_rows()) return;
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float side = frame.px(12), bands = frame.px(20);
+    const float side = frame.px(12), bands = frame.px(20), gap = frame.px(5);
+    const Area room{area.x + side, area.y + frame.px(30), area.width - 2 * side,
+                    area.height - frame.px(30) - bands - frame.px(8)};
     Bars bars;
-    bars.area = {area.x + side, area.y + frame.px(30), area.width - 2 * side,
-                 area.height - frame.px(30) - bands - frame.px(8)};
+    bars.area = room;
+    if (model.device.study) bars.area.height = 0.6F * room.height;
     const double allowance = shown_allowance(model);
     bars.allowance = allowance;
     bars.top = 5.5 * allowance;
     list.AddRectFilled(bars.area.corner(), bars.area.far_corner(),
                        frame.look.color(Role::background, 0.75), frame.px(4));
-    ImGui::SetCursorScreenPos(bars.area.corner());
-    ImGui::InvisibleButton("bars", ImVec2(bars.area.width, bars.area.height + bands));
-    take_mouse(frame, bars.area, scrubbing_);
+    ImGui::SetCursorScreenPos(room.corner());
+    ImGui::InvisibleButton("bars", ImVec2(room.width, room.height + bands));
+    take_mouse(frame, room, scrubbing_);
     draw_bars(frame, list, bars);
     draw_allowance(frame, list, bars, allowance);
-    const Area band_area{bars.area.x, bars.area.y + bars.area.height + frame.px(4), bars.area.width,
+    if (model.device.study)
+        draw_slack(frame, {room.x, room.y + bars.area.height + gap, room.width,
+                           room.height - bars.area.height - gap});
+    const Area band_area{room.x, room.y + room.height + frame.px(4), room.width,
                          bands - frame.px(2)};
     draw_bands(frame, list, band_area);
     draw_cursor(frame, list, bars, band_area.y + band_area.height);

@@ -79,6 +79,8 @@ void draw_speed(Frame& frame) {
 
 void draw_right(Frame& frame) {
     const ViewModel& model = frame.model;
+    icon_button(frame, Icon::device, Command::show_device, model.device.shown);
+    ImGui::SameLine();
     icon_button(frame, Icon::section, Command::section, model.section.has_value());
     ImGui::SameLine();
     icon_button(frame, Icon::measure, Command::measure, model.measuring.on);
@@ -103,7 +105,7 @@ void ToolbarPanel::draw(Frame& frame, const Area& area) {
     const float width =
         std::min(static_cast<float>(frame.model.settings.list_width * frame.fonts.scale),
                  0.31F * area.width);
-    const float right = area.width - 6 * frame.px(39) - frame.px(5);
+    const float right = area.width - 7 * frame.px(39) - frame.px(5);
     ImGui::SetCursorPos(ImVec2(frame.px(14), frame.px(8)));
     draw_name(frame, width - frame.px(10));
     if (frame.model.has_rows()) {

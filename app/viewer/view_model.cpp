@@ -45,6 +45,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.playback.running = false;
     model.share = 0.0;
     model.is_recorded = false;
+    model.device.study = nullptr;
 }
 
 /// How bad the findings about each block are: they come and go until the check is complete.

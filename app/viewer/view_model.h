@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "app/viewer/device_model.h"
 #include "app/viewer/finding_note.h"
 #include "app/viewer/row_filter.h"
 #include "app/viewer/session_update.h"
@@ -75,6 +76,7 @@ struct ViewModel {
     std::string missing; // a file that is shown, but is gone or empty by now
     double share = 0.0;
     bool is_recorded = false, is_busy = false;
+    DeviceModel device; // beside which it is run
 
     // what a person has said
     Cursor cursor;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <epoxy/gl.h>
-#include <fmt/format.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -21,6 +20,7 @@
 #include "app/viewer/screen_picture.h"
 #include "app/viewer/session_worker.h"
 #include "app/viewer/window_files.h"
+#include "app/viewer/window_title.h"
 
 namespace app::viewer {
 namespace {
@@ -73,7 +73,8 @@ public:
           gui_(window),
           desk_(std::move(renderer)),
           log_(job.frame_log),
-          worker_([] { glfwPostEmptyEvent(); }) {}
+          worker_([] { glfwPostEmptyEvent(); }),
+          device_([] { glfwPostEmptyEvent(); }) {}
 
     ViewModel model;
 
@@ -106,9 +107,10 @@ private:
     FrameLog log_;
     KeyQueue keys_;
     double last_watch_ = 0.0, last_frame_ = 0.0;
-    bool asked_ = false;   // the worker has just been asked for something
-    int frames_ = 3;       // still to draw: ImGui needs some until all is where it belongs
-    SessionWorker worker_; // last: it ends first
+    bool asked_ = false; // the worker has just been asked for something
+    int frames_ = 3;     // still to draw: ImGui needs some until all is where it belongs
+    SessionWorker worker_;
+    DeviceWorker device_; // last: they end first
 };
 
 double Window::wanted_scale() const {
@@ -141,6 +143,7 @@ void Window::open_job() {
     worker_.open(*job_.check);
     std::vector<std::string> files = files_of_setup(job_.check->setup);
     files.push_back(job_.check->program);
+    if (!job_.device.file.empty()) files.push_back(job_.device.file);
     files_.set(std::move(files));
     model.edits = job_.check->edits;
     damage();
@@ -195,21 +198,8 @@ void Window::press(int code, int modifiers) {
     perform(model, *command, glfwGetTime());
 }
 
-/// The title tells the place, for lists of windows and for those who have it read to them.
 void Window::set_title() {
-    std::string title = "feeler";
-    if (model.failure || (model.is_recorded && !model.has_rows())) {
-        title = "This could not be opened - feeler";
-    } else if (model.program) {
-        title = std::filesystem::path(model.program->program).filename().string();
-        if (model.has_rows())
-            title +=
-                fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
-                            model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
-        if (!model.missing.empty()) title += ", gone or empty";
-        if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
-        title += " - feeler";
-    }
+    const std::string title = window_title(model);
     if (title == title_) return;
     title_ = title;
     glfwSetWindowTitle(window_, title.c_str());
@@ -229,6 +219,9 @@ void Window::update() {
     SessionUpdate news = worker_.take();
     if (news.has_news) damage();
     take_in(model, std::move(news), now);
+    DeviceUpdate answers = device_.take();
+    if (answers.has_news) damage();
+    take_in(model, std::move(answers));
     if (play(model, std::min(now - last_frame_, 0.2))) damage();
     last_frame_ = now;
     if (!model.wanted_path.empty()) drop({std::exchange(model.wanted_path, {})});
@@ -247,6 +240,7 @@ void Window::update() {
     }
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
+    if (send_device_orders(model, device_, job_.check)) damage();
     if (send_requests(model, worker_)) {
         asked_ = true;
         damage();
@@ -382,6 +376,8 @@ core::Result<void> run_window(const WindowJob& job) {
     FEELER_TRY(render::Renderer renderer, render::Renderer::make());
     const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
     shown->model.settings = settings;
+    shown->model.device.file = job.device.file;
+    shown->model.device.shown = job.device.shown;
     shown->model.notes = notes_in(read_text(job.notes_file).value_or(""));
     listen_to_keys(window.get());
     glfwSetWindowUserPointer(window.get(), shown.get());

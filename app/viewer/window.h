@@ -7,9 +7,16 @@
 
 namespace app::viewer {
 
+/// Beside which coprocessor programs are run, and whether that is wanted from the beginning.
+struct DeviceChoice {
+    std::string file; // empty: the usual one
+    bool shown = false;
+};
+
 /// What the window begins with.
 struct WindowJob {
-    std::optional<CheckJob> check;       // empty: the welcome screen
+    std::optional<CheckJob> check; // empty: the welcome screen
+    DeviceChoice device;
     std::filesystem::path settings_file; // read at the start, written at the end; empty: neither
     std::filesystem::path notes_file;    // what is written on findings; empty: nowhere
     std::filesystem::path pictures;      // folder that F12 saves into

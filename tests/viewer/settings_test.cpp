@@ -17,6 +17,7 @@ TEST(ViewerSettings, ComeBackAsTheyWere) {
     settings.width = 1000;
     settings.x = 12;
     settings.list_width = 401.5;
+    settings.device_width = 345.5;
     EXPECT_EQ(settings_in(text_of(settings)), settings);
     EXPECT_EQ(settings_in(text_of(Settings())), Settings());
 }

@@ -1,0 +1,254 @@
+#include "app/viewer/device_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace app::viewer {
+namespace {
+
+using hwsim::Counter;
+
+/// The block that is shown, and what is known of it.
+struct Subject {
+    const DeviceStudy& study;
+    size_t index = 0;
+
+    const DeviceBlock& block() const { return study.result.run.blocks[index]; }
+    const BlockTiming& timing() const { return study.result.timing.blocks[index]; }
+    const core::BlockResult& exact() const { return study.result.run.check.blocks[index].result; }
+    DeviceAnswer answer() const { return answer_of(&study, index); }
+    DeviceTotals before() const {
+        return index == 0 ? DeviceTotals() : study.result.run.blocks[index - 1].after;
+    }
+};
+
+std::string percent(double share) {
+    if (share > 0.0 && share < 1e-4) return "< 0.01 %";
+    return fmt::format("{:.{}f} %", 100.0 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0);
+}
+
+std::string percent(std::optional<double> share) {
+    return share ? percent(*share) : "\xE2\x80\x94";
+}
+
+std::string place_words(const DeviceStudy& study, size_t block) {
+    return fmt::format("block {}, line {}", block, study.result.run.check.blocks[block].line);
+}
+
+std::string number_of(const Subject& subject) {
+    if (subject.answer() == DeviceAnswer::refused) return "refused";
+    if (subject.answer() == DeviceAnswer::not_asked) return "not asked";
+    const auto slack = slack_of(&subject.study, subject.index);
+    return slack ? time_text(*slack) : "\xE2\x80\x94";
+}
+
+std::string answer_words(const Subject& subject) {
+    const std::string why = refusal(subject.study.result, subject.index);
+    switch (subject.answer()) {
+    case DeviceAnswer::unknown:
+        return "The run ended before this block";
+    case DeviceAnswer::nothing:
+        return "Permitted: there is nothing to ask";
+    case DeviceAnswer::permitted:
+        return slack_of(&subject.study, subject.index) ? "Permitted in time"
+                                                       : "Permitted; the machine stands until then";
+    case DeviceAnswer::late:
+        return "Permitted too late: the machine brakes and waits";
+    case DeviceAnswer::refused:
+        return subject.block().permit.stop == hwsim::Stop::violation
+                   ? why + " come nearer than they may"
+                   : "The device has stopped: " + why;
+    case DeviceAnswer::not_asked:
+        return "Not permitted: " + why;
+    }
+    return {};
+}
+
+/// How the exact engine stands to the answer.
+void compare(const Subject& subject, DeviceSheet& sheet) {
+    if (subject.answer() == DeviceAnswer::nothing) return;
+    EngineAgreement both;
+    add(both, subject.block().permit, subject.exact());
+    const std::string verdict = core::name_of(subject.exact().verdict);
+    if (both.missed > 0) {
+        sheet.exact = "The exact engine finds a " + verdict + " here, which must not be permitted";
+        sheet.exact_tone = Tone::bad;
+    } else if (both.not_asked > 0) {
+        sheet.exact = "The exact engine can be asked: " + verdict;
+        sheet.exact_tone = Tone::near;
+    } else if (subject.exact().verdict == core::Verdict::undecided) {
+        sheet.exact = "The exact engine leaves this block undecided";
+        sheet.exact_tone = Tone::near;
+    } else if (both.false_alarms > 0) {
+        sheet.exact = "The exact engine clears this block: a false alarm, on the safe side";
+        sheet.exact_tone = Tone::near;
+    } else {
+        sheet.exact = "The exact engine agrees: " + verdict;
+    }
+}
+
+DevicePart time_part(const Subject& subject) {
+    const BlockTiming& timing = subject.timing();
+    DevicePart part{"Time", {}, false};
+    if (!std::isfinite(timing.asked)) return part;
+    const auto after = [&](const char* name, double time) {
+        if (std::isfinite(time)) part.lines.push_back({name, "+" + time_text(time - timing.asked)});
+    };
+    part.lines.push_back({"asked at", timing.asked > 0.0 ? time_text(timing.asked) : "the start"});
+    after(subject.block().permit.permitted ? "permitted" : "answered", timing.permitted);
+    after("due", timing.due);
+    after("entered", timing.entered);
+    if (subject.answer() == DeviceAnswer::late) part.lines[1].tone = Tone::bad;
+    return part;
+}
+
+DevicePart work_part(const Subject& subject) {
+    const DeviceBlock& block = subject.block();
+    const uint64_t lines = block.after[Counter::lines_read] - subject.before()[Counter::lines_read];
+    return {"Work for this block",
+            {{"cycles", fmt::format("{}", block.cycles)},
+             {"segments", fmt::format("{}", block.permit.segments)},
+             {"nodes", fmt::format("{}", block.nodes)},
+             {"pairs", fmt::format("{}", block.pairs)},
+             {"lines", fmt::format("{}", lines)},
+             {"deepest", fmt::format("{}", block.after[Counter::deepest])}},
+            true};
+}
+
+DevicePart register_part(const Subject& subject) {
+    const hwsim::DeviceReport& report = subject.block().permit.report;
+    const bool stopped = report.stop != hwsim::Stop::none;
+    DevicePart part{"Registers behind it",
+                    {{"PERMIT_SEQ", fmt::format("{}", report.permitted)},
+                     {"STOP", name_of(report.stop), stopped ? Tone::bad : Tone::plain}}};
+    if (stopped) part.lines.push_back({"STOP_SEQ", fmt::format("{}", report.stop_sequence)});
+    if (report.stop_line > 0)
+        part.lines.push_back({"STOP_LINE", fmt::format("{}", report.stop_line)});
+    return part;
+}
+
+/// What the threads did in the meantime.
+DevicePart share_part(const Subject& subject) {
+    const DeviceShares shares =
+        shares_between(subject.before(), subject.block().after, subject.study.result.file.device);
+    return {"Busy, waiting for, cache hits",
+            {{"busy", percent(shares.busy)},
+             {"memory", percent(shares.memory)},
+             {"ports", percent(shares.ports)},
+             {"order", percent(shares.order)},
+             {"nodes", percent(shares.node_hits)},
+             {"records", percent(shares.record_hits)}},
+            true};
+}
+
+/// Blocks that are not permitted, and how many are late.
+void add_stops(const DeviceStudy& study, DevicePart& part) {
+    const auto refused = std::find_if(study.stops.begin(), study.stops.end(), [&](size_t block) {
+        return !study.result.run.blocks[block].permit.permitted;
+    });
+    const size_t late = study.result.timing.missed;
+    part.lines.push_back({"refused", fmt::format("{} of {}", study.agreement.refused, study.size()),
+                          refused == study.stops.end() ? Tone::plain : Tone::bad});
+    if (refused != study.stops.end())
+        part.lines.push_back({"stands before", place_words(study, *refused), Tone::bad, *refused});
+    part.lines.push_back({"late", late == 0 ? "none" : fmt::format("{}", late),
+                          late == 0 ? Tone::plain : Tone::bad});
+    const PermitTiming& timing = study.result.timing;
+    if (late > 0)
+        part.lines.push_back(
+            {"waited", time_text(std::max(0.0, timing.taken - timing.planned)), Tone::bad});
+    if (!timing.tightest) return;
+    const double slack = timing.blocks[*timing.tightest].slack();
+    const Tone tone = slack < 0.0 ? Tone::bad : slack < study.near ? Tone::near : Tone::plain;
+    part.lines.push_back({"least slack", time_text(slack), tone, timing.tightest});
+    part.lines.push_back({"", place_words(study, *timing.tightest), Tone::dim, timing.tightest});
+}
+
+DevicePart run_part(const ViewModel& model) {
+    const DeviceStudy& study = *model.device.study;
+    const hwsim::DeviceConfig& device = study.result.file.device;
+    DevicePart part{"Whole run", {}};
+    add_stops(study, part);
+    part.lines.push_back({"latency", time_text(study.figures.p50)});
+    part.lines.push_back({"at most", time_text(study.figures.longest)});
+    part.lines.push_back({"at work", percent(study.figures.busy_share)});
+    if (study.agreement.missed > 0)
+        part.lines.push_back({"missed", fmt::format("{}", study.agreement.missed), Tone::bad});
+    part.lines.push_back({"false alarms", fmt::format("{}", study.agreement.false_alarms)});
+    part.lines.push_back({"device", fmt::format("{} x {}, {} MHz", device.elements, device.threads,
+                                                device.clock_mhz)});
+    const auto best = smallest(study.result.fits);
+    std::string enough = model.device.is_running ? "looked for" : "none was found";
+    if (best)
+        enough = fmt::format("{} element{}, {} MHz", best->elements, best->elements == 1 ? "" : "s",
+                             *best->clock_mhz);
+    part.lines.push_back({"would do", enough, best ? Tone::plain : Tone::dim});
+    return part;
+}
+
+} // namespace
+
+DeviceSheet device_sheet(const ViewModel& model) {
+    const DeviceStudy& study = *model.device.study;
+    const Subject subject{study, model.cursor.block};
+    DeviceSheet sheet;
+    if (subject.answer() == DeviceAnswer::unknown) {
+        sheet.number = "\xE2\x80\x94";
+        sheet.answer = answer_words(subject);
+        sheet.parts = {run_part(model)};
+    } else {
+        sheet.number = number_of(subject);
+        const auto slack = slack_of(&study, subject.index);
+        if (slack && *slack < study.near) sheet.tone = Tone::near;
+        if (stops_machine(subject.answer())) sheet.tone = Tone::bad;
+        sheet.answer = answer_words(subject);
+        compare(subject, sheet);
+        sheet.parts = {time_part(subject), run_part(model), work_part(subject),
+                       register_part(subject), share_part(subject)};
+    }
+    return sheet;
+}
+
+std::string device_status(const ViewModel& model) {
+    const DeviceModel& device = model.device;
+    if (!model.changes.empty())
+        return "A what-if is in effect. The device runs what the files say: take it back, or put "
+               "it into the set-up.";
+    if (device.failure) {
+        std::string words = device.failure->message;
+        if (device.failure->where.line > 0)
+            words = fmt::format("line {}: {}", device.failure->where.line, words);
+        if (!device.failure->file.empty()) words = device.failure->file + ", " + words;
+        return words;
+    }
+    if (!model.program) return "Waits for the program \xE2\x80\xA6";
+    if (!device.is_running) return {};
+    if (device.study)
+        return fmt::format("Tries other devices \xE2\x80\xA6 {:.0f} %", 100.0 * device.share);
+    if (device.blocks == 0) return "Brings the stock into the device \xE2\x80\xA6";
+    return fmt::format("Asks for block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
+                       100.0 * device.share);
+}
+
+std::string slack_words(const ViewModel& model, size_t block) {
+    const DeviceStudy* study = model.device.study.get();
+    switch (answer_of(study, block)) {
+    case DeviceAnswer::unknown:
+    case DeviceAnswer::nothing:
+        return {};
+    case DeviceAnswer::refused:
+        return "refused: " + refusal(study->result, block);
+    case DeviceAnswer::not_asked:
+        return "not asked: " + refusal(study->result, block);
+    case DeviceAnswer::late:
+        return "late by " + time_text(-*slack_of(study, block));
+    case DeviceAnswer::permitted:
+        break;
+    }
+    const auto slack = slack_of(study, block);
+    return slack ? "slack " + time_text(*slack) : "permitted";
+}
+
+} // namespace app::viewer

@@ -1,0 +1,126 @@
+#include "app/viewer/device_worker.h"
+
+#include <chrono>
+#include <utility>
+
+namespace app::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto progress_interval = std::chrono::milliseconds(100);
+
+/// Devices that are tried to find the smallest one.
+const std::vector<uint32_t> tried_elements = {1, 2, 4, 8, 16};
+
+} // namespace
+
+DeviceWorker::DeviceWorker(std::function<void()> wake)
+    : wake_(std::move(wake)), thread_([this] { work(); }) {}
+
+DeviceWorker::~DeviceWorker() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+uint64_t DeviceWorker::start(const DeviceJob& job) {
+    uint64_t run = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        wanted_ = job;
+        news_ = {};
+        run = ++runs_;
+    }
+    changed_.notify_all();
+    return run;
+}
+
+void DeviceWorker::stop() {
+    const std::lock_guard lock(mutex_);
+    wanted_.reset();
+    news_ = {};
+    ++runs_;
+}
+
+DeviceUpdate DeviceWorker::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(news_, {});
+}
+
+void DeviceWorker::deliver(DeviceUpdate news) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (is_over(news.run)) return;
+        // What nobody has looked at yet is not lost.
+        if (!news.study) news.study = std::move(news_.study);
+        news_ = std::move(news);
+        news_.has_news = true;
+    }
+    wake_();
+}
+
+void DeviceWorker::work() {
+    while (true) {
+        DeviceJob job;
+        uint64_t run = 0;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] { return stopping_ || wanted_; });
+            if (stopping_) return;
+            job = *std::exchange(wanted_, std::nullopt);
+            run = runs_;
+        }
+        carry_out(job, run);
+    }
+}
+
+core::Result<CoprocessorResult> DeviceWorker::emulate(const DeviceJob& job, const DeviceFile& file,
+                                                      std::vector<uint32_t> others, uint64_t run) {
+    CoprocessorJob asked;
+    asked.check = job.check;
+    asked.check.detail = core::Detail::every_pair;
+    asked.device = file.device;
+    asked.other_elements = std::move(others);
+    const bool is_fitting = !asked.other_elements.empty();
+    Clock::time_point told = {};
+    asked.check.after_block = [&](const CheckProgress& progress) {
+        if (Clock::now() - told > progress_interval) {
+            told = Clock::now();
+            deliver({.run = run,
+                     .share = progress.share,
+                     .blocks = progress.blocks,
+                     .is_fitting = is_fitting});
+        }
+        return !is_over(run);
+    };
+    FEELER_TRY(CoprocessorRun made, run_beside_coprocessor(asked));
+    if (is_over(run)) return CoprocessorResult{};
+    return in_time(std::move(made), file, true);
+}
+
+void DeviceWorker::carry_out(const DeviceJob& job, uint64_t run) {
+    const auto fail = [&](const core::Error& error) {
+        deliver({.run = run, .is_done = true, .failure = error});
+    };
+    DeviceFile file;
+    if (!job.file.empty()) {
+        const auto read = read_device_file(job.file);
+        if (!read) return fail(read.error());
+        file = *read;
+    }
+    for (const std::vector<uint32_t>& others : {std::vector<uint32_t>(), tried_elements}) {
+        auto result = emulate(job, file, others, run);
+        if (is_over(run)) return;
+        if (!result) return fail(result.error());
+        deliver({.run = run,
+                 .share = others.empty() ? 0.0 : 1.0,
+                 .is_fitting = true,
+                 .is_done = !others.empty(),
+                 .study = study_of(*std::move(result))});
+    }
+}
+
+} // namespace app::viewer
