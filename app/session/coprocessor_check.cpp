@@ -88,6 +88,11 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
           .position = before.position,
           .fixtures_there = before.fixtures_there,
           .centre = before.centre};
+    at.is_cycle = std::count_if(block.begin(), block.end(),
+                                [](const core::Event& event) {
+                                    return std::holds_alternative<core::Motion>(event);
+                                })
+                  > 1;
     hold(before.tool, at);
     at.tool_known = before.tool_known;
     for (const core::Event& event : block)
@@ -135,7 +140,7 @@ Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, Pushe
 void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at) const {
     const auto found = tool ? setup_->tools.find(*tool) : setup_->tools.end();
     at.tool = found == setup_->tools.end() ? nullptr : &found->second;
-    at.is_empty = !tool;
+    at.called = tool;
     at.tool_known = true;
 }
 
@@ -151,7 +156,7 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Pu
     at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
     const bool rapid = motion.kind == core::MotionKind::rapid;
     // A spindle of which nothing is known is taken to be empty until the program feeds.
-    if (!at.tool && !(at.is_empty && (at.tool_known || rapid))) {
+    if (!at.tool && !(!at.called && (at.tool_known || rapid))) {
         deny(block.permit, "nobody knows the tool that moves", Teller::run);
         return {};
     }
@@ -162,6 +167,9 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Pu
     }
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
+    if (cutting) at.corners.note_cut(at.called);
+    const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
+    at.follows = follows_cuts(at.corners, at.called, rises, rapid && !at.is_cycle);
     for (const core::Leg& leg : path.legs) {
         if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
         if (pushes_centre(leg, cutting, at))
@@ -197,8 +205,14 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
         core::Pair pair{body.kind, {}, body.carried};
         const auto question = [&](const core::Mount& mount) {
-            return Question{body, pair, relative_leg(setup_->machine, mount, body.mover, leg),
-                            allowance_of(*setup_, pair), off_way(pair, at.off_motion, at.corners)};
+            const core::Allowance allowance = allowance_of(*setup_, pair);
+            const double off = off_way(pair, at.off_motion, at.corners);
+            // Bodies may touch where nothing is known to be farther off than what is contact.
+            const bool may_touch =
+                allowance.distance <= core::resolution
+                && (off <= contact_depth(allowance) || (!pair.fixture && at.follows));
+            return Question{body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
+                            allowance, off,  may_touch};
         };
         if (!cuts) {
             const Question stock = question(setup_->stock_mount);
@@ -248,11 +262,10 @@ Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, Push
     }
     if (auto measured = measure_pair(q, work, block); !measured) return measured;
     // Bodies that may touch are held against each other with the one shrunk by what is contact.
-    const bool may_touch = q.allowance.distance <= core::resolution;
     const double shrink =
-        may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
+        q.may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
     FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
-    const double off = q.way.error + (may_touch ? 0.0 : q.off_path);
+    const double off = q.way.error + (q.may_touch ? 0.0 : q.off_path);
     if (const auto pushed =
             hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
         !pushed) {
@@ -334,7 +347,7 @@ void CoprocessorCheck::use_tool(const core::ToolAssembly* tool) {
 }
 
 bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {
-    if (q.body.kind != core::PartKind::flutes || q.way.turns) return false;
+    if (q.body.kind != core::PartKind::flutes || q.way.turns || !q.may_touch) return false;
     return runs_in_own_cut(at.stock, {.flutes = *q.body.profile,
                                       .from = q.way.places.front(),
                                       .to = q.way.places.back(),

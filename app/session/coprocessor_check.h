@@ -86,9 +86,11 @@ private:
         double off_motion = 0.0; // that corners take the motion, mm
         core::AxisPosition position;
         std::vector<bool> fixtures_there;
-        core::CentreWatch centre; // of a tool that does not cut there
-        bool is_empty = true;     // the spindle, as far as is known
-        bool tool_known = false;  // what is in it
+        core::CentreWatch centre;               // of a tool that does not cut there
+        std::optional<core::ToolNumber> called; // tool in the spindle, described or not
+        bool tool_known = false;
+        bool is_cycle = false; // several motions
+        bool follows = true;   // what its tool has cut, or leaves it upwards
     };
     /// A body of the tool's side over a leg, and what it must keep.
     struct Question {
@@ -97,6 +99,7 @@ private:
         core::RelativeLeg way;
         core::Allowance allowance;
         double off_path = 0.0; // that rounded corners may take the body, mm
+        bool may_touch = false;
     };
     /// A body's kind, which of the machine's it is, and by how much it is shrunk.
     using ModelKey = std::tuple<core::PartKind, size_t, double>;

@@ -143,25 +143,16 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
     return finding;
 }
 
-bool BlockRun::follows_cuts() const {
-    const RoundedCorners& corners = state.corners;
-    if (corners.by_several || (corners.tool && corners.tool != state.tool)) return false;
-    const bool rises = std::all_of(legs.begin(), legs.end(), [](const TimedLeg& timed) {
-        const auto& [from, to] = std::pair(timed.leg.places.front(), timed.leg.places.back());
-        for (size_t i = 0; i < axis_count; ++i)
-            if (i == 2 ? to[i] < from[i] : to[i] != from[i]) return false;
-        return timed.leg.places.size() <= 2;
-    });
-    return rises || (result.motion != BlockMotion::rapid && corners.by == corners.of_cuts);
-}
-
 void BlockRun::conclude() {
     std::sort(result.pairs.begin(), result.pairs.end(),
               [](const PairClearance& a, const PairClearance& b) {
                   return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
                          < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
               });
-    const bool follows = follows_cuts();
+    const bool rise = std::all_of(legs.begin(), legs.end(),
+                                  [](const TimedLeg& timed) { return rises(timed.leg); });
+    const bool follows =
+        follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
     std::vector<double> on_the_way; // how near each pair is where the program goes
     for (PairClearance& pair : result.pairs) {
         on_the_way.push_back(pair.upper);

@@ -100,8 +100,6 @@ struct BlockRun {
     void forget_bounds();
     void check_limits(const Motion& motion);
     void round_corners(const Motion& motion);
-    /// Whether the block goes where its tool has cut, however corners were rounded.
-    bool follows_cuts() const;
     void check_from_unknown(const Motion& motion, const Path& path);
     void conclude();
     void conclude(const Judgement& judgement);

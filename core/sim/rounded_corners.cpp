@@ -18,6 +18,19 @@ double off_way(const Pair& pair, double of_block, const RoundedCorners& corners)
     return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
 }
 
+bool rises(const Leg& leg) {
+    const auto &from = leg.places.front(), &to = leg.places.back();
+    for (size_t i = 0; i < axis_count; ++i)
+        if (i == 2 ? to[i] < from[i] : to[i] != from[i]) return false;
+    return leg.places.size() <= 2;
+}
+
+bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
+                  bool is_rapid) {
+    if (corners.by_several || (corners.tool && corners.tool != tool)) return false;
+    return rises || (!is_rapid && corners.by == corners.of_cuts);
+}
+
 void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts) {
     const double off = off_way(pair.pair, of_block, corners);
     if (off == 0.0) return;

@@ -3,6 +3,7 @@
 #include "core/sim/clearance.h"
 #include "core/sim/event.h"
 #include "core/sim/machine.h"
+#include "core/sim/path.h"
 
 namespace core {
 
@@ -34,6 +35,14 @@ bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
 
 /// How far the bodies of a pair may be off over a block whose feeds are by `of_block`.
 double off_way(const Pair& pair, double of_block, const RoundedCorners& corners);
+
+/// Whether a leg is straight and goes nowhere but up, or nowhere.
+bool rises(const Leg& leg);
+
+/// Whether a motion goes where its tool has cut, however corners were rounded: it is off as its
+/// cuts were, or leaves them upwards, all of its legs (`rises`).
+bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
+                  bool is_rapid);
 
 /// Takes off the lower bound of a pair, and adds to the upper one, how far its bodies may be off.
 ///

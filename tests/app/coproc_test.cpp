@@ -161,6 +161,20 @@ TEST(CoprocessorRun, PermitsNothingToAToolThatNobodyKnows) {
     EXPECT_EQ(permitted, (std::vector<bool>{true, true, false, false, true, true, true}));
 }
 
+TEST(CoprocessorRun, RefusesToTouchWhereRoundedCornersLeaveTheWayOpen) {
+    const test_support::ScopedFolder folder;
+    const std::string cut = "T1 M6\nG43 H1\nS1000 M3\nG64 P0.5\nG0 X-30 Y0 Z5\nZ-2\nG1 X0 F100\n";
+    const CoprocessorRun back_in_its_slot = beside_a_block(folder, cut + "G0 X-20\nZ5\n");
+    const CoprocessorRun back_as_it_cut = beside_a_block(folder, cut + "G1 X-20\nG0 Z5\n");
+    constexpr size_t back = 8;
+    ASSERT_EQ(back_in_its_slot.blocks.size(), 11U);
+    EXPECT_EQ(back_in_its_slot.check.blocks[back].result.verdict, core::Verdict::undecided);
+    EXPECT_FALSE(back_in_its_slot.blocks[back].permit.permitted);
+    EXPECT_EQ(agreement(back_in_its_slot).refused, 1U);
+    EXPECT_EQ(back_as_it_cut.check.blocks[back].result.verdict, core::Verdict::clear);
+    EXPECT_EQ(agreement(back_as_it_cut).refused, 0U);
+}
+
 TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
     const auto run = run_beside_coprocessor(plate("clamped_plate.nc"));
     ASSERT_TRUE(run.has_value());
