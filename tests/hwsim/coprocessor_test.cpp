@@ -240,6 +240,28 @@ TEST(Coprocessor, CountsWhatItDid) {
               5 - static_cast<int64_t>(device.read(Counter::longest)));
 }
 
+TEST(Coprocessor, CountsAPermitAsLateFromTheFirstCycleBehindItsBudget) {
+    const auto asked = [](uint32_t budget) {
+        TestDevice device;
+        device.set_models({{{0, 0, 0}, 10, 5}}, {{{9'000, 0, 0}, 10, 5}});
+        device.clock(500);
+        Segment s = question(1, {.end = {100, 0, 0}}, 1);
+        s.budget = budget;
+        device.push(s);
+        EXPECT_TRUE(device.finish());
+        EXPECT_EQ(device.permitted(), 1U);
+        return device;
+    };
+    TestDevice free = asked(0);
+    EXPECT_EQ(free.read(Counter::least_slack), no_slack);
+    const auto taken = static_cast<uint32_t>(free.read(Counter::longest));
+    TestDevice in_time = asked(taken), late = asked(taken - 1);
+    EXPECT_EQ(in_time.read(Counter::missed), 0U);
+    EXPECT_EQ(static_cast<int64_t>(in_time.read(Counter::least_slack)), 0);
+    EXPECT_EQ(late.read(Counter::missed), 1U);
+    EXPECT_EQ(static_cast<int64_t>(late.read(Counter::least_slack)), -1);
+}
+
 /// A device at work, one push every so many cycles.
 struct Work {
     TestDevice device;

@@ -291,6 +291,26 @@ TEST(Driver, GoesOnAfterAWrongBit) {
     }
 }
 
+TEST(Driver, GivesLinesBackThatAStopHeld) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_of(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
+    const uint32_t lines = driver.space.next;
+    for (int i = 0; i < 400; ++i) {
+        const SlotNumber clamp =
+            load_records(driver, Side::work, {{{400'000, 0, 0}, 1'000, 1'000}}).value();
+        // The first is refused, and what was pushed behind it is forgotten.
+        for (const double z : {-4.0, 30.0, 30.0})
+            ASSERT_TRUE(push(driver, {{0, 0, z}, {1, 0, z}, {{tool, work, 1.0}}}));
+        unload(driver, clamp);
+        ASSERT_EQ(wait_for_all(driver).stop, Stop::violation);
+        recover(driver);
+        EXPECT_TRUE(driver.released.empty());
+    }
+    EXPECT_LT(driver.space.next, lines + 10);
+}
+
 TEST(Driver, GoesOnAfterAMemoryThatTookNoLines) {
     EmulatedDevice device = emulated_device(bench_config()).value();
     Driver driver = open_device(port_of(device)).value();

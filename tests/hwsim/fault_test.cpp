@@ -1,66 +1,7 @@
-#include <gtest/gtest.h>
-
-#include "tests/hwsim/test_device.h"
+#include "tests/hwsim/faulty_device.h"
 
 namespace hwsim {
 namespace {
-
-const Record tool{{0, 0, 0}, 100, 50};
-const Record far_away{{5'000, 0, 0}, 0, 0};
-
-/// Posts in a slanted row, beside which boxes tell little: a search has something to read.
-std::vector<Record> row_of_posts() {
-    std::vector<Record> posts;
-    for (int32_t i = 0; i < 64; ++i) posts.push_back({{i * 100, 3'000 + i * 60, 0}, 500, 40});
-    return posts;
-}
-
-/// Keeps some 2450 from the row.
-Segment along_the_row(uint32_t sequence) {
-    return question(sequence, {.log2_steps = 6, .start = {0, 0, 0}, .end = {6'300, 3'780, 0}},
-                    2'300);
-}
-
-/// A device with models, of which the first segment has been permitted.
-TestDevice working_device(const DeviceConfig& config = small_config()) {
-    TestDevice device(config);
-    device.set_models({tool}, row_of_posts());
-    device.push(along_the_row(1));
-    EXPECT_TRUE(device.finish());
-    EXPECT_EQ(device.permitted(), 1U);
-    EXPECT_EQ(device.reason(), Stop::none);
-    return device;
-}
-
-/// The device has stopped for this reason at this segment, and does nothing whatever comes.
-void expect_stopped(TestDevice& device, Stop reason, uint32_t permitted = 1) {
-    EXPECT_TRUE(device.has_status(status_stopped));
-    EXPECT_EQ(device.reason(), reason);
-    EXPECT_EQ(device.permitted(), permitted);
-    EXPECT_EQ(device.read(Register::stop_seq), permitted + 1);
-    EXPECT_NE(device.read(Register::irq_pending) & irq_stop, 0U);
-    device.push(along_the_row(permitted + 1));
-    device.clock(3'000);
-    EXPECT_EQ(device.permitted(), permitted);
-    EXPECT_EQ(device.reason(), reason);
-}
-
-/// Once its reason is cleared the device takes its models anew and goes on behind its last permit.
-void expect_recovers(TestDevice& device) {
-    const uint32_t permitted = device.permitted();
-    device.write(Register::control, control_clear | control_enable);
-    EXPECT_EQ(device.reason(), Stop::none);
-    EXPECT_FALSE(device.has_status(status_stopped));
-    for (const ModelSlot& slot : device.state.slots) EXPECT_FALSE(slot.valid);
-    device.clock(3'000);
-    EXPECT_EQ(device.permitted(), permitted);
-    EXPECT_EQ(device.read(Register::next_seq), permitted + 1);
-    device.set_models({tool}, row_of_posts());
-    device.push_in_time(along_the_row(permitted + 1));
-    EXPECT_TRUE(device.finish());
-    EXPECT_EQ(device.permitted(), permitted + 1);
-    EXPECT_EQ(device.reason(), Stop::none);
-}
 
 TEST(Fault, AViolationIsLatched) {
     TestDevice device = working_device();
@@ -301,56 +242,6 @@ TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
     expect_recovers(device);
 }
 
-TEST(Fault, AMemoryThatDoesNotAnswerStopsTheDevice) {
-    for (const uint32_t delay : {0U, 1U, 20U, 50U}) {
-        TestDevice device;
-        device.set_models({tool}, row_of_posts());
-        device.clock(200);
-        device.push(along_the_row(1));
-        device.clock(delay);
-        device.state.memory.stalled = true;
-        device.clock(900);
-        EXPECT_EQ(device.reason(), Stop::none);
-        device.clock(300);
-        expect_stopped(device, Stop::memory_stalled, 0);
-        device.state.memory.stalled = false;
-        // Whether the old requests are answered by now, or still to come.
-        device.clock(delay == 1 ? 0 : 100);
-        expect_recovers(device);
-    }
-}
-
-TEST(Fault, AMemoryThatTakesNoLinesStopsTheDevice) {
-    TestDevice device = working_device();
-    device.clock(5'000);
-    device.state.memory.stalled = true;
-    ASSERT_TRUE(store(device.state, 4'000, {}));
-    device.clock(1'000);
-    EXPECT_EQ(device.reason(), Stop::none);
-    device.clock(2);
-    expect_stopped(device, Stop::memory_stalled);
-    device.state.memory.stalled = false;
-    expect_recovers(device);
-}
-
-TEST(Fault, ALineThatWaitsForReadsIsNoStall) {
-    DeviceConfig config = small_config();
-    config.memory_limit = 400;
-    config.cycles_per_line = 40;
-    TestDevice device(config);
-    ASSERT_TRUE(store(device.state, 4'000, {}));
-    for (int cycle = 0; cycle < 2'000; ++cycle) {
-        if (accepts(device.state.memory))
-            device.state.memory.asked.push({{.valid = true, .run = 99}, device.state.cycle});
-        device.clock();
-    }
-    EXPECT_FALSE(device.state.memory.writes.empty());
-    EXPECT_EQ(device.reason(), Stop::none);
-    device.clock(500);
-    EXPECT_TRUE(device.state.memory.writes.empty());
-    EXPECT_EQ(device.reason(), Stop::none);
-}
-
 TEST(Fault, BehindTheLastNumberNothingIsTakenIn) {
     constexpr uint32_t last = 0xFFFF'FFFF;
     TestDevice device = working_device();
@@ -389,7 +280,7 @@ TEST(Fault, AHostWithoutHeartbeatGetsNoMorePermits) {
 }
 
 TEST(Fault, EveryReasonToStopHasItsTest) {
-    // none, and the twelve above: a new one asks for a test of its own.
+    // None, the eleven of this file and memory_stalled: a new one asks for a test of its own.
     EXPECT_EQ(stop_count, 13);
 }
 
