@@ -214,6 +214,7 @@ core::Result<size_t> update_stock(Driver& driver, SlotNumber number, const core:
         || !driver.slots[index_of(number)].stock)
         return core::fail(core::ErrorCode::invalid_value, "only a stock can be cut");
     Driver::Slot& slot = driver.slots[index_of(number)];
+    if (is_current(*slot.stock, stock.columns)) return 0;
     FEELER_TRY(const StockUpdate done, update(*slot.stock, driver.space, stock.columns));
     slot.header = done.header;
     slot.epoch = done.epoch;

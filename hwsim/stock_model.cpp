@@ -124,6 +124,13 @@ std::vector<LineRun> lines_of(const StockModel& model) {
     return runs;
 }
 
+bool is_current(const StockModel& model, const ScanLines& columns) {
+    if (!model.header) return false;
+    for (size_t tile = 0; tile < model.tiles.size(); ++tile)
+        if (columns.tile(tile) != model.columns.tile(tile)) return false;
+    return true;
+}
+
 core::Result<StockUpdate> update(StockModel& model, LineSpace& space, const ScanLines& columns) {
     assert(columns.u_count() == model.columns.u_count()
            && columns.v_count() == model.columns.v_count());

@@ -38,6 +38,9 @@ std::vector<LineRun> lines_of(const StockModel& model);
 
 StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
 
+/// Whether these are the columns that were taken last.
+bool is_current(const StockModel& model, const core::ScanLines& columns);
+
 /// Takes over the columns as they are now: makes the lines of all tiles that the columns do not
 /// share with those taken before, of what is above them, and of a new header. No line that the
 /// device may be reading is touched.

@@ -203,19 +203,8 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
     if (auto done = bring_up_to_date(at); !done) return done;
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
-        core::Pair pair{body.kind, {}, body.carried};
-        const auto question = [&](const core::Mount& mount) {
-            const core::Allowance allowance = allowance_of(*setup_, pair);
-            const double off = off_way(pair, at.off_motion, at.corners);
-            // Bodies may touch where nothing is known to be farther off than what is contact.
-            const bool may_touch =
-                allowance.distance <= core::resolution
-                && (off <= contact_depth(allowance) || (!pair.fixture && at.follows));
-            return Question{body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
-                            allowance, off,  may_touch};
-        };
         if (!cuts) {
-            const Question stock = question(setup_->stock_mount);
+            const Question stock = question(body, {}, leg, at);
             const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
                                                       : &CoprocessorCheck::ask_pair;
             if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
@@ -225,12 +214,26 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
             if (!at.fixtures_there[i] || is_exempt(setup_->machine, body, fixture)
                 || (cuts && fixture.expendable))
                 continue;
-            pair.fixture = i;
             FEELER_TRY(const SlotNumber work, model_of(i));
-            if (auto asked = ask_pair(question(fixture.mount), work, block); !asked) return asked;
+            if (auto asked = ask_pair(question(body, i, leg, at), work, block); !asked)
+                return asked;
         }
     }
     return {};
+}
+
+CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& body,
+                                                      std::optional<size_t> fixture,
+                                                      const core::Leg& leg, const At& at) const {
+    const core::Mount& mount = fixture ? setup_->fixtures[*fixture].mount : setup_->stock_mount;
+    const core::Pair pair{body.kind, fixture, body.carried};
+    const core::Allowance allowance = allowance_of(*setup_, pair);
+    const double off = off_way(pair, at.off_motion, at.corners);
+    // Bodies may touch where nothing is known to be farther off than what is contact.
+    const bool may_touch = allowance.distance <= core::resolution
+                           && (off <= contact_depth(allowance) || (!fixture && at.follows));
+    return {body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
+            allowance, off,  may_touch};
 }
 
 Result<void> CoprocessorCheck::bring_up_to_date(At& at) {

@@ -115,6 +115,8 @@ private:
     core::Result<void> ask_rest(At& at, PushedBlock& block);
     void hold(const std::optional<core::ToolNumber>& tool, At& at) const;
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
+    Question question(const core::MovingBody& body, std::optional<size_t> fixture,
+                      const core::Leg& leg, const At& at) const;
     core::Result<void> bring_up_to_date(At& at);
     void note_cut(const core::Leg& leg, At& at) const;
     core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, PushedBlock& block);

@@ -72,7 +72,7 @@ TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
 TEST(PermitTiming, AsksForWhatMovesNothingBehindTheLastMotion) {
     const std::vector<core::PermitMotion> plan = {{hop(1.0, 10), 0}};
     const ControlConfig short_sighted{.look_ahead = 1};
-    std::vector<BlockService> services(5, {1e-6});
+    std::vector<BlockService> services(5, {1e-6, false, 1e-6});
     const PermitTiming all = timed_with_permits(plan, services, short_sighted);
     EXPECT_FALSE(all.refused);
     EXPECT_LT(all.blocks[4].permitted, 1.1);
