@@ -96,16 +96,16 @@ void draw_answer(Frame& frame, const DeviceSheet& sheet) {
         wrapped_text(frame.fonts.small, color_of(frame, sheet.exact_tone), sheet.exact);
 }
 
-/// The way to what stops the machine, and off.
+/// The way to what holds the machine, and off.
 void draw_buttons(Frame& frame) {
-    const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const ImVec2 half(0.5F * (ImGui::GetContentRegionAvail().x - gap), 0);
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x;
     ImGui::BeginDisabled(frame.model.device.study->stops.empty());
-    if (ImGui::Button("Next stop", half)) frame.perform(Command::next_stop);
+    if (ImGui::Button("Next late or refused", ImVec2(0.62F * room, 0)))
+        frame.perform(Command::next_stop);
     ImGui::EndDisabled();
     tip(frame, tip_of(Command::next_stop));
     ImGui::SameLine();
-    if (ImGui::Button("Switch off", half)) switch_off_device(frame.model);
+    if (ImGui::Button("Switch off", ImVec2(0.38F * room, 0))) switch_off_device(frame.model);
     tip(frame, "Ends the run, and takes slack off the timeline");
 }
 

@@ -66,32 +66,41 @@ std::string answer_words(const Subject& subject) {
     return {};
 }
 
+/// Verdict and clearance of the exact engine, as the inspector may have no room beside the device.
+std::string exact_words(const ViewModel& model, const Subject& subject) {
+    const std::string verdict = core::name_of(subject.exact().verdict);
+    const BlockRow& row = model.row();
+    if (!row.is_known || !row.lower) return verdict;
+    return fmt::format("{}, {}{} {}", verdict, row.upper ? "" : "> ",
+                       length_text(model, *row.lower, row.upper ? 2 : 0), length_unit(model));
+}
+
 /// How the exact engine stands to the answer.
-void compare(const Subject& subject, DeviceSheet& sheet) {
+void compare(const Subject& subject, const std::string& exact, DeviceSheet& sheet) {
     if (subject.answer() == DeviceAnswer::nothing) return;
     EngineAgreement both;
     add(both, subject.block().permit, subject.exact());
-    const std::string verdict = core::name_of(subject.exact().verdict);
+    const bool is_undecided = subject.exact().verdict == core::Verdict::undecided;
+    sheet.exact = "The exact engine says " + exact;
     if (both.missed > 0) {
-        sheet.exact = "The exact engine finds a " + verdict + " here, which must not be permitted";
+        sheet.exact += ": this must not be permitted";
         sheet.exact_tone = Tone::bad;
-    } else if (both.not_asked > 0) {
-        sheet.exact = "The exact engine can be asked: " + verdict;
-        sheet.exact_tone = Tone::near;
-    } else if (subject.exact().verdict == core::Verdict::undecided) {
-        sheet.exact = "The exact engine leaves this block undecided";
+    } else if (both.not_asked > 0 || is_undecided) {
         sheet.exact_tone = Tone::near;
     } else if (both.false_alarms > 0) {
-        sheet.exact = "The exact engine clears this block: a false alarm, on the safe side";
+        sheet.exact += ": a false alarm, on the safe side";
         sheet.exact_tone = Tone::near;
     } else {
-        sheet.exact = "The exact engine agrees: " + verdict;
+        sheet.exact = "The exact engine agrees: " + exact;
     }
 }
 
 DevicePart time_part(const Subject& subject) {
     const BlockTiming& timing = subject.timing();
-    DevicePart part{"Time", {}, false};
+    DevicePart part{subject.study.held && subject.index > *subject.study.held
+                        ? "Time, what was refused being let"
+                        : "Time",
+                    {}};
     if (!std::isfinite(timing.asked)) return part;
     const auto after = [&](const char* name, double time) {
         if (std::isfinite(time)) part.lines.push_back({name, "+" + time_text(time - timing.asked)});
@@ -112,8 +121,7 @@ DevicePart work_part(const Subject& subject) {
              {"segments", fmt::format("{}", block.permit.segments)},
              {"nodes", fmt::format("{}", block.nodes)},
              {"pairs", fmt::format("{}", block.pairs)},
-             {"lines", fmt::format("{}", lines)},
-             {"deepest", fmt::format("{}", block.after[Counter::deepest])}},
+             {"lines", fmt::format("{}", lines)}},
             true};
 }
 
@@ -126,6 +134,8 @@ DevicePart register_part(const Subject& subject) {
     if (stopped) part.lines.push_back({"STOP_SEQ", fmt::format("{}", report.stop_sequence)});
     if (report.stop_line > 0)
         part.lines.push_back({"STOP_LINE", fmt::format("{}", report.stop_line)});
+    part.lines.push_back(
+        {"deepest stack", fmt::format("{}", subject.block().after[Counter::deepest])});
     return part;
 }
 
@@ -145,14 +155,17 @@ DevicePart share_part(const Subject& subject) {
 
 /// Blocks that are not permitted, and how many are late.
 void add_stops(const DeviceStudy& study, DevicePart& part) {
-    const auto refused = std::find_if(study.stops.begin(), study.stops.end(), [&](size_t block) {
-        return !study.result.run.blocks[block].permit.permitted;
-    });
+    const EngineAgreement& both = study.agreement;
+    const auto count = [&](const char* name, size_t blocks) {
+        part.lines.push_back({name, fmt::format("{} of {}", blocks, study.size()),
+                              blocks == 0 ? Tone::plain : Tone::bad});
+    };
+    count("refused", both.refused - both.not_asked);
+    if (both.not_asked > 0) count("not asked", both.not_asked);
+    if (study.held)
+        part.lines.push_back(
+            {"stands before", place_words(study, *study.held), Tone::bad, *study.held});
     const size_t late = study.result.timing.missed;
-    part.lines.push_back({"refused", fmt::format("{} of {}", study.agreement.refused, study.size()),
-                          refused == study.stops.end() ? Tone::plain : Tone::bad});
-    if (refused != study.stops.end())
-        part.lines.push_back({"stands before", place_words(study, *refused), Tone::bad, *refused});
     part.lines.push_back({"late", late == 0 ? "none" : fmt::format("{}", late),
                           late == 0 ? Tone::plain : Tone::bad});
     const PermitTiming& timing = study.result.timing;
@@ -163,7 +176,7 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
     const double slack = timing.blocks[*timing.tightest].slack();
     const Tone tone = slack < 0.0 ? Tone::bad : slack < study.near ? Tone::near : Tone::plain;
     part.lines.push_back({"least slack", time_text(slack), tone, timing.tightest});
-    part.lines.push_back({"", place_words(study, *timing.tightest), Tone::dim, timing.tightest});
+    part.lines.push_back({"at", place_words(study, *timing.tightest), Tone::dim, timing.tightest});
 }
 
 DevicePart run_part(const ViewModel& model) {
@@ -180,7 +193,9 @@ DevicePart run_part(const ViewModel& model) {
     part.lines.push_back({"device", fmt::format("{} x {}, {} MHz", device.elements, device.threads,
                                                 device.clock_mhz)});
     const auto best = smallest(study.result.fits);
-    std::string enough = model.device.is_running ? "looked for" : "none was found";
+    std::string enough = "none of those tried";
+    if (model.device.is_running)
+        enough = fmt::format("looked for: {:.0f} %", 100.0 * model.device.share);
     if (best)
         enough = fmt::format("{} element{}, {} MHz", best->elements, best->elements == 1 ? "" : "s",
                              *best->clock_mhz);
@@ -204,7 +219,7 @@ DeviceSheet device_sheet(const ViewModel& model) {
         if (slack && *slack < study.near) sheet.tone = Tone::near;
         if (stops_machine(subject.answer())) sheet.tone = Tone::bad;
         sheet.answer = answer_words(subject);
-        compare(subject, sheet);
+        compare(subject, exact_words(model, subject), sheet);
         sheet.parts = {time_part(subject), run_part(model), work_part(subject),
                        register_part(subject), share_part(subject)};
     }
@@ -224,9 +239,7 @@ std::string device_status(const ViewModel& model) {
         return words;
     }
     if (!model.program) return "Waits for the program \xE2\x80\xA6";
-    if (!device.is_running) return {};
-    if (device.study)
-        return fmt::format("Tries other devices \xE2\x80\xA6 {:.0f} %", 100.0 * device.share);
+    if (!device.is_running || device.study) return {};
     if (device.blocks == 0) return "Brings the stock into the device \xE2\x80\xA6";
     return fmt::format("Asks for block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
                        100.0 * device.share);

@@ -34,6 +34,7 @@ std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result) {
         const TimelineCell cell = slack_cell(*study, i);
         study->slack.set(i, cell);
         if (cell.offending) study->stops.push_back(i);
+        if (!study->held && !study->result.run.blocks[i].permit.permitted) study->held = i;
     }
     return study;
 }

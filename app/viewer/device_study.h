@@ -21,9 +21,10 @@ struct DeviceStudy {
     CoprocessorResult result; // with every refused block let, so that all have their times
     DeviceFigures figures;
     EngineAgreement agreement;
-    MinimumTree slack;         // cells: seconds between permit and need
-    std::vector<size_t> stops; // blocks that are late or not permitted, in order
-    double near = 0.0;         // slack below which there is little of it, seconds
+    MinimumTree slack;          // cells: seconds between permit and need
+    std::vector<size_t> stops;  // blocks that are late or not permitted, in order
+    std::optional<size_t> held; // the first that is not permitted: the machine stands before it
+    double near = 0.0;          // slack below which there is little of it, seconds
 
     size_t size() const { return result.run.blocks.size(); }
 };

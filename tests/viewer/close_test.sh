@@ -57,6 +57,12 @@ expect 'it plays while it is checked' 'block [1-9][0-9]+ of'
 picture 02-playing
 close 'while it plays and is checked'
 
+open_window "$work/raster.nc" --setup "$work/raster.toml" --coprocessor
+expect 'the coprocessor is at work beside the check' 'coprocessor: running'
+sleep 2
+press d d d
+close 'while the coprocessor is run'
+
 open_raster
 expect 'is open' 'block 0 of'
 press End

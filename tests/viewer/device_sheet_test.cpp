@@ -33,7 +33,7 @@ TEST(DeviceSheet, TellsTheSlackOfWhatIsPermitted) {
     EXPECT_EQ(sheet.number, "125.0 ms");
     EXPECT_EQ(sheet.tone, Tone::plain);
     EXPECT_EQ(sheet.answer, "Permitted in time");
-    EXPECT_EQ(sheet.exact, "The exact engine agrees: clear");
+    EXPECT_EQ(sheet.exact, "The exact engine agrees: clear, 5.00 mm");
     EXPECT_EQ(value_of(sheet, "asked at"), "250.0 ms");
     EXPECT_EQ(value_of(sheet, "permitted"), "+750.0 ms");
     EXPECT_EQ(value_of(sheet, "due"), "+875.0 ms");
@@ -54,7 +54,7 @@ TEST(DeviceSheet, NamesThePairOfWhatIsRefused) {
     EXPECT_EQ(sheet.number, "refused");
     EXPECT_EQ(sheet.tone, Tone::bad);
     EXPECT_EQ(sheet.answer, "flutes / stock come nearer than they may");
-    EXPECT_EQ(sheet.exact, "The exact engine agrees: violation");
+    EXPECT_EQ(sheet.exact, "The exact engine agrees: violation, 5.00 mm");
     EXPECT_EQ(value_of(sheet, "STOP"), "violation");
     EXPECT_EQ(value_of(sheet, "STOP_SEQ"), "4");
     EXPECT_EQ(value_of(sheet, "answered"), "+250.0 ms") << "that is no permit";
@@ -72,7 +72,9 @@ TEST(DeviceSheet, SaysWhyABlockCannotBeAsked) {
     EXPECT_EQ(sheet.number, "not asked");
     EXPECT_EQ(sheet.tone, Tone::bad);
     EXPECT_EQ(sheet.answer, "Not permitted: a body turns");
-    EXPECT_EQ(sheet.exact, "The exact engine can be asked: clear");
+    EXPECT_EQ(value_of(sheet, "refused"), "0 of 1");
+    EXPECT_EQ(value_of(sheet, "not asked"), "1 of 1");
+    EXPECT_EQ(sheet.exact, "The exact engine says clear, 5.00 mm");
 }
 
 TEST(DeviceSheet, SaysHowLateAPermitCame) {
@@ -124,6 +126,8 @@ TEST(DeviceSheet, LeadsToTheBlockBeforeWhichTheMachineStands) {
     EXPECT_EQ(stands->block, 2U);
     EXPECT_EQ(stands->value, "block 2, line 12");
     EXPECT_EQ(value_of(sheet_at(model, 0), "refused"), "2 of 4");
+    EXPECT_EQ(sheet_at(model, 2).parts[0].title, "Time");
+    EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, what was refused being let");
 }
 
 TEST(DeviceStatus, TellsWhatGoesOn) {
@@ -131,7 +135,8 @@ TEST(DeviceStatus, TellsWhatGoesOn) {
     EXPECT_EQ(device_status(model), "");
     model.device.is_running = true;
     model.device.share = 0.5;
-    EXPECT_EQ(device_status(model), "Tries other devices \xE2\x80\xA6 50 %");
+    EXPECT_EQ(device_status(model), "") << "the answers are there";
+    EXPECT_EQ(value_of(device_sheet(model), "would do"), "looked for: 50 %");
     model.device.study = nullptr;
     EXPECT_EQ(device_status(model), "Brings the stock into the device \xE2\x80\xA6");
     model.device.blocks = 7;

@@ -47,6 +47,14 @@ differ front.png block.png
 shot sheet.png --sheet
 is_rich sheet.png
 
+shot device.png --worst --coprocessor --size 1280x800
+is_rich device.png
+shot no-device.png --worst --size 1280x800
+differ device.png no-device.png
+printf '[device]\nelements = 1\nclock_mhz = 1\n' >"$work/device.toml"
+shot slow.png --worst --device "$work/device.toml" --size 1280x800
+differ device.png slow.png
+
 shot steps.png --from 18 --to 18 --no-ui --size 320x200
 [[ -s $pictures/steps-0001.png && -s $pictures/steps-0002.png ]] || die 'numbered pictures'
 if command -v ffmpeg >/dev/null; then
@@ -72,6 +80,9 @@ refused --block 46
 refused --finding 99
 refused --size 10x10
 refused --size wide
+printf 'elements = 1\n' >"$work/device.toml"
+refused --device "$work/device.toml"
+refused --device "$work/none.toml"
 refused --from 9 --to 3
 
 status=0
