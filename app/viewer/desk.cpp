@@ -22,16 +22,22 @@ void place(Frame& frame, Panel& panel, const char* name, const Area& area, ImVec
     ImGui::EndChild();
 }
 
-/// A line between two panels that can be dragged; returns how far.
+/// A line between two panels that can be dragged; returns how far. It is a window of its own, as it
+/// lies upon the panels, which would have the mouse otherwise.
 float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
     ImGui::SetCursorScreenPos(area.corner());
-    ImGui::InvisibleButton(name, area.size());
-    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    ImGui::BeginChild(name, area.size(), false,
+                      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground
+                          | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNav);
+    ImGui::InvisibleButton("line", area.size());
+    const bool is_dragged = ImGui::IsItemActive();
+    if (ImGui::IsItemHovered() || is_dragged) {
         ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
         ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), area.far_corner(),
                                                   frame.look.color(Role::accent, 0.6));
     }
-    if (!ImGui::IsItemActive()) return 0.0F;
+    ImGui::EndChild();
+    if (!is_dragged) return 0.0F;
     return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }
 
