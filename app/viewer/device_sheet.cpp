@@ -10,6 +10,8 @@ namespace {
 
 using hwsim::Counter;
 
+const std::string no_value = "\xE2\x80\x94";
+
 /// The block that is shown, and what is known of it.
 struct Subject {
     const DeviceStudy& study;
@@ -29,9 +31,7 @@ std::string percent(double share) {
     return fmt::format("{:.{}f} %", 100.0 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0);
 }
 
-std::string percent(std::optional<double> share) {
-    return share ? percent(*share) : "\xE2\x80\x94";
-}
+std::string percent(std::optional<double> share) { return share ? percent(*share) : no_value; }
 
 std::string place_words(const DeviceStudy& study, size_t block) {
     return fmt::format("block {}, line {}", block, study.result.run.check.blocks[block].line);
@@ -41,7 +41,7 @@ std::string number_of(const Subject& subject) {
     if (subject.answer() == DeviceAnswer::refused) return "refused";
     if (subject.answer() == DeviceAnswer::not_asked) return "not asked";
     const auto slack = slack_of(&subject.study, subject.index);
-    return slack ? time_text(*slack) : "\xE2\x80\x94";
+    return slack ? time_text(*slack) : no_value;
 }
 
 std::string answer_words(const Subject& subject) {
@@ -77,7 +77,6 @@ std::string exact_words(const ViewModel& model, const Subject& subject) {
 
 /// How the exact engine stands to the answer.
 void compare(const Subject& subject, const std::string& exact, DeviceSheet& sheet) {
-    if (subject.answer() == DeviceAnswer::nothing) return;
     EngineAgreement both;
     add(both, subject.block().permit, subject.exact());
     const bool is_undecided = subject.exact().verdict == core::Verdict::undecided;
@@ -98,12 +97,13 @@ void compare(const Subject& subject, const std::string& exact, DeviceSheet& shee
 DevicePart time_part(const Subject& subject) {
     const BlockTiming& timing = subject.timing();
     DevicePart part{subject.study.held && subject.index > *subject.study.held
-                        ? "Time, what was refused being let"
+                        ? "Time, past what was refused"
                         : "Time",
                     {}};
-    if (!std::isfinite(timing.asked)) return part;
+    // All are there for every block, so that nothing moves when somebody steps.
     const auto after = [&](const char* name, double time) {
-        if (std::isfinite(time)) part.lines.push_back({name, "+" + time_text(time - timing.asked)});
+        part.lines.push_back(
+            {name, std::isfinite(time) ? "+" + time_text(time - timing.asked) : no_value});
     };
     part.lines.push_back({"asked at", timing.asked > 0.0 ? time_text(timing.asked) : "the start"});
     after(subject.block().permit.permitted ? "permitted" : "answered", timing.permitted);
@@ -131,9 +131,8 @@ DevicePart register_part(const Subject& subject) {
     DevicePart part{"Registers behind it",
                     {{"PERMIT_SEQ", fmt::format("{}", report.permitted)},
                      {"STOP", name_of(report.stop), stopped ? Tone::bad : Tone::plain}}};
-    if (stopped) part.lines.push_back({"STOP_SEQ", fmt::format("{}", report.stop_sequence)});
-    if (report.stop_line > 0)
-        part.lines.push_back({"STOP_LINE", fmt::format("{}", report.stop_line)});
+    part.lines.push_back({"STOP_SEQ", fmt::format("{}", report.stop_sequence)});
+    part.lines.push_back({"STOP_LINE", fmt::format("{}", report.stop_line)});
     part.lines.push_back(
         {"deepest stack", fmt::format("{}", subject.block().after[Counter::deepest])});
     return part;
@@ -210,7 +209,7 @@ DeviceSheet device_sheet(const ViewModel& model) {
     const Subject subject{study, model.cursor.block};
     DeviceSheet sheet;
     if (subject.answer() == DeviceAnswer::unknown) {
-        sheet.number = "\xE2\x80\x94";
+        sheet.number = no_value;
         sheet.answer = answer_words(subject);
         sheet.parts = {run_part(model)};
     } else {

@@ -41,7 +41,7 @@ TEST(DeviceSheet, TellsTheSlackOfWhatIsPermitted) {
     EXPECT_EQ(value_of(sheet, "busy"), "25 %") << "2000 of 1000 cycles of 8 elements";
     EXPECT_EQ(value_of(sheet, "PERMIT_SEQ"), "3");
     EXPECT_EQ(value_of(sheet, "STOP"), "none");
-    EXPECT_FALSE(line_named(sheet, "STOP_SEQ"));
+    EXPECT_EQ(value_of(sheet, "STOP_LINE"), "0");
 }
 
 TEST(DeviceSheet, WarnsOfLittleSlack) {
@@ -91,7 +91,8 @@ TEST(DeviceSheet, GivesNoSlackWhereThereIsNothingToAsk) {
     const DeviceSheet sheet = sheet_of(viewer_test::nothing());
     EXPECT_EQ(sheet.number, "\xE2\x80\x94");
     EXPECT_EQ(sheet.answer, "Permitted: there is nothing to ask");
-    EXPECT_EQ(sheet.exact, "");
+    EXPECT_EQ(value_of(sheet, "due"), "\xE2\x80\x94");
+    EXPECT_EQ(sheet.exact, "The exact engine agrees: clear, 5.00 mm");
 }
 
 TEST(DeviceSheet, KnowsNothingOfBlocksBeyondTheRun) {
@@ -127,7 +128,7 @@ TEST(DeviceSheet, LeadsToTheBlockBeforeWhichTheMachineStands) {
     EXPECT_EQ(stands->value, "block 2, line 12");
     EXPECT_EQ(value_of(sheet_at(model, 0), "refused"), "2 of 4");
     EXPECT_EQ(sheet_at(model, 2).parts[0].title, "Time");
-    EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, what was refused being let");
+    EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, past what was refused");
 }
 
 TEST(DeviceStatus, TellsWhatGoesOn) {

@@ -10,6 +10,18 @@ source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
 cp "$assets/programs/clamped_plate_low.nc" "$work/plate.nc"
 printf '[device]\nelements = 2\n' >"$work/device.toml"
 
+# drag FROM TO: an upright edge, from one X to another, as slowly as a hand.
+drag() {
+    xdotool mousemove "$1" 300
+    sleep 0.4
+    xdotool mousedown 1
+    sleep 0.4
+    xdotool mousemove "$2" 300
+    sleep 0.3
+    xdotool mouseup 1
+    sleep 0.3
+}
+
 open_window "$work/plate.nc" --setup "$assets/setups/clamped_plate.toml"
 xdotool windowsize "$window" 1280 800
 expect 'it begins without the panel' '^plate.nc, line 2 \(block 0 of 45\) - feeler$'
@@ -30,12 +42,20 @@ picture 02-panel
 # The row of slack at this size, above what clearance shows of a violation.
 row() { convert "$pictures/$1.png" -crop 1280x10+0+742 -fill black +opaque '#FF5A36' -format '%[fx:mean]' info:; }
 [[ $(row 01-without) == 0 && $(row 02-panel) != 0 ]] || die 'refusals stand on the timeline'
+click 1140 392
+expect 'a click goes to the block before which the machine stands' 'block 38 of 45, violation'
+drag 982 950 # the panel's edge
+drag 369 340 # that of the list
+press End
+expect 'End' 'block 45 of 45'
 press d
 expect 'D hides the panel' 'block 45 of 45\) - feeler'
 picture 03-hidden
 [[ $(row 03-hidden) != 0 ]] || die 'slack stays on the timeline'
 press ctrl+q
 ended 'with a device that has answered'
+grep -Eq 'device_width = 33[12]' "$work/config/feeler/view.toml" || die 'the panel was made wider'
+grep -Eq 'list_width = 34[34]' "$work/config/feeler/view.toml" || die 'the list was made narrower'
 
 open_window "$work/plate.nc" --setup "$assets/setups/clamped_plate.toml" --device "$work/device.toml"
 expect 'a device that was asked for is run from the beginning' 'coprocessor: nothing to ask - '

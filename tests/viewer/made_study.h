@@ -36,7 +36,9 @@ inline app::CoprocessorResult result_of(const std::vector<MadeAnswer>& answers) 
         if (answer.stop == hwsim::Stop::violation) block.permit.pair = core::Pair{};
         block.permit.report = {.permitted = static_cast<uint32_t>(3 * i + 3),
                                .stop = answer.stop,
-                               .stop_sequence = static_cast<uint32_t>(3 * i + 4)};
+                               .stop_sequence = answer.stop == hwsim::Stop::none
+                                                    ? 0U
+                                                    : static_cast<uint32_t>(3 * i + 4)};
         block.cycles = 1000;
         block.nodes = 12;
         counted.counters[static_cast<size_t>(hwsim::Counter::cycles)] += 1000;
