@@ -68,7 +68,7 @@ std::string answer_words(const Subject& subject) {
 
 /// Verdict and clearance of the exact engine, as the inspector may have no room beside the device.
 std::string exact_words(const ViewModel& model, const Subject& subject) {
-    const std::string verdict = core::name_of(subject.exact().verdict);
+    std::string verdict = core::name_of(subject.exact().verdict);
     const BlockRow& row = model.row();
     if (!row.is_known || !row.lower) return verdict;
     return fmt::format("{}, {}{} {}", verdict, row.upper ? "" : "> ",
