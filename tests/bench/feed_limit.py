@@ -27,7 +27,7 @@ JOBS = (  # program, set-up
 )
 PRECISION = 1.05
 MOST = 1024.0  # times the programmed feed
-BUS_CYCLES = 60  # to push a segment and to look at the status: 15 words of 4 cycles
+BUS_CYCLES = 56  # to look at the status and to push a segment: 14 accesses of 4 cycles
 
 
 def bracket(keeps_up, most=MOST, precision=PRECISION):

@@ -107,8 +107,8 @@ class Reports(unittest.TestCase):
         self.assertAlmostEqual(feed_limit.without_braking(report(blocks))[0], 2.0 / 1e-5)
         self.assertEqual(feed_limit.without_braking(report(blocks[:2])), (math.inf, None))
 
-    def test_the_bus_has_sixty_cycles_of_a_segment(self):
-        self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=2000)])), 0.4)
+    def test_the_bus_has_56_cycles_of_a_segment(self):
+        self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=1800)])), 0.4)
         self.assertEqual(feed_limit.bus_share(report([block(0, cycles=500)])), 1.0)
 
     def test_the_reason_is_the_look_ahead_a_crowd_the_block_or_those_before_it(self):
@@ -155,7 +155,7 @@ class Program(unittest.TestCase):
                                   capture_output=True, text=True, check=True)
         cells = [cell.strip() for cell in done.stdout.splitlines()[-1].strip("|").split("|")]
         self.assertEqual(cells[0], "`parallel`")
-        self.assertEqual(cells[1:5], ["50 %", "1000000", "300000000", "7"])
+        self.assertEqual(cells[1:5], ["47 %", "1000000", "300000000", "7"])
         self.assertTrue(10.0 < float(cells[5]) <= 10.5)
         self.assertAlmostEqual(float(cells[6]), 300.0 * float(cells[5]), delta=20.0)
         self.assertEqual(cells[7:], ["7", "device: the blocks before it"])
