@@ -68,34 +68,62 @@ def feeds(trace):
     return found
 
 
+def asked_after(blocks, ahead):
+    """For each block the moment by plan at which it is asked for: when the machine enters the first one that
+    moves and is no more than the look-ahead before it."""
+    entered, moments = math.inf, [0.0] * len(blocks)
+    for j in reversed(range(len(blocks))):
+        if blocks[j]["entered"] is not None:
+            entered = blocks[j]["entered"]
+        if j + ahead < len(blocks):
+            moments[j + ahead] = entered
+    return moments
+
+
+def stretches(blocks, ahead):
+    """For each block but the first that moves: which seconds by plan there are for which cycles at least, as
+    many pairs as there are blocks before it to begin with.
+
+    A permit comes a block's cycles after it was asked for, and its interval after the one before it. For
+    the first permit the machine waits.
+    """
+    asked = asked_after(blocks, ahead)
+    first = next((i for i, b in enumerate(blocks) if b["entered"] is not None), len(blocks))
+    queue, intervals, begin = 0, [0], 0.0  # `queue`: cycles to a permit of those asked for at the start
+    for i, block in enumerate(blocks):
+        if i == first:
+            begin = block["entered"]
+        queue = max(queue + block["interval"], block["cycles"] if asked[i] <= begin else 0)
+        intervals.append(intervals[-1] + block["interval"])
+        if i == first:
+            waited = queue
+        if i <= first or block["entered"] is None:
+            continue
+        pairs = [(block["entered"] - begin, queue - waited)]
+        pairs += [(block["entered"] - asked[j],
+                   blocks[j]["cycles"] + intervals[i + 1] - intervals[j + 1])
+                  for j in range(first + 1, i + 1) if asked[j] > begin]
+        yield block, pairs
+
+
 def without_braking(report):
     """The least override at which a permit would come after its block is reached, and that block: what
     limits a machine that stops at once. The report must be of a run in which nothing was late.
-
-    Block i is late if the device, from when block j was asked for until i is reached, has not the time for
-    all blocks from j to i. Block j is asked for when the machine enters the one a look-ahead before it.
     """
-    ahead = report["config"]["control"]["look_ahead"]
     clock = 1e6 * report["config"]["device"]["clock_mhz"]
-    moving = [b for b in report["blocks"] if b["entered"] is not None]
-    done = [0.0]  # seconds of work up to a block and with it
-    for block in moving:
-        done.append(done[-1] + block["cycles"] / clock)
     least, late = math.inf, None
-    for i in range(1, len(moving)):
-        # Of those asked for at the start, the second: the machine waits for the first.
-        for j in [1] + list(range(ahead + 1, i + 1)):
-            work = done[i + 1] - done[j]
-            way = moving[i]["entered"] - moving[max(j - ahead, 0)]["entered"]
-            if way < least * work:
-                least, late = way / work, moving[i]
+    for block, pairs in stretches(report["blocks"], report["config"]["control"]["look_ahead"]):
+        override = min((clock * way / cycles for way, cycles in pairs if cycles > 0),
+                       default=math.inf)
+        if override < least:
+            least, late = override, block
     return least, late
 
 
 def bus_share(report):
     """How much of the device's time is the register bus, on which segments come."""
     segments = sum(block["segments"] for block in report["blocks"])
-    cycles = sum(block["cycles"] for block in report["blocks"])
+    cycles = sum(block["interval"] for block in report["blocks"])
     return min(1.0, BUS_CYCLES * segments / max(cycles, 1))
 
 
@@ -178,7 +206,8 @@ def main():
     if options.config:
         with open(options.config, encoding="utf-8") as file:
             config = file.read()
-    print("| set-up | bus | late without braking at | feed, mm/min | line | late at override | feed, mm/min | line | by |")
+    print("| set-up | bus | late without braking at | feed, mm/min | line "
+          "| late at override | feed, mm/min | line | by |")
     print("|---|---|---|---|---|---|---|---|---|")
     for program, setup in JOBS:
         if options.only not in (None, setup):

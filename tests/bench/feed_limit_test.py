@@ -14,8 +14,9 @@ import feed_limit
 
 
 def block(number, **what):
-    return {"block": number, "line": number + 5, "segments": 10, "cycles": 1000, "asked": 0.0,
-            "permitted": 0.1, "due": 1.0, "entered": float(number), "slack": 0.9} | what
+    known = {"block": number, "line": number + 5, "segments": 10, "cycles": 1000, "asked": 0.0,
+             "permitted": 0.1, "due": 1.0, "entered": float(number), "slack": 0.9} | what
+    return {"interval": known["cycles"]} | known
 
 
 def report(blocks, look_ahead=2, taken=None):
@@ -78,29 +79,39 @@ class Reports(unittest.TestCase):
         self.assertEqual(late["block"], 3)
 
     def test_without_braking_is_what_a_queue_does(self):
-        for seed in range(20):
+        for seed in range(40):
             rng = random.Random(seed)
-            blocks, entered = [], 0.0
+            blocks, entered = [], 0.001
             for i in range(30):
-                blocks.append(block(i, cycles=rng.randrange(1000, 200_000), entered=entered))
+                cycles = rng.randrange(1000, 200_000)
+                blocks.append(block(i, cycles=cycles, interval=rng.randrange(100, cycles),
+                                    entered=entered if rng.random() < 0.8 else None))
                 entered += rng.uniform(0.01, 2.0)
-            ahead = rng.randrange(1, 8)
+            ahead = rng.randrange(5, 9)  # so that something moves within it
             override, late = feed_limit.without_braking(report(blocks, look_ahead=ahead))
             self.assertEqual(self.late_in_queue(blocks, ahead, 0.999 * override), [])
             self.assertIn(late["block"], self.late_in_queue(blocks, ahead, 1.001 * override))
 
     @staticmethod
     def late_in_queue(blocks, ahead, override):
-        """The blocks that a device, one after the other, permits after they are reached."""
-        start = blocks[0]["cycles"] / 1e8
-        reached = [start + b["entered"] / override for b in blocks]
-        free, late = start, []
-        for i, each in enumerate(blocks[1:], 1):
-            asked = reached[i - ahead] if i > ahead else 0.0
-            free = max(free, asked) + each["cycles"] / 1e8
-            if free > reached[i]:
-                late.append(each["block"])
-        return late
+        """The blocks that the device permits after they are reached, block by block."""
+        moving = [i for i, b in enumerate(blocks) if b["entered"] is not None]
+        begin = blocks[moving[0]]["entered"]
+
+        def permits(start):
+            permitted = 0.0
+            for i, each in enumerate(blocks):
+                enters = next((k for k in moving if k >= i - ahead), moving[-1])
+                asked = 0.0
+                if enters != moving[0]:
+                    asked = start + (blocks[enters]["entered"] - begin) / override
+                permitted = max(permitted + each["interval"] / 1e8, asked + each["cycles"] / 1e8)
+                yield permitted
+
+        start = list(permits(0.0))[moving[0]]
+        permitted = list(permits(start))
+        return [i for i in moving[1:]
+                if permitted[i] > start + (blocks[i]["entered"] - begin) / override]
 
     def test_blocks_that_do_not_move_are_never_late(self):
         blocks = [block(0), block(1, entered=None, cycles=0), block(2)]
@@ -131,9 +142,9 @@ config = open(sys.argv[sys.argv.index("--config") + 1]).read()
 override = float(re.search(r"feed_override = (.*)", config).group(1))
 assert "elements = 3" in config
 late = override > 10.0
-first = {{"block": 0, "line": 6, "segments": 5, "cycles": 600, "asked": 0.0, "permitted": 0.1,
+first = {{"block": 0, "line": 6, "segments": 5, "cycles": 600, "interval": 600, "asked": 0.0, "permitted": 0.1,
          "due": None, "entered": 0.0, "slack": None}}
-block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "asked": 0.0, "permitted": 0.2,
+block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "interval": 600, "asked": 0.0, "permitted": 0.2,
          "due": 0.1 if late else 0.3, "entered": 6.0, "slack": -0.1 if late else 0.1}}
 print(json.dumps({{"config": {{"device": {{"clock_mhz": 100}}, "control": {{"look_ahead": 256}}}},
                   "totals": {{"missed": int(late), "taken": 9.0}}, "blocks": [first, block]}}))
