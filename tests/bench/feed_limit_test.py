@@ -34,7 +34,7 @@ class Bracket(unittest.TestCase):
             asked.append(override)
             return override < 37.0
 
-        kept, missed = feed_limit.bracket(keeps_up)
+        kept, missed = feed_limit.bracket(keeps_up, most=1000.0)
         self.assertLess(kept, 37.0)
         self.assertGreaterEqual(missed, 37.0)
         self.assertLessEqual(missed, 1.05 * kept)
@@ -44,9 +44,14 @@ class Bracket(unittest.TestCase):
         self.assertEqual(feed_limit.bracket(lambda override: False), (0.0, 1.0))
 
     def test_what_is_never_late_has_no_limit(self):
-        kept, missed = feed_limit.bracket(lambda override: True)
-        self.assertGreaterEqual(kept, feed_limit.MOST)
-        self.assertIsNone(missed)
+        self.assertEqual(feed_limit.bracket(lambda override: True, most=10.0), (10.0, None))
+
+    def test_nothing_beyond_the_greatest_override_is_tried(self):
+        asked = []
+        kept, missed = feed_limit.bracket(lambda override: asked.append(override) or override < 9.5,
+                                          most=10.0)
+        self.assertTrue(kept < 9.5 <= missed <= 10.0)
+        self.assertEqual(max(asked), 10.0)
 
 
 class Reports(unittest.TestCase):
@@ -141,7 +146,7 @@ assert "--past-refusals" in sys.argv and "--no-fit" in sys.argv
 config = open(sys.argv[sys.argv.index("--config") + 1]).read()
 override = float(re.search(r"feed_override = (.*)", config).group(1))
 assert "elements = 3" in config
-late = override > 10.0
+late = override > 6.0
 first = {{"block": 0, "line": 6, "segments": 5, "cycles": 600, "interval": 600, "asked": 0.0, "permitted": 0.1,
          "due": None, "entered": 0.0, "slack": None}}
 block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "interval": 600, "asked": 0.0, "permitted": 0.2,
@@ -167,7 +172,7 @@ class Program(unittest.TestCase):
         cells = [cell.strip() for cell in done.stdout.splitlines()[-1].strip("|").split("|")]
         self.assertEqual(cells[0], "`parallel`")
         self.assertEqual(cells[1:5], ["47 %", "1000000", "300000000", "7"])
-        self.assertTrue(10.0 < float(cells[5]) <= 10.5)
+        self.assertTrue(6.0 < float(cells[5]) <= 6.3)
         self.assertAlmostEqual(float(cells[6]), 300.0 * float(cells[5]), delta=20.0)
         self.assertEqual(cells[7:], ["7", "device: the blocks before it"])
 
