@@ -89,17 +89,6 @@ std::string blocks_text(const CheckRun& run) {
     return text + "\n";
 }
 
-const CheckedBlock* nearest_block(const CheckRun& run) {
-    const CheckedBlock* nearest = nullptr;
-    const auto margin = [](const CheckedBlock& block) {
-        return block.result.pairs[*block.result.deciding].margin();
-    };
-    for (const CheckedBlock& block : run.blocks)
-        if (block.result.deciding && (!nearest || margin(block) < margin(*nearest)))
-            nearest = &block;
-    return nearest;
-}
-
 std::string counts_text(const CheckRun& run) {
     std::map<core::Severity, size_t> counts;
     for (const core::Finding& finding : run.findings) ++counts[finding.severity];

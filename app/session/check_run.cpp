@@ -23,6 +23,17 @@ double least_clearance(const core::Setup& setup, const core::BlockResult& result
     return lower;
 }
 
+const CheckedBlock* nearest_block(const CheckRun& run) {
+    const CheckedBlock* nearest = nullptr;
+    const auto margin = [](const CheckedBlock& block) {
+        return block.result.pairs[*block.result.deciding].margin();
+    };
+    for (const CheckedBlock& block : run.blocks)
+        if (block.result.deciding && (!nearest || margin(block) < margin(*nearest)))
+            nearest = &block;
+    return nearest;
+}
+
 core::Result<CheckRun> run_check(const CheckJob& job) {
     FEELER_TRY(PreparedCheck check, prepare_check(job));
     const Stopwatch checking;

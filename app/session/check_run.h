@@ -68,6 +68,9 @@ struct CheckRun {
 /// What is known to be kept in a block by all pairs, where none decides; 0 if nothing is known.
 double least_clearance(const core::Setup& setup, const core::BlockResult& result);
 
+/// The block whose deciding pair has the least margin; null if no pair decides any block.
+const CheckedBlock* nearest_block(const CheckRun& run);
+
 /// How far a check has come.
 struct CheckProgress {
     size_t blocks = 0;

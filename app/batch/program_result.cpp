@@ -1,0 +1,200 @@
+#include "app/batch/program_result.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "app/session/digest.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+KeptError kept(const core::Error& error) {
+    return {error.file, error.where.line, error.where.column, error.message};
+}
+
+KeptFinding kept(const core::Finding& finding, const CheckRun& run) {
+    KeptFinding made{.rule = finding.rule,
+                     .severity = finding.severity,
+                     .message = finding.message,
+                     .cure = finding.cure,
+                     .pair = finding.pair,
+                     .shortfall = finding.shortfall};
+    if (!finding.block) return made;
+    const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
+    made.block = core::value_of(*finding.block);
+    made.line = block.line;
+    made.file = block.file;
+    made.text = block.text;
+    return made;
+}
+
+std::optional<Tightest> tightest_of(const CheckRun& run) {
+    const CheckedBlock* nearest = nearest_block(run);
+    if (!nearest) return {};
+    const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
+    Tightest tightest{
+        .block = core::value_of(nearest->block),
+        .line = nearest->line,
+        .pair = {core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair)},
+        .lower = pair.lower,
+        .allowance = pair.allowance.distance};
+    if (pair.found()) tightest.upper = pair.upper;
+    return tightest;
+}
+
+Json json_of(const KeptFinding& finding) {
+    return {{"rule", finding.rule},
+            {"severity", core::name_of(finding.severity)},
+            {"block", finding.block ? Json(*finding.block) : Json(nullptr)},
+            {"line", finding.line},
+            {"file", finding.file},
+            {"text", finding.text},
+            {"message", finding.message},
+            {"cure", finding.cure},
+            {"pair", finding.pair},
+            {"shortfall", finding.shortfall}};
+}
+
+Json json_of(const Tightest& tightest) {
+    return {{"block", tightest.block},
+            {"line", tightest.line},
+            {"pair", tightest.pair},
+            {"lower", tightest.lower},
+            {"upper", tightest.upper ? Json(*tightest.upper) : Json(nullptr)},
+            {"allowance", tightest.allowance}};
+}
+
+Json json_of(const KeptError& error) {
+    return {{"file", error.file},
+            {"line", error.line},
+            {"column", error.column},
+            {"message", error.message}};
+}
+
+/// The value of an enumeration with this name; throws, as the reader of JSON does.
+template <typename Enum, size_t count>
+Enum named_as(const std::string& name) {
+    for (size_t i = 0; i < count; ++i)
+        if (name == core::name_of(static_cast<Enum>(i))) return static_cast<Enum>(i);
+    throw std::invalid_argument("no value is called " + name);
+}
+
+template <typename Value>
+std::optional<Value> optional_from(const Json& json) {
+    return json.is_null() ? std::nullopt : std::optional<Value>(json.get<Value>());
+}
+
+KeptFinding finding_from(const Json& json) {
+    return {.rule = json.at("rule"),
+            .severity = named_as<core::Severity, 4>(json.at("severity")),
+            .block = optional_from<uint32_t>(json.at("block")),
+            .line = json.at("line"),
+            .file = json.at("file"),
+            .text = json.at("text"),
+            .message = json.at("message"),
+            .cure = json.at("cure"),
+            .pair = json.at("pair"),
+            .shortfall = json.at("shortfall")};
+}
+
+Tightest tightest_from(const Json& json) {
+    return {.block = json.at("block"),
+            .line = json.at("line"),
+            .pair = json.at("pair"),
+            .lower = json.at("lower"),
+            .upper = optional_from<double>(json.at("upper")),
+            .allowance = json.at("allowance")};
+}
+
+ProgramResult result_from(const Json& json) {
+    ProgramResult result{.program = json.at("program"),
+                         .setup = json.at("setup"),
+                         .sha256 = json.at("sha256"),
+                         .dialect = json.at("dialect"),
+                         .engine = json.at("engine"),
+                         .verdict = named_as<core::Verdict, 4>(json.at("verdict")),
+                         .assumptions = json.at("assumptions"),
+                         .blocks = json.at("blocks"),
+                         .cycle_time = json.at("cycle_time"),
+                         .removed = json.at("removed"),
+                         .seconds = json.at("seconds")};
+    if (const Json& error = json.at("error"); !error.is_null())
+        result.error = {error.at("file"), error.at("line"), error.at("column"),
+                        error.at("message")};
+    if (const Json& tightest = json.at("tightest"); !tightest.is_null())
+        result.tightest = tightest_from(tightest);
+    for (const Json& finding : json.at("findings"))
+        result.findings.push_back(finding_from(finding));
+    return result;
+}
+
+} // namespace
+
+ProgramResult result_of(const CheckRun& run, const std::string& setup) {
+    ProgramResult result{.program = run.program_file,
+                         .setup = setup,
+                         .sha256 = run.sha256,
+                         .dialect = std::string(gcode::dialect(run.dialect).name),
+                         .engine = name_of(run.engine),
+                         .verdict = run.verdict,
+                         .assumptions = run.assumptions,
+                         .blocks = run.blocks.size(),
+                         .cycle_time = run.cycle_time,
+                         .removed = run.removed,
+                         .tightest = tightest_of(run),
+                         .seconds = run.times.read + run.times.model + run.times.check};
+    if (run.stopped) result.error = kept(*run.stopped);
+    for (const core::Finding& finding : run.findings) result.findings.push_back(kept(finding, run));
+    return result;
+}
+
+ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
+    return {.program = job.program,
+            .setup = job.setup,
+            .sha256 = sha256_of_file(job.program),
+            .engine = name_of(job.engine),
+            .error = kept(error)};
+}
+
+int status_of(const ProgramResult& result) {
+    if (result.error) return 2;
+    const bool has_errors =
+        std::any_of(result.findings.begin(), result.findings.end(), [](const KeptFinding& finding) {
+            return finding.severity == core::Severity::error;
+        });
+    return has_errors ? 1 : 0;
+}
+
+std::string json_of(const ProgramResult& result) {
+    Json json = {{"program", result.program},
+                 {"setup", result.setup},
+                 {"sha256", result.sha256},
+                 {"dialect", result.dialect},
+                 {"engine", result.engine},
+                 {"verdict", core::name_of(result.verdict)},
+                 {"error", result.error ? json_of(*result.error) : Json(nullptr)},
+                 {"blocks", result.blocks},
+                 {"cycle_time", result.cycle_time},
+                 {"removed", result.removed},
+                 {"tightest", result.tightest ? json_of(*result.tightest) : Json(nullptr)},
+                 {"seconds", result.seconds},
+                 {"assumptions", result.assumptions},
+                 {"findings", Json::array()}};
+    for (const KeptFinding& finding : result.findings) json["findings"].push_back(json_of(finding));
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+core::Result<ProgramResult> result_from_json(const std::string& text) {
+    try {
+        return result_from(Json::parse(text));
+    } catch (const std::exception& wrong) {
+        return core::fail(core::ErrorCode::syntax,
+                          std::string("this is no result of a check: ") + wrong.what());
+    }
+}
+
+} // namespace app

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/check_run.h"
+
+namespace app {
+
+/// A finding as it is kept when the run is gone.
+struct KeptFinding {
+    std::string rule;
+    core::Severity severity = core::Severity::warning;
+    std::optional<uint32_t> block; // empty: the program as a whole
+    uint32_t line = 0;             // of the block; 0 if there is none
+    std::string file;              // of a subprogram's; empty for the main program
+    std::string text;              // of the block
+    std::string message, cure;
+    std::array<std::string, 2> pair{};
+    double shortfall = 0.0; // mm
+
+    bool operator==(const KeptFinding&) const = default;
+};
+
+/// The block with the least margin, and what is known of it. mm.
+struct Tightest {
+    uint32_t block = 0, line = 0;
+    std::array<std::string, 2> pair{};
+    double lower = 0.0;
+    std::optional<double> upper;
+    double allowance = 0.0;
+
+    bool operator==(const Tightest&) const = default;
+};
+
+/// Why a program could not be run, or not to its end.
+struct KeptError {
+    std::string file; // empty if it is about none
+    uint32_t line = 0, column = 0;
+    std::string message;
+
+    bool operator==(const KeptError&) const = default;
+};
+
+/// What is kept of one program of a library: all that summaries, other systems and later versions
+/// are told. A plain value; the same for the same content, but for `seconds`.
+struct ProgramResult {
+    std::string program; // its path, as it was found
+    std::string setup;   // its set-up's; empty: it was inferred
+    std::string sha256;  // of the program; empty if it could not be read
+    std::string dialect; // empty if nobody knows
+    std::string engine;  // "exact" or "coprocessor"
+    core::Verdict verdict = core::Verdict::undecided;
+    std::optional<KeptError> error;
+    std::vector<KeptFinding> findings;
+    std::vector<std::string> assumptions;
+    size_t blocks = 0;
+    double cycle_time = 0.0; // seconds
+    double removed = 0.0;    // mm3
+    std::optional<Tightest> tightest;
+    double seconds = 0.0; // of wall time that the check took
+
+    bool operator==(const ProgramResult&) const = default;
+};
+
+/// What is kept of a check.
+ProgramResult result_of(const CheckRun& run, const std::string& setup);
+
+/// What is kept of one that could not begin.
+ProgramResult failed_result(const CheckJob& job, const core::Error& error);
+
+/// As the exit status of `feeler check` says it: 0 nothing found, 1 an error found, 2 not run to
+/// its end.
+int status_of(const ProgramResult& result);
+
+/// As a JSON object on one line, and back. Numbers come back to the last bit.
+///
+/// Errors: text that is no such object.
+std::string json_of(const ProgramResult& result);
+core::Result<ProgramResult> result_from_json(const std::string& text);
+
+} // namespace app
