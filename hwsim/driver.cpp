@@ -238,8 +238,10 @@ core::Result<uint32_t> push(Driver& driver, const PathSegment& segment) {
 core::Result<std::optional<FoundPair>> measure(Driver& driver, const PathSegment& segment) {
     FEELER_TRY(const std::vector<Segment> entries, entries_of(driver, segment));
     std::optional<FoundPair> nearest;
-    for (Segment entry : entries) {
+    for (size_t i = 0; i < entries.size(); ++i) {
+        Segment entry = entries[i];
         entry.kind = SegmentKind::measure;
+        if (segment.pairs[i].distance == 0.0) entry.threshold = 0;
         entry.last = false;
         push_entry(driver, entry);
         if (wait_for_all(driver).stop != Stop::none) return std::optional<FoundPair>();

@@ -110,8 +110,9 @@ core::Result<size_t> update_stock(Driver& driver, SlotNumber slot, const core::C
 /// Errors: no pairs, a place or distance beyond the device's numbers, a slot of the wrong side.
 core::Result<uint32_t> push(Driver& driver, const PathSegment& segment);
 
-/// Measures how near a pair comes, looking no farther than everything; waits for the answer. None
-/// if one of the models is empty, or the device stops.
+/// Measures how near a pair comes, looking no farther than its distance, or however far if that is
+/// 0; waits for the answer. None if they keep it, if one of the models is empty, or the device
+/// stops.
 core::Result<std::optional<FoundPair>> measure(Driver& driver, const PathSegment& segment);
 
 /// What the device says now; tells it as well that the host is alive.

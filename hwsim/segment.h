@@ -27,8 +27,9 @@ struct Segment {
     uint8_t log2_steps = 0;
     bool last = true;
     FixedVec start{}, end{};
-    uint32_t threshold = 0;    // T: refused if d2 < (T + rounding_reserve)^2
-    uint32_t work_epoch = 0;   // the epoch of the work's model that it is to be held against
+    uint32_t threshold = 0;  // T: refused if d2 < (T + rounding_reserve)^2; of kind measure: looks
+                             // no farther, 0: however far
+    uint32_t work_epoch = 0; // the epoch of the work's model that it is to be held against
     uint32_t model_header = 0; // of kind model: the line of the header; its epoch is `work_epoch`
     uint32_t budget = 0;       // cycles from the push until the permit is needed; 0: none
 
@@ -93,8 +94,8 @@ struct Query {
 
 /// The limit from which a search for this segment starts.
 constexpr uint64_t limit_of(const Segment& segment) {
-    return segment.kind == SegmentKind::measure ? beyond_all_squares
-                                                : squared_limit(segment.threshold);
+    const bool has_no_limit = segment.kind == SegmentKind::measure && segment.threshold == 0;
+    return has_no_limit ? beyond_all_squares : squared_limit(segment.threshold);
 }
 
 } // namespace hwsim

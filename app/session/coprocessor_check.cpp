@@ -18,16 +18,6 @@ void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) 
     permit.not_asked = std::move(why);
 }
 
-/// A body of revolution looks the same however it is turned about its axis; others do not.
-bool stands_upright(const core::MovingBody& body, const core::RelativeLeg& way) {
-    return body.profile ? way.orientation[2] == core::Vec3(0.0, 0.0, 1.0)
-                        : way.orientation == core::Mat3(1.0);
-}
-
-bool can_be_asked(const core::MovingBody& body, const core::RelativeLeg& way) {
-    return !way.turns && stands_upright(body, way) && std::isfinite(way.error);
-}
-
 hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, SlotNumber work,
                               double distance) {
     return {.from = way.places.front(), .to = way.places.back(), .pairs = {{tool, work, distance}}};
@@ -38,12 +28,6 @@ AskedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Set
     for (AskedPair& known : permit.pairs)
         if (known.pair == pair) return known;
     return permit.pairs.emplace_back(AskedPair{pair, allowance_of(setup, pair)});
-}
-
-/// The mesh size for a body: the set-up's, or coarser for a large one.
-double spacing_for(const core::Aabb& box, double mesh_size) {
-    constexpr double most_cells = 200.0;
-    return std::max({mesh_size, box.size().x / most_cells, box.size().y / most_cells});
 }
 
 /// Of several stops the first is told.
@@ -171,11 +155,11 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Pu
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     at.follows = follows_cuts(at.corners, at.called, rises, rapid && !at.is_cycle);
     for (const core::Leg& leg : path.legs) {
-        if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
+        if (auto done = bring_up_to_date(at); !done) return done;
         if (pushes_centre(leg, cutting, at))
             deny(block.permit, "the tool's centre, which does not cut, is pushed into the stock",
                  Teller::run);
-        if (cutting) note_cut(leg, at);
+        if (auto walked = walk(leg, cutting, at, block); !walked) return walked;
     }
     return {};
 }
@@ -192,6 +176,45 @@ bool CoprocessorCheck::pushes_centre(const core::Leg& leg, bool cutting, At& at)
     return follow(at.centre, at.tool->description, way, at.stock).has_value();
 }
 
+Result<void> CoprocessorCheck::walk(const core::Leg& leg, bool cutting, At& at, PushedBlock& block,
+                                    int depth) {
+    constexpr int most_halvings = 8;
+    if (depth < most_halvings && is_too_vague(leg, at)) {
+        for (const core::Leg& half : {stretch(leg, 0.0, 0.5), stretch(leg, 0.5, 1.0)})
+            if (auto walked = walk(half, cutting, at, block, depth + 1); !walked) return walked;
+        return {};
+    }
+    if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
+    if (cutting) note_cut(leg, at);
+    return {};
+}
+
+bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
+    if (!leg.straight || leg.places.size() != 2
+        || turn_of(setup_->machine, leg.places[0], leg.places[1]) == 0.0)
+        return false;
+    const double fine = std::max(0.25, setup_->mesh_size); // mm
+    static const core::ToolAssembly nothing;
+    const core::ExactBody stock = core::convex(at.stock.outer_box);
+    for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
+        const auto is_vague = [&](std::optional<size_t> fixture, const core::ExactBody& other) {
+            const Question q = question(body, fixture, leg, at);
+            if (!q.way.turns || q.way.error <= fine) return false;
+            const double keep = q.allowance.distance + q.off_path + 2.0 * setup_->mesh_size
+                                + models_.excess(body, q.way.orientation) + q.way.error;
+            size_t tests = 0;
+            return !std::isfinite(keep)
+                   || distance_over(q.way, body, other, keep, tests).lower < keep;
+        };
+        if (is_vague({}, stock)) return true;
+        for (size_t i = 0; i < setup_->fixtures.size(); ++i)
+            if (at.fixtures_there[i] && !is_exempt(setup_->machine, body, setup_->fixtures[i])
+                && is_vague(i, setup_->fixtures[i].body))
+                return true;
+    }
+    return false;
+}
+
 Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
                                        PushedBlock& block) {
     if (!leg.straight) {
@@ -199,12 +222,12 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
         return {};
     }
     static const core::ToolAssembly nothing;
-    use_tool(at.tool);
+    models_.use_tool(driver_, at.tool);
     if (auto done = bring_up_to_date(at); !done) return done;
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
-        if (!cuts) {
-            const Question stock = question(body, {}, leg, at);
+        const Question stock = question(body, {}, leg, at);
+        if (!cuts && !is_far(stock, core::convex(at.stock.outer_box), block)) {
             const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
                                                       : &CoprocessorCheck::ask_pair;
             if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
@@ -214,12 +237,26 @@ Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& a
             if (!at.fixtures_there[i] || is_exempt(setup_->machine, body, fixture)
                 || (cuts && fixture.expendable))
                 continue;
-            FEELER_TRY(const SlotNumber work, model_of(i));
-            if (auto asked = ask_pair(question(body, i, leg, at), work, block); !asked)
-                return asked;
+            const Question q = question(body, i, leg, at);
+            if (is_far(q, fixture.body, block)) continue;
+            FEELER_TRY(const SlotNumber work, models_.of_fixture(driver_, i));
+            if (auto asked = ask_pair(q, work, block); !asked) return asked;
         }
     }
     return {};
+}
+
+bool CoprocessorCheck::is_far(const Question& q, const core::ExactBody& other,
+                              PushedBlock& block) const {
+    const double limit = setup_->search_limit + q.way.error + q.off_path;
+    if (!q.body.body || !std::isfinite(limit)) return false;
+    size_t tests = 0;
+    if (distance(bounds(q.body, q.way), bounds(other)) < setup_->search_limit + q.off_path
+        && distance_over(q.way, q.body, other, limit, tests).lower < limit)
+        return false;
+    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
+    asked.lower = std::min(asked.lower, setup_->search_limit);
+    return true;
 }
 
 CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& body,
@@ -250,7 +287,7 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
     const core::MovingBody flutes = moving_bodies(*setup_, *at.tool)[0];
     const core::RelativeLeg way =
         relative_leg(setup_->machine, setup_->stock_mount, flutes.mover, leg);
-    if (way.turns) return; // what it takes is left out: the stock is then too large
+    if (!std::isfinite(way.error)) return; // what it takes is left out: the stock is too large then
     at.to_cut.push_back({.cutter = std::make_shared<const core::Cutter>(
                              make_cutter(at.tool->parts[0].profile, way.error)),
                          .from = way.places.front(),
@@ -259,15 +296,11 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
 }
 
 Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, PushedBlock& block) {
-    if (!can_be_asked(q.body, q.way)) {
-        deny(block.permit, "a body turns or is held at an angle");
-        return {};
-    }
     if (auto measured = measure_pair(q, work, block); !measured) return measured;
     // Bodies that may touch are held against each other with the one shrunk by what is contact.
     const double shrink =
         q.may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
-    FEELER_TRY(const SlotNumber tool, model_of(q.body, shrink));
+    FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, shrink, q.way.orientation));
     const double off = q.way.error + (q.may_touch ? 0.0 : q.off_path);
     if (const auto pushed =
             hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
@@ -285,68 +318,19 @@ Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
                                             PushedBlock& block) {
     if (asking_ != Asking::everything) return {};
     AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
-    if (!can_be_asked(q.body, q.way)) {
-        asked.lower = 0.0;
-        return {};
-    }
-    FEELER_TRY(const SlotNumber tool, model_of(q.body, 0.0));
-    const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, 0.0));
+    FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, 0.0, q.way.orientation));
+    const double off = q.way.error + q.off_path;
+    const double limit = setup_->search_limit + off;
+    const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, limit));
     if (!found) deny(block.permit, found.error().message);
     if (!found || take_answers(block) != hwsim::Stop::none) {
         asked.lower = 0.0;
         return {};
     }
-    // Without a pair one of the models is empty: there is nothing to come near to.
-    if (!*found) return {};
-    asked.lower = std::min(
-        asked.lower, std::max(0.0, hwsim::least_clearance(**found) - q.way.error - q.off_path));
-    asked.may_overlap = asked.may_overlap || (*found)->squared == 0;
+    const double apart = *found ? hwsim::least_clearance(**found) : limit;
+    asked.lower = std::min(asked.lower, std::max(0.0, apart - off));
+    asked.may_overlap = asked.may_overlap || (*found && (*found)->squared == 0);
     return {};
-}
-
-Result<SlotNumber> CoprocessorCheck::model_of(const core::MovingBody& body, double shrink) {
-    const ModelKey key{body.kind, body.carried, shrink};
-    if (const auto known = bodies_.find(key); known != bodies_.end()) return known->second;
-    std::vector<hwsim::Record> records;
-    if (body.profile) {
-        constexpr double tolerance = 0.02; // mm
-        const core::RevolvedProfile part =
-            shrink > 0.0 ? shrunk_around(*body.profile, shrink) : *body.profile;
-        if (!part.empty()) {
-            FEELER_TRY(records, hwsim::cylinders_round(part, tolerance));
-        }
-    } else {
-        FEELER_TRY(
-            const std::vector<hwsim::Record> posts,
-            hwsim::posts_round(*body.body, spacing_for(bounds(*body.body), setup_->mesh_size)));
-        records = hwsim::cylinders_round(posts);
-    }
-    FEELER_TRY(const SlotNumber slot,
-               hwsim::load_records(driver_, hwsim::Side::tool, std::move(records)));
-    bodies_[key] = slot;
-    return slot;
-}
-
-Result<SlotNumber> CoprocessorCheck::model_of(size_t fixture) {
-    if (fixtures_[fixture]) return *fixtures_[fixture];
-    const core::ExactBody& body = setup_->fixtures[fixture].body;
-    FEELER_TRY(std::vector<hwsim::Record> posts,
-               hwsim::posts_round(body, spacing_for(bounds(body), setup_->mesh_size)));
-    FEELER_TRY(fixtures_[fixture],
-               hwsim::load_records(driver_, hwsim::Side::work, std::move(posts)));
-    return *fixtures_[fixture];
-}
-
-void CoprocessorCheck::use_tool(const core::ToolAssembly* tool) {
-    if (tool == tool_) return;
-    tool_ = tool;
-    for (auto known = bodies_.begin(); known != bodies_.end();) {
-        const core::PartKind kind = std::get<core::PartKind>(known->first);
-        const bool is_of_tool = kind == core::PartKind::flutes || kind == core::PartKind::shank
-                                || kind == core::PartKind::holder;
-        if (is_of_tool) hwsim::unload(driver_, known->second);
-        known = is_of_tool ? bodies_.erase(known) : std::next(known);
-    }
 }
 
 bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {

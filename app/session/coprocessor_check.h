@@ -1,9 +1,7 @@
 #pragma once
 
-#include <map>
-
+#include "app/session/device_models.h"
 #include "core/sim/simulator.h"
-#include "hwsim/driver.h"
 
 namespace app {
 
@@ -49,8 +47,9 @@ enum class Asking : uint8_t { until_refused, everything };
 /// the set-up.
 ///
 /// What the flutes cut while they feed is no question, nor is where they have been before
-/// (core::runs_in_own_cut). A motion on which something turns, a body held at an angle, a way and a
-/// tool that are not known cannot be asked. Whether a tool that does not cut at its centre is
+/// (core::runs_in_own_cut), nor a body of the machine that stays farther than the search limit. A
+/// motion on which something turns is divided until turning adds little. A way and a tool that are
+/// not known cannot be asked. Whether a tool that does not cut at its centre is
 /// pushed into the stock is for the host to say (core::follow).
 class CoprocessorCheck {
 public:
@@ -101,14 +100,9 @@ private:
         double off_path = 0.0; // that rounded corners may take the body, mm
         bool may_touch = false;
     };
-    /// A body's kind, which of the machine's it is, and by how much it is shrunk.
-    using ModelKey = std::tuple<core::PartKind, size_t, double>;
 
     CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup, Asking asking)
-        : driver_(std::move(driver)),
-          setup_(&setup),
-          asking_(asking),
-          fixtures_(setup.fixtures.size()) {}
+        : driver_(std::move(driver)), setup_(&setup), asking_(asking), models_(setup) {}
 
     core::Result<void> ask_event(const core::Event& event, At& at, PushedBlock& block);
     core::Result<void> ask_motion(const core::Motion& motion, At& at, PushedBlock& block);
@@ -117,8 +111,15 @@ private:
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
     Question question(const core::MovingBody& body, std::optional<size_t> fixture,
                       const core::Leg& leg, const At& at) const;
+    /// Whether a body of the machine stays so far away that nobody need ask.
+    bool is_far(const Question& question, const core::ExactBody& other, PushedBlock& block) const;
     core::Result<void> bring_up_to_date(At& at);
     void note_cut(const core::Leg& leg, At& at) const;
+    /// Asks along a leg; one on which something turns is halved until turning adds little.
+    core::Result<void> walk(const core::Leg& leg, bool cutting, At& at, PushedBlock& block,
+                            int depth = 0);
+    /// Whether a body that turns may be too near for how vaguely its place is known.
+    bool is_too_vague(const core::Leg& leg, const At& at) const;
     core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, PushedBlock& block);
     core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
                                 PushedBlock& block);
@@ -127,18 +128,13 @@ private:
                                     PushedBlock& block);
     /// Waits for the answers, and takes them in; why the device stopped, if it did.
     hwsim::Stop take_answers(PushedBlock& block);
-    core::Result<hwsim::SlotNumber> model_of(const core::MovingBody& body, double shrink);
-    core::Result<hwsim::SlotNumber> model_of(size_t fixture);
-    void use_tool(const core::ToolAssembly* tool);
     bool is_in_own_cut(const Question& question, const At& at) const;
 
     hwsim::Driver driver_;
     const core::Setup* setup_;
     Asking asking_;
     hwsim::SlotNumber stock_{};
-    std::vector<std::optional<hwsim::SlotNumber>> fixtures_;
-    const core::ToolAssembly* tool_ = nullptr; // whose parts are in the device
-    std::map<ModelKey, hwsim::SlotNumber> bodies_;
+    DeviceModels models_;
 };
 
 } // namespace app

@@ -149,7 +149,8 @@ void BlockRun::follow_path(const Motion& motion, const Path& path) {
     LegCheck check = leg_check(use(motion));
     for (const Leg& leg : path.legs) {
         watch_centre(motion, leg);
-        if (cuts || block.judgement->runs_into_stock)
+        // On a motion that turns nobody knows how far it has come when it meets the stock.
+        if (cuts || (block.judgement->runs_into_stock && !turns))
             result.removed += check.only_cut(leg, state.stock);
     }
     state.watch.has_fed = state.watch.has_fed || motion.kind != MotionKind::rapid;

