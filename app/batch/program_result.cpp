@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/session/digest.h"
+#include "app/setup/utf8_text.h"
 
 namespace app {
 namespace {
@@ -13,22 +14,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 KeptError kept(const core::Error& error) {
-    return {error.file, error.where.line, error.where.column, error.message};
+    return {utf8_text(error.file), error.where.line, error.where.column, utf8_text(error.message)};
 }
 
 KeptFinding kept(const core::Finding& finding, const CheckRun& run) {
     KeptFinding made{.rule = finding.rule,
                      .severity = finding.severity,
-                     .message = finding.message,
-                     .cure = finding.cure,
-                     .pair = finding.pair,
+                     .message = utf8_text(finding.message),
+                     .cure = utf8_text(finding.cure),
+                     .pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])},
                      .shortfall = finding.shortfall};
     if (!finding.block) return made;
     const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
     made.block = core::value_of(*finding.block);
     made.line = block.line;
-    made.file = block.file;
-    made.text = block.text;
+    made.file = utf8_text(block.file);
+    made.text = utf8_text(block.text);
     return made;
 }
 
@@ -36,12 +37,12 @@ std::optional<Tightest> tightest_of(const CheckRun& run) {
     const CheckedBlock* nearest = nearest_block(run);
     if (!nearest) return {};
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
-    Tightest tightest{
-        .block = core::value_of(nearest->block),
-        .line = nearest->line,
-        .pair = {core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair)},
-        .lower = pair.lower,
-        .allowance = pair.allowance.distance};
+    Tightest tightest{.block = core::value_of(nearest->block),
+                      .line = nearest->line,
+                      .pair = {utf8_text(core::part_name(run.setup, pair.pair)),
+                               utf8_text(core::body_name(run.setup, pair.pair))},
+                      .lower = pair.lower,
+                      .allowance = pair.allowance.distance};
     if (pair.found()) tightest.upper = pair.upper;
     return tightest;
 }
@@ -135,26 +136,27 @@ ProgramResult result_from(const Json& json) {
 } // namespace
 
 ProgramResult result_of(const CheckRun& run, const std::string& setup) {
-    ProgramResult result{.program = run.program_file,
-                         .setup = setup,
+    ProgramResult result{.program = utf8_text(run.program_file),
+                         .setup = utf8_text(setup),
                          .sha256 = run.sha256,
                          .dialect = std::string(gcode::dialect(run.dialect).name),
                          .engine = name_of(run.engine),
                          .verdict = run.verdict,
-                         .assumptions = run.assumptions,
                          .blocks = run.blocks.size(),
                          .cycle_time = run.cycle_time,
                          .removed = run.removed,
                          .tightest = tightest_of(run),
                          .seconds = run.times.read + run.times.model + run.times.check};
     if (run.stopped) result.error = kept(*run.stopped);
+    for (const std::string& assumption : run.assumptions)
+        result.assumptions.push_back(utf8_text(assumption));
     for (const core::Finding& finding : run.findings) result.findings.push_back(kept(finding, run));
     return result;
 }
 
 ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
-    return {.program = job.program,
-            .setup = job.setup,
+    return {.program = utf8_text(job.program),
+            .setup = utf8_text(job.setup),
             .sha256 = sha256_of_file(job.program),
             .engine = name_of(job.engine),
             .error = kept(error)};

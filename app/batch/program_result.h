@@ -45,7 +45,7 @@ struct KeptError {
 };
 
 /// What is kept of one program of a library: all that summaries, other systems and later versions
-/// are told. A plain value; the same for the same content, but for `seconds`.
+/// are told. A plain value; the same for the same content, but for `seconds`. Texts are UTF-8.
 struct ProgramResult {
     std::string program; // its path, as it was found
     std::string setup;   // its set-up's; empty: it was inferred
