@@ -70,12 +70,13 @@ core::Result<void> save_results(const Options& options, CheckRun& run) {
 }
 
 /// Before much memory is taken it is said how much.
-void say_memory(double bytes) {
+bool say_memory(double bytes) {
     constexpr double much = 1e9;
     if (bytes >= much)
         std::fputs(
             fmt::format("the model of the stock takes about {:.1f} GB\n", 1e-9 * bytes).c_str(),
             stderr);
+    return true;
 }
 
 core::Detail detail_of(const Options& options) {

@@ -1,13 +1,15 @@
 #include "app/commands/check_arguments.h"
 
 #include "app/commands/number_range.h"
+#include "app/setup/setup_beside.h"
 
 namespace app {
 
 CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
     CLI::Option* program = command.add_option("program", arguments.program, "NC program");
-    command.add_option("--setup", arguments.setup,
-                       "Set-up file (TOML); else it is inferred from the program, and said");
+    command.add_option(
+        "--setup", arguments.setup,
+        "Set-up file (TOML); else NAME.toml beside NAME.nc, else what the program says");
     command
         .add_option("--allowance", arguments.allowance,
                     "Clearance to keep from fixtures, and of the holder from the stock, mm")
@@ -32,7 +34,8 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     FEELER_TRY(ProgramSettings settings, settings_of(arguments.reading));
     CheckJob job;
     job.program = arguments.program;
-    job.setup = arguments.setup;
+    job.setup = arguments.setup.empty() ? setup_beside(arguments.program) : arguments.setup;
+    job.setup_was_found = arguments.setup.empty() && !job.setup.empty();
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;
     if (arguments.memory_limit) job.memory_limit = *arguments.memory_limit * 1e6;

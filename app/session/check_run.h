@@ -87,12 +87,15 @@ struct CheckJob {
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     core::Detail detail = core::Detail::deciding_pair;
     bool needs_surface = false; // that of the stock is wanted, also without a part
-    std::function<void(double)> before_model = {}; // told the bytes that the model will take
+    // Told the bytes that the model will take; false: do not begin.
+    std::function<bool(double)> before_model = {};
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace what the set-up says under [program]
     Engine engine = Engine::exact;
-    SetupEdits edits = {}; // replace what the set-up says, or what would be inferred
+    SetupEdits edits = {};           // replace what the set-up says, or what would be inferred
+    core::RuleSeverities rules = {}; // replace those of the set-up, rule by rule
+    bool setup_was_found = false;    // nobody named it: it stands beside the program
 };
 
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is

@@ -82,6 +82,9 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     FEELER_TRY(check.file,
                job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
     SetupFile& file = check.file;
+    if (job.setup_was_found)
+        run.assumptions.push_back(
+            fmt::format("the set-up is {}, because it stands beside the program", job.setup));
     if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
@@ -94,6 +97,7 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     run.setup = std::move(file.setup);
     if (job.allowance && !job.edits.allowance) run.setup.allowance = job.allowance;
     run.setup.detail = job.detail;
+    for (const auto& [rule, severity] : job.rules) run.setup.rules[rule] = severity;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
     if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
     run.setup.search_limit = core::search_limit_of(run.setup);
@@ -109,7 +113,11 @@ core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
     const Stopwatch modelling;
     CheckRun& run = check.run;
     run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
-    if (job.before_model && run.memory <= run.setup.memory_limit) job.before_model(run.memory);
+    const bool may_begin =
+        !job.before_model || run.memory > run.setup.memory_limit || job.before_model(run.memory);
+    if (!may_begin)
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::io, {}, "the check was stopped before its first block", job.program});
     auto state = core::start_of_run(run.setup, check.file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
     check.machine = *std::move(state);

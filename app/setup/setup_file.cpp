@@ -8,6 +8,7 @@
 #include "app/setup/ini_machine.h"
 #include "app/setup/machine_table.h"
 #include "app/setup/program_table.h"
+#include "app/setup/rules_table.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"
@@ -117,22 +118,8 @@ void check_allowance_names(TableReader& table, const core::Setup& setup) {
 
 void read_rules(TableReader& table, SetupFile& file) {
     file.allow_comments = table.boolean("allow_comments").value_or(false);
-    for (const std::string& rule : table.keys()) {
-        if (rule == "allow_comments") continue;
-        const auto word = table.word(rule.c_str(), {"off", "note", "warning", "error"});
-        if (!word) continue;
-        if (!core::default_severity(rule)) {
-            table.refuse(rule.c_str(), "is not the name of a rule");
-            continue;
-        }
-        const core::Severity severity = *word == "off"       ? core::Severity::off
-                                        : *word == "note"    ? core::Severity::note
-                                        : *word == "warning" ? core::Severity::warning
-                                                             : core::Severity::error;
-        if (rule == "collision" && severity != core::Severity::error)
-            table.refuse("collision", "is always an error");
+    for (const auto& [rule, severity] : read_severities(table, "allow_comments"))
         file.setup.rules[rule] = severity;
-    }
 }
 
 /// The machine from its own file, whose mistakes carry its own name.

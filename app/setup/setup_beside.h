@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace app {
+
+/// The name of the file that says what the programs of a folder are checked against.
+constexpr const char* project_file_name = "feeler.toml";
+
+/// The set-up that stands beside a program under its name, `plate.toml` for `plate.nc`; empty when
+/// there is none. A project file is none.
+std::string setup_beside(const std::string& program);
+
+} // namespace app
