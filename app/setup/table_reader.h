@@ -76,6 +76,9 @@ public:
 
     const std::string& name() const { return name_; }
 
+    /// Where the table begins in its file.
+    uint32_t line() const { return table_.source().begin.line; }
+
 private:
     const toml::node* node(const char* key);
     void refuse_at(const toml::source_region& where, const std::string& why);

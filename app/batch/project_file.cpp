@@ -1,0 +1,84 @@
+#include "app/batch/project_file.h"
+
+#include <filesystem>
+
+#include "app/batch/plain_path.h"
+#include "app/setup/rules_table.h"
+#include "app/setup/toml_file.h"
+
+namespace app {
+namespace {
+
+constexpr double largest_allowance = 1000.0; // mm; as in a set-up
+
+std::string path_in(const std::filesystem::path& folder, const std::string& name) {
+    return plain_path(folder / name);
+}
+
+/// The keys that stand both under `[[program]]` and before all of them.
+ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder) {
+    ProgramTerms terms;
+    if (const auto setup = table.string("setup")) terms.setup = path_in(folder, *setup);
+    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
+                                                 "siemens-iso", "heidenhain"}))
+        terms.dialect = gcode::dialect_named(*name);
+    terms.allowance = table.number("allowance");
+    if (terms.allowance && !(*terms.allowance >= 0.0 && *terms.allowance <= largest_allowance))
+        table.refuse("allowance", "must lie between 0 and 1000 mm");
+    terms.mesh_size = table.number("mesh_size");
+    if (terms.mesh_size && !(*terms.mesh_size > 0.0)) table.refuse("mesh_size", "must be above 0");
+    if (auto rules = table.table("rules", table.name() + " rules"))
+        terms.rules = read_severities(*rules);
+    return terms;
+}
+
+std::vector<std::string> read_files(TableReader& table, const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    if (table.is_list("files"))
+        names = table.strings("files", 0).value_or(std::vector<std::string>{});
+    else if (const auto name = table.string("files"))
+        names = {*name};
+    if (names.empty() && table.has("files")) table.refuse("files", "names no file");
+    for (std::string& name : names) name = path_in(folder, name);
+    return names;
+}
+
+void read_root(TableReader& root, const std::filesystem::path& folder, Project& project) {
+    project.terms = read_terms(root, folder);
+    for (TableReader& table : root.tables("program", "[[program]]")) {
+        ProjectEntry entry{read_files(table, folder), read_terms(table, folder), table.line()};
+        table.finish(); // first: `file` for `files` is better called unknown than missing
+        if (entry.files.empty()) table.need("files");
+        project.entries.push_back(std::move(entry));
+    }
+    if (project.entries.empty()) root.need("[[program]]");
+    root.finish();
+}
+
+} // namespace
+
+ProgramTerms overlaid(ProgramTerms terms, const ProgramTerms& over) {
+    if (!over.setup.empty()) terms.setup = over.setup;
+    if (over.dialect) terms.dialect = over.dialect;
+    if (over.allowance) terms.allowance = over.allowance;
+    if (over.mesh_size) terms.mesh_size = over.mesh_size;
+    for (const auto& [rule, severity] : over.rules) terms.rules[rule] = severity;
+    return terms;
+}
+
+core::Result<Project> read_project(const std::string& path) {
+    Project project{.path = path, .terms = {}, .entries = {}};
+    std::optional<core::Error> error;
+    const auto parsed = read_toml(path);
+    if (parsed) {
+        TableReader root(*parsed, "project", error);
+        read_root(root, std::filesystem::path(path).parent_path(), project);
+    } else {
+        error = parsed.error();
+    }
+    if (!error) return project;
+    if (error->file.empty()) error->file = path;
+    return tl::unexpected(*error);
+}
+
+} // namespace app

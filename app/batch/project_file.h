@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/sim/finding.h"
+#include "gcode/dialect.h"
+
+namespace app {
+
+/// What a project says of programs; empty where it says nothing.
+struct ProgramTerms {
+    std::string setup; // its path
+    std::optional<gcode::DialectId> dialect;
+    std::optional<double> allowance, mesh_size; // mm
+    core::RuleSeverities rules;
+
+    bool operator==(const ProgramTerms&) const = default;
+};
+
+/// Both together; what `over` says wins.
+ProgramTerms overlaid(ProgramTerms terms, const ProgramTerms& over);
+
+/// One `[[program]]`: files, folders and patterns, and what counts for them.
+struct ProjectEntry {
+    std::vector<std::string> files;
+    ProgramTerms terms;
+    uint32_t line = 0;
+};
+
+/// A shop's programs, each with what it is checked against.
+struct Project {
+    std::string path;
+    ProgramTerms terms; // of all programs
+    std::vector<ProjectEntry> entries;
+};
+
+/// Reads a project file (TOML). Its paths are relative to its folder.
+///
+/// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value.
+core::Result<Project> read_project(const std::string& path);
+
+} // namespace app
