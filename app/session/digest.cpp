@@ -3,27 +3,57 @@
 #include <array>
 #include <fstream>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
 namespace app {
+namespace {
+
+/// A SHA-256 that is fed piece by piece.
+class Digest {
+public:
+    Digest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+        is_good_ = context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1;
+    }
+
+    void add(std::string_view bytes) {
+        is_good_ = is_good_ && EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1;
+    }
+
+    /// Empty when the library refuses.
+    std::string finish() && {
+        std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+        unsigned int length = 0;
+        if (!is_good_ || EVP_DigestFinal_ex(context_.get(), digest.data(), &length) != 1) return {};
+        std::string text;
+        for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
+        return text;
+    }
+
+private:
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+    bool is_good_ = false;
+};
+
+} // namespace
+
+std::string sha256_of(std::string_view bytes) {
+    Digest digest;
+    digest.add(bytes);
+    return std::move(digest).finish();
+}
 
 std::string sha256_of_file(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                          &EVP_MD_CTX_free);
-    if (!file || !context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
-        return {};
+    if (!file) return {};
+    Digest digest;
     std::array<char, 65536> chunk;
     while (file.read(chunk.data(), chunk.size()) || file.gcount() > 0)
-        EVP_DigestUpdate(context.get(), chunk.data(), static_cast<size_t>(file.gcount()));
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned int length = 0;
-    if (EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1) return {};
-    std::string text;
-    for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
+        digest.add({chunk.data(), static_cast<size_t>(file.gcount())});
+    if (file.bad()) return {};
+    return std::move(digest).finish();
 }
 
 } // namespace app

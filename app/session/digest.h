@@ -1,10 +1,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace app {
 
-/// The SHA-256 of a file's bytes as 64 hexadecimal digits; empty when it cannot be read.
+/// The SHA-256 of bytes as 64 hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+
+/// The SHA-256 of a file's bytes; empty when it cannot be read.
 std::string sha256_of_file(const std::string& path);
 
 } // namespace app

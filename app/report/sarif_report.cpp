@@ -1,0 +1,186 @@
+#include "app/report/sarif_report.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/report/rule_help.h"
+#include "app/session/digest.h"
+#include "app/version.h"
+#include "core/sim/rule_table.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of a program that could not be run to its end: no rule of a set-up.
+constexpr const char* not_run = "not-run-to-its-end";
+
+const char* level_of(core::Severity severity) {
+    return severity == core::Severity::off ? "none" : core::name_of(severity);
+}
+
+Json rule_json(const std::string& name, const std::string& finds, const std::string& cure,
+               core::Severity severity) {
+    return {{"id", name},
+            {"shortDescription", {{"text", finds}}},
+            {"fullDescription", {{"text", finds}}},
+            {"help", {{"text", cure}}},
+            {"defaultConfiguration", {{"level", level_of(severity)}}}};
+}
+
+Json rules_json() {
+    Json rules = Json::array();
+    for (const core::RuleEntry& rule : core::rule_table()) {
+        const RuleHelp help = help_of(rule.name);
+        rules.push_back(
+            rule_json(rule.name, std::string(help.finds), std::string(help.cure), rule.severity));
+    }
+    rules.push_back(
+        rule_json(not_run, "The program could not be run to its end.",
+                  "Correct what the message says; what comes behind it was not checked.",
+                  core::Severity::error));
+    return rules;
+}
+
+size_t index_of(const std::string& rule) {
+    const auto rules = core::rule_table();
+    const auto found = std::find_if(rules.begin(), rules.end(), [&](const core::RuleEntry& entry) {
+        return entry.name == rule;
+    });
+    return static_cast<size_t>(found - rules.begin()); // `not_run` stands behind the last
+}
+
+/// A place in a file; the first line where none is known, as code hosts show nothing else.
+Json location_json(const std::string& file, uint32_t line, uint32_t column) {
+    const std::string uri = uri_of(file);
+    Json artifact = {{"uri", uri}};
+    if (!uri.starts_with("file:")) artifact["uriBaseId"] = "%SRCROOT%";
+    return {
+        {"physicalLocation",
+         {{"artifactLocation", artifact},
+          {"region", {{"startLine", std::max(line, 1U)}, {"startColumn", std::max(column, 1U)}}}}}};
+}
+
+Json finding_json(const ProgramResult& program, const KeptFinding& finding, size_t before) {
+    const std::string& file = finding.file.empty() ? program.program : finding.file;
+    const std::string cure = finding.cure.empty() ? "" : " " + finding.cure;
+    Json json = {{"ruleId", finding.rule},
+                 {"ruleIndex", index_of(finding.rule)},
+                 {"level", level_of(finding.severity)},
+                 {"message", {{"text", finding.message + cure}}},
+                 {"locations", Json::array({location_json(file, finding.line, 1)})},
+                 {"partialFingerprints", {{"feeler/v1", fingerprint_of(finding, before)}}}};
+    json["properties"] = {{"program", program.program}, {"shortfall", finding.shortfall}};
+    if (finding.block) json["properties"]["block"] = *finding.block;
+    return json;
+}
+
+Json error_json(const ProgramResult& program) {
+    const KeptError& error = *program.error;
+    return {
+        {"ruleId", not_run},
+        {"ruleIndex", index_of(not_run)},
+        {"level", "error"},
+        {"message", {{"text", error.message}}},
+        {"locations", Json::array({location_json(error.file.empty() ? program.program : error.file,
+                                                 error.line, error.column)})},
+        {"partialFingerprints",
+         {{"feeler/v1", sha256_of(std::string(not_run) + "\n" + error.message)}}}};
+}
+
+Json results_json(const BatchResult& batch) {
+    Json results = Json::array();
+    for (const ProgramResult& program : batch.programs) {
+        std::map<std::string, size_t> seen; // by the fingerprint of the first of its kind
+        for (const KeptFinding& finding : program.findings) {
+            const size_t before = seen[fingerprint_of(finding, 0)]++;
+            results.push_back(finding_json(program, finding, before));
+        }
+        if (program.error) results.push_back(error_json(program));
+    }
+    return results;
+}
+
+Json notification_json(const std::string& level, const std::string& text, const Json& location) {
+    return {
+        {"level", level}, {"message", {{"text", text}}}, {"locations", Json::array({location})}};
+}
+
+Json invocation_json(const BatchResult& batch) {
+    Json notes = Json::array();
+    for (const ProgramResult& program : batch.programs)
+        if (program.error) {
+            const KeptError& error = *program.error;
+            notes.push_back(
+                notification_json("error", error.message,
+                                  location_json(error.file.empty() ? program.program : error.file,
+                                                error.line, error.column)));
+        }
+    for (const std::string& program : batch.unchecked)
+        notes.push_back(
+            notification_json("error", "was not checked", location_json(program, 1, 1)));
+    for (const SkippedFile& file : batch.skipped)
+        notes.push_back(notification_json("note", "was skipped: it " + file.why,
+                                          location_json(file.path, 1, 1)));
+    return {{"executionSuccessful", status_of(batch) != 2},
+            {"exitCode", status_of(batch)},
+            {"toolExecutionNotifications", notes}};
+}
+
+/// The text of a block without its number, blanks and letter case, which mean nothing.
+std::string unnumbered(const std::string& text) {
+    std::string plain;
+    for (const char c : text)
+        if (static_cast<unsigned char>(c) > ' ')
+            plain += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    size_t at = plain.starts_with('/') ? 1 : 0;
+    const size_t number = at;
+    if (at < plain.size() && (plain[at] == 'N' || plain[at] == ':')) ++at;
+    const size_t end = std::min(plain.find_first_not_of("0123456789", at), plain.size());
+    return end == at ? plain : plain.erase(number, end - number);
+}
+
+} // namespace
+
+std::string uri_of(const std::string& path) {
+    std::string uri = path.starts_with('/') ? "file://" : "";
+    for (const char c : path) {
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
+                              || (c >= '0' && c <= '9')
+                              || std::string_view("-._~/").find(c) != std::string_view::npos;
+        if (is_plain)
+            uri += c;
+        else
+            uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return uri;
+}
+
+std::string fingerprint_of(const KeptFinding& finding, size_t before) {
+    return sha256_of(fmt::format("{}\n{}\n{}\n{}\n{}", finding.rule, finding.pair[0],
+                                 finding.pair[1], unnumbered(finding.text), before));
+}
+
+std::string sarif_report(const BatchResult& batch, const std::string& folder) {
+    const std::string root = uri_of(folder);
+    const Json driver = {{"name", "Feeler"},
+                         {"version", version},
+                         {"semanticVersion", version},
+                         {"rules", rules_json()}};
+    const Json run = {
+        {"tool", {{"driver", driver}}},
+        {"invocations", Json::array({invocation_json(batch)})},
+        {"originalUriBaseIds", {{"%SRCROOT%", {{"uri", root.ends_with('/') ? root : root + "/"}}}}},
+        {"columnKind", "unicodeCodePoints"},
+        {"results", results_json(batch)}};
+    const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+                      {"version", "2.1.0"},
+                      {"runs", Json::array({run})}};
+    return log.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace app

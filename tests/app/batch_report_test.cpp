@@ -1,0 +1,243 @@
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "app/report/batch_report.h"
+#include "app/report/batch_text.h"
+#include "app/report/junit_report.h"
+#include "app/report/rule_help.h"
+#include "app/report/sarif_report.h"
+#include "core/sim/rule_table.h"
+#include "tests/support/scoped_folder.h"
+#include "tests/support/shell.h"
+
+namespace app {
+namespace {
+
+using core::Severity;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+KeptFinding near_miss(const std::string& text, uint32_t line) {
+    return {.rule = "near-miss",
+            .severity = Severity::error,
+            .block = line,
+            .line = line,
+            .text = text,
+            .message = "The holder comes near to <clamp-1> & \"more\".",
+            .cure = "Go round it.",
+            .pair = {"holder", "clamp-1"},
+            .shortfall = 1.25};
+}
+
+/// One program of each kind.
+BatchResult batch_of_all_kinds() {
+    const ProgramResult good{.program = "parts/good.nc",
+                             .verdict = core::Verdict::clear,
+                             .findings = {{.rule = "air-cut", .severity = Severity::note}},
+                             .blocks = 9,
+                             .seconds = 0.5};
+    ProgramResult bad{.program = "parts/Gehäuse 50%.nc",
+                      .setup = "vise.toml",
+                      .verdict = core::Verdict::violation,
+                      .findings = {near_miss("N20 G0 X5.", 7),
+                                   near_miss("N30 G0 X5.", 9),
+                                   {.rule = "program", .message = "bell \x07 and line\nend"}},
+                      .blocks = 12,
+                      .tightest = Tightest{.block = 7,
+                                           .line = 7,
+                                           .pair = {"holder", "clamp, the left one"},
+                                           .lower = 0.5,
+                                           .upper = {},
+                                           .allowance = 2.0},
+                      .seconds = 1.5};
+    bad.findings[1].file = "/abs/sub 1.nc";
+    const ProgramResult broken{.program = "broken.nc",
+                               .error = KeptError{"broken.nc", 3, 5, "G999: no such <code>"},
+                               .blocks = 2,
+                               .seconds = 0.25};
+    return {.programs = {good, bad, broken},
+            .unchecked = {"late.nc"},
+            .skipped = {{"notes.txt", "most of its lines are no blocks of an NC program"}}};
+}
+
+json sarif() { return json::parse(sarif_report(batch_of_all_kinds(), "/home/me/my shop")); }
+
+TEST(Sarif, HasWhatTheSchemaAsksFor) {
+    const json log = sarif();
+    EXPECT_EQ(log["version"], "2.1.0");
+    EXPECT_THAT(log["$schema"].get<std::string>(), HasSubstr("sarif-2.1.0"));
+    ASSERT_EQ(log["runs"].size(), 1U);
+    const json& run = log["runs"][0];
+    EXPECT_EQ(run["tool"]["driver"]["name"], "Feeler");
+    const json& rules = run["tool"]["driver"]["rules"];
+    ASSERT_EQ(run["results"].size(), 5U);
+    for (const json& result : run["results"]) {
+        EXPECT_FALSE(result["message"]["text"].get<std::string>().empty()
+                     && result["ruleId"] != "air-cut");
+        EXPECT_EQ(rules.at(result["ruleIndex"].get<size_t>())["id"], result["ruleId"]);
+        EXPECT_THAT((std::vector<std::string>{"none", "note", "warning", "error"}),
+                    testing::Contains(result["level"].get<std::string>()));
+        ASSERT_EQ(result["locations"].size(), 1U);
+        const json& place = result["locations"][0]["physicalLocation"];
+        EXPECT_GE(place["region"]["startLine"].get<int>(), 1);
+        EXPECT_GE(place["region"]["startColumn"].get<int>(), 1);
+        EXPECT_TRUE(place["artifactLocation"]["uri"].is_string());
+        EXPECT_EQ(result["partialFingerprints"]["feeler/v1"].get<std::string>().size(), 64U);
+    }
+    for (const json& invocation : run["invocations"]) {
+        EXPECT_TRUE(invocation["executionSuccessful"].is_boolean());
+        for (const json& note : invocation["toolExecutionNotifications"])
+            EXPECT_TRUE(note["message"]["text"].is_string());
+    }
+}
+
+TEST(Sarif, PutsFindingsOnTheirLines) {
+    const json results = sarif()["runs"][0]["results"];
+    const json at_7 = results[1]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(at_7["artifactLocation"]["uri"], "parts/Geh%C3%A4use%2050%25.nc");
+    EXPECT_EQ(at_7["artifactLocation"]["uriBaseId"], "%SRCROOT%");
+    EXPECT_EQ(at_7["region"], json({{"startLine", 7}, {"startColumn", 1}}));
+    EXPECT_EQ(results[1]["level"], "error");
+    const json in_subprogram = results[2]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(in_subprogram["artifactLocation"]["uri"], "file:///abs/sub%201.nc");
+    EXPECT_FALSE(in_subprogram["artifactLocation"].contains("uriBaseId"));
+}
+
+TEST(Sarif, TellsOfWhatWasNotRunToItsEnd) {
+    const json run = sarif()["runs"][0];
+    EXPECT_EQ(run["results"][4]["ruleId"], "not-run-to-its-end");
+    EXPECT_EQ(run["results"][4]["locations"][0]["physicalLocation"]["region"]["startColumn"], 5);
+    EXPECT_EQ(run["invocations"][0]["executionSuccessful"], false);
+    EXPECT_EQ(run["invocations"][0]["toolExecutionNotifications"].size(), 3U);
+    EXPECT_EQ(run["originalUriBaseIds"]["%SRCROOT%"]["uri"], "file:///home/me/my%20shop/");
+}
+
+TEST(Sarif, HasHelpForEachRule) {
+    const json run = sarif()["runs"][0];
+    for (const json& rule : run["tool"]["driver"]["rules"]) {
+        EXPECT_FALSE(rule["help"]["text"].get<std::string>().empty()) << rule["id"];
+        EXPECT_FALSE(rule["shortDescription"]["text"].get<std::string>().empty()) << rule["id"];
+    }
+    for (const core::RuleEntry& rule : core::rule_table())
+        EXPECT_FALSE(help_of(rule.name).finds.empty()) << rule.name;
+}
+
+TEST(Fingerprint, SurvivesNewNumbersBlanksAndPlaces) {
+    const std::string before = fingerprint_of(near_miss("N20 G0 X5.", 7), 0);
+    for (const char* text : {"N2000 G0 X5.", "G0 X5.", "n20g0x5.", "  N20  G0  X5. "})
+        EXPECT_EQ(fingerprint_of(near_miss(text, 99), 0), before) << text;
+    EXPECT_EQ(fingerprint_of(near_miss("7 L X+5 FMAX", 7), 0),
+              fingerprint_of(near_miss("12 L X+5 FMAX", 12), 0));
+    EXPECT_EQ(fingerprint_of(near_miss("/N20 G0 X5.", 7), 0),
+              fingerprint_of(near_miss("/N30 G0 X5.", 7), 0));
+}
+
+TEST(Fingerprint, TellsFindingsApart) {
+    const std::string before = fingerprint_of(near_miss("N20 G0 X5.", 7), 0);
+    EXPECT_NE(fingerprint_of(near_miss("N20 G0 X6.", 7), 0), before);
+    EXPECT_NE(fingerprint_of(near_miss("/N20 G0 X5.", 7), 0), before);
+    EXPECT_NE(fingerprint_of(near_miss("N20 G0 X5.", 7), 1), before);
+    KeptFinding other = near_miss("N20 G0 X5.", 7);
+    other.pair[1] = "clamp-2";
+    EXPECT_NE(fingerprint_of(other, 0), before);
+}
+
+TEST(Sarif, CountsFindingsThatAreAlike) {
+    const json results = sarif()["runs"][0]["results"];
+    EXPECT_NE(results[1]["partialFingerprints"], results[2]["partialFingerprints"])
+        << "N20 and N30 are the same block twice";
+}
+
+/// Whether xmllint takes a text for a report of JUnit, and what it says else.
+test_support::Ran linted(const std::string& xml) {
+    const test_support::ScopedFolder folder;
+    return test_support::run({"xmllint", "--noout", "--schema",
+                              std::string(FEELER_SOURCE_DIR) + "/tests/app/junit.xsd",
+                              folder.write("report.xml", xml)});
+}
+
+TEST(Junit, IsValid) {
+    const test_support::Ran ran = linted(junit_report(batch_of_all_kinds()));
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(linted("<testsuites name=\"feeler\"/>").status, 0) << "the schema takes anything";
+}
+
+TEST(Junit, HasACaseForEachProgram) {
+    const std::string xml = junit_report(batch_of_all_kinds());
+    EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\" time=\"2.250\""));
+    EXPECT_THAT(xml, HasSubstr("<testcase name=\"good.nc\" classname=\"parts\" time=\"0.500\">"));
+    EXPECT_THAT(xml, HasSubstr("<failure message=\"violation: 2 errors\" type=\"violation\">"));
+    EXPECT_THAT(xml, HasSubstr("&lt;clamp-1&gt; &amp; &quot;more&quot;"));
+    EXPECT_THAT(xml, HasSubstr("<error message=\"line 3: G999: no such &lt;code&gt;\""));
+    EXPECT_THAT(xml, HasSubstr("<skipped message=\"was not checked\"/>"));
+    EXPECT_THAT(xml, HasSubstr("bell ? and line\nend"));
+}
+
+TEST(BatchReport, HoldsResultsInJson) {
+    const BatchResult batch = batch_of_all_kinds();
+    const json whole = json::parse(batch_json_report(batch));
+    EXPECT_EQ(whole["schema"], 1);
+    EXPECT_EQ(whole["status"], 2);
+    ASSERT_EQ(whole["programs"].size(), 3U);
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(*result_from_json(whole["programs"][i].dump()), batch.programs[i]);
+    EXPECT_EQ(whole["unchecked"], json({"late.nc"}));
+    EXPECT_EQ(whole["skipped"][0]["file"], "notes.txt");
+}
+
+TEST(BatchReport, HasALineForEachProgram) {
+    const BatchResult batch = batch_of_all_kinds();
+    std::istringstream lines(batch_lines_report(batch));
+    std::string line;
+    for (const ProgramResult& program : batch.programs) {
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_EQ(*result_from_json(line), program);
+    }
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(json::parse(line), json({{"program", "late.nc"}, {"checked", false}}));
+    EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST(BatchReport, HasARowForEachProgram) {
+    std::istringstream rows(batch_csv_report(batch_of_all_kinds()));
+    std::vector<size_t> cells;
+    for (std::string row; std::getline(rows, row);) {
+        bool quoted = false;
+        size_t count = 1;
+        for (const char c : row) {
+            quoted = quoted != (c == '"');
+            count += c == ',' && !quoted;
+        }
+        cells.push_back(count);
+    }
+    EXPECT_EQ(cells, (std::vector<size_t>{20, 20, 20, 20, 20}));
+}
+
+TEST(BatchText, TellsOfErrorsAndWithVerboseOfAll) {
+    const BatchResult batch = batch_of_all_kinds();
+    const std::string brief = batch_text(batch, {}), whole = batch_text(batch, {.verbose = true}),
+                      quiet = batch_text(batch, {.quiet = true});
+    EXPECT_THAT(brief, HasSubstr("violation  parts/Gehäuse 50%.nc: 2 errors, 1 warning"));
+    EXPECT_THAT(brief, HasSubstr("error near-miss, line 7"));
+    EXPECT_THAT(brief, HasSubstr("stopped    broken.nc\n           line 3: G999"));
+    EXPECT_THAT(brief, HasSubstr("clear      parts/good.nc: 1 note"));
+    EXPECT_THAT(brief, HasSubstr("4 programs: 1 clear, 1 violation, 1 stopped, 1 not checked"));
+    EXPECT_THAT(brief, HasSubstr("skipped: notes.txt"));
+    EXPECT_THAT(brief, Not(HasSubstr("note air-cut:")));
+    EXPECT_THAT(whole, HasSubstr("note air-cut"));
+    EXPECT_THAT(quiet, Not(HasSubstr("good.nc")));
+    EXPECT_THAT(quiet, Not(HasSubstr("notes.txt")));
+    EXPECT_THAT(quiet, HasSubstr("not checked: late.nc"));
+}
+
+TEST(BatchText, IsColouredOnlyWhenAsked) {
+    const ProgramResult bad = batch_of_all_kinds().programs[1];
+    EXPECT_THAT(program_text(bad, {}), Not(HasSubstr("\033")));
+    EXPECT_THAT(program_text(bad, {.colour = true}), HasSubstr("\033[33mviolation"));
+}
+
+} // namespace
+} // namespace app
