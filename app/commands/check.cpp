@@ -1,45 +1,53 @@
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "app/commands/check_arguments.h"
-#include "app/commands/commands.h"
+#include "app/batch/batch_job.h"
+#include "app/batch/batch_result.h"
+#include "app/commands/check_options.h"
+#include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
 #include "app/report/csv_report.h"
 #include "app/report/json_report.h"
+#include "app/report/junit_report.h"
+#include "app/report/sarif_report.h"
 #include "app/report/text_report.h"
 #include "app/session/part_check.h"
 
 namespace app {
 namespace {
 
-struct Options {
-    CheckArguments what;
-    std::string output, stock, comparison, format = "text";
-    Engine engine = Engine::exact;
-    bool blocks = false;
-    bool pairs = false;
-    bool verdict_only = false;
-};
+/// The reports that tell of one program as of many.
+bool is_of_results(const std::string& format) { return format == "sarif" || format == "junit"; }
 
-std::string report(const Options& options, const CheckRun& run) {
-    if (options.format == "csv") return csv_report(run);
-    if (options.format == "jsonl") return json_lines_report(run, options.pairs);
-    if (options.format == "json") return json_report(run, options.pairs);
+std::string results_report(const std::string& format, ProgramResult result) {
+    BatchResult batch;
+    batch.programs.push_back(std::move(result));
+    std::error_code ignored;
+    return format == "junit" ? junit_report(batch)
+                             : sarif_report(batch, std::filesystem::current_path(ignored).string());
+}
+
+std::string report(const CheckOptions& options, const std::string& format, const CheckJob& job,
+                   const CheckRun& run) {
+    if (is_of_results(format)) return results_report(format, result_of(run, job.setup));
+    if (format == "csv") return csv_report(run);
+    if (format == "jsonl") return json_lines_report(run, options.pairs);
+    if (format == "json") return json_report(run, options.pairs);
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
 
 /// Whether what is to be written can be, as far as that is known beforehand.
-core::Result<void> check_files(const Options& options) {
-    if (auto safe = check_output(options.output, {options.what.program, options.what.setup}); !safe)
-        return safe;
+core::Result<void> check_files(const CheckOptions& options, const CheckJob& job,
+                               const std::vector<ReportTarget>& targets) {
+    if (auto safe = check_targets(targets, {job.program, job.setup}); !safe) return safe;
     for (const std::string& name : {options.stock, options.comparison}) {
         if (name.empty()) continue;
-        if (auto safe =
-                check_output(name, {options.what.program, options.what.setup, options.output});
-            !safe)
-            return safe;
+        if (auto safe = check_output(name, {job.program, job.setup}); !safe) return safe;
+        for (const ReportTarget& target : targets)
+            if (auto safe = check_output(name, {target.path}); !safe) return safe;
         if (auto form = mesh_form(name); !form) return tl::unexpected(form.error());
     }
     if (options.stock.empty()) return {};
@@ -47,7 +55,7 @@ core::Result<void> check_files(const Options& options) {
 }
 
 /// Writes what was asked for beside the report.
-core::Result<void> save_results(const Options& options, CheckRun& run) {
+core::Result<void> save_results(const CheckOptions& options, CheckRun& run) {
     for (const std::string& name : {options.stock, options.comparison})
         if (!name.empty() && run.stopped)
             return tl::unexpected<core::Error>(
@@ -79,22 +87,40 @@ bool say_memory(double bytes) {
     return true;
 }
 
-core::Detail detail_of(const Options& options) {
-    if (options.pairs) return core::Detail::every_pair;
-    return options.verdict_only ? core::Detail::verdict : core::Detail::deciding_pair;
+/// Writes the reports; false if one could not be. A run that did not come to its end goes to
+/// standard output: a file would look like a whole one. SARIF and JUnit say so themselves.
+bool write_reports(const CheckOptions& options, const CheckJob& job, const CheckRun& run,
+                   const std::vector<ReportTarget>& targets) {
+    bool all = true, is_said = false;
+    for (const ReportTarget& target : targets) {
+        const bool is_lost = run.stopped && !is_of_results(target.format);
+        if (is_lost && std::exchange(is_said, true)) continue;
+        const auto written = write_output(is_lost ? std::string() : target.path,
+                                          report(options, target.format, job, run));
+        if (!written) print_error(written.error());
+        all = all && written.has_value();
+    }
+    return all;
 }
 
-ExitCode check(const Options& options) {
-    const auto safe = check_files(options);
-    if (!safe) {
-        print_error(safe.error());
-        return ExitCode::failed;
+/// Tells those who read SARIF or JUnit that a check could not begin.
+ExitCode fail(const CheckJob& job, const core::Error& error,
+              const std::vector<ReportTarget>& targets) {
+    print_error(error);
+    for (const ReportTarget& target : targets) {
+        if (!is_of_results(target.format)) continue;
+        const auto written =
+            write_output(target.path, results_report(target.format, failed_result(job, error)));
+        if (!written) print_error(written.error());
     }
+    return ExitCode::failed;
+}
+
+ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
     auto job = job_of(options.what);
-    if (!job) {
-        print_error(job.error());
-        return ExitCode::failed;
-    }
+    if (!job) return fail({}, job.error(), {});
+    if (const auto safe = check_files(options, *job, targets); !safe)
+        return fail(*job, safe.error(), {});
     stop_on_interrupt();
     ProgressLine line;
     job->detail = detail_of(options);
@@ -107,43 +133,72 @@ ExitCode check(const Options& options) {
     };
     auto run = run_check(*job);
     line.clear();
-    if (!run) {
-        print_error(run.error());
-        return ExitCode::failed;
-    }
+    if (!run) return fail(*job, run.error(), targets);
     if (run->stopped) print_error(*run->stopped);
     const auto saved = save_results(options, *run);
     if (!saved) print_error(saved.error());
-    // A run that did not come to its end goes to standard output: a file would look like a whole
-    // one.
-    const auto written = write_output(run->stopped ? "" : options.output, report(options, *run));
-    if (!written) {
-        print_error(written.error());
-        return ExitCode::failed;
-    }
-    if (run->stopped || !saved) return ExitCode::failed;
+    const bool all_written = write_reports(options, *job, *run, targets);
+    if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
+}
+
+ExitCode check(CheckOptions& options) {
+    const auto targets = targets_of(options);
+    if (!targets) return fail({}, targets.error(), {});
+    if (!is_one_program(options.programs)) return check_batch(options, *targets);
+    options.what.program = options.programs[0];
+    return check_one(options, *targets);
+}
+
+void add_report_options(CLI::App& command, CheckOptions& options) {
+    command
+        .add_option("--format", options.formats,
+                    "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
+                    "program of many), sarif or junit; several with an -o each, in their order")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "sarif", "junit"}))
+        ->default_str("text");
+    command.add_option("-o,--output", options.outputs, "Write the report to this file")
+        ->allow_extra_args(false);
+    command.add_option("--save-stock", options.stock,
+                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
+                       "for a later set-up)");
+    command.add_option("--save-comparison", options.comparison,
+                       "Write what is left, coloured by its deviation from the part (.ply)");
+    command.add_flag("--blocks", options.blocks, "Text: add the table of all blocks that move");
+    CLI::Option* quiet = command.add_flag(
+        "--quiet", options.quiet, "Many programs: name only those with errors, and the summary");
+    command
+        .add_flag("--verbose", options.verbose,
+                  "Many programs: also warnings, notes, assumptions and all skipped files")
+        ->excludes(quiet);
+}
+
+void add_batch_options(CLI::App& command, CheckOptions& options) {
+    command
+        .add_option("-j,--jobs", options.jobs,
+                    "Many programs: so many at the same time; else one for each core")
+        ->check(number_range(1.0, 1024.0));
+    command
+        .add_option("--memory", options.memory,
+                    "Many programs: what the models of all stocks may take together, MB; else "
+                    "half of the machine's")
+        ->check(number_range(1.0, 1e9));
 }
 
 } // namespace
 
 void add_check(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CheckOptions>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
-    add_check_arguments(command, options->what)->required();
-    add_start_line(command, options->what);
     command
-        .add_option("--format", options->format,
-                    "text, json, jsonl (an object to a line) or csv (a row to a block)")
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv"}))
-        ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the report to this file");
-    command.add_option("--save-stock", options->stock,
-                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
-                       "for a later set-up)");
-    command.add_option("--save-comparison", options->comparison,
-                       "Write what is left, coloured by its deviation from the part (.ply)");
-    command.add_flag("--blocks", options->blocks, "Text: add the table of all blocks that move");
+        .add_option("program", options->programs,
+                    "NC programs: files, folders, patterns in quotes, project files (.toml)")
+        ->required();
+    add_check_options(command, options->what);
+    add_start_line(command, options->what);
+    add_report_options(command, *options);
+    add_batch_options(command, *options);
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: add every pair of bodies to every block");
     command

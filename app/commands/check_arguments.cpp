@@ -7,6 +7,11 @@ namespace app {
 
 CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
     CLI::Option* program = command.add_option("program", arguments.program, "NC program");
+    add_check_options(command, arguments);
+    return program;
+}
+
+void add_check_options(CLI::App& command, CheckArguments& arguments) {
     command.add_option(
         "--setup", arguments.setup,
         "Set-up file (TOML); else NAME.toml beside NAME.nc, else what the program says");
@@ -21,7 +26,6 @@ CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
                     "What the model of the stock may take, MB (8590 unless said)")
         ->check(number_range(1.0, 1e9));
     add_program_arguments(command, arguments.reading);
-    return program;
 }
 
 void add_start_line(CLI::App& command, CheckArguments& arguments) {
@@ -34,8 +38,11 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     FEELER_TRY(ProgramSettings settings, settings_of(arguments.reading));
     CheckJob job;
     job.program = arguments.program;
-    job.setup = arguments.setup.empty() ? setup_beside(arguments.program) : arguments.setup;
-    job.setup_was_found = arguments.setup.empty() && !job.setup.empty();
+    job.setup = arguments.setup;
+    if (job.setup.empty() && !job.program.empty()) {
+        job.setup = setup_beside(job.program);
+        job.setup_was_found = !job.setup.empty();
+    }
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;
     if (arguments.memory_limit) job.memory_limit = *arguments.memory_limit * 1e6;

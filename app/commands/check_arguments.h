@@ -12,9 +12,12 @@ struct CheckArguments {
     ProgramArguments reading;
 };
 
-/// Gives a command these options and the program's name. The arguments must outlive it. The option
-/// of the program, for who wants more of it.
+/// Gives a command these options and the program's name. The arguments must outlive it. Result: the
+/// option of the program, for who wants more of it.
 CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments);
+
+/// The same without the program, for who takes more than one.
+void add_check_options(CLI::App& command, CheckArguments& arguments);
 
 /// Gives a command that can start in the middle of a program the option for it, too.
 void add_start_line(CLI::App& command, CheckArguments& arguments);

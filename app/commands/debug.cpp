@@ -39,7 +39,8 @@ public:
     explicit Console(DebugSession& session) : session_(session), prompt_(session) {
         session.is_interrupted = [this] {
             const CheckRun& record = session_.record();
-            line_.show({record.blocks.size(), session_.recorded_share(), record.findings.size()});
+            line_.show(CheckProgress{record.blocks.size(), session_.recorded_share(),
+                                     record.findings.size()});
             return was_interrupted();
         };
     }

@@ -1,5 +1,6 @@
 #include "app/commands/progress.h"
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <utility>
@@ -7,21 +8,35 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/report/text_layout.h"
+
 namespace app {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<int> interrupted = 0; // lock-free: set by a signal, read by any thread
 
 extern "C" void note_interrupt(int) {
     interrupted = 1;
     std::signal(SIGINT, SIG_DFL);
 }
 
-std::string duration_text(double seconds) {
+std::string time_text(double seconds) {
     const auto whole = static_cast<long>(seconds + 0.5);
     if (whole >= 3600) return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
     if (whole >= 60) return fmt::format("{} min {} s", whole / 60, whole % 60);
     return fmt::format("{} s", whole);
+}
+
+std::string bar_text(double share, const std::string& what, double seconds) {
+    constexpr int width = 20;
+    const int filled = static_cast<int>(share * width);
+    std::string text =
+        fmt::format("[{}{}] {:3.0f} %  {}", std::string(static_cast<size_t>(filled), '#'),
+                    std::string(static_cast<size_t>(width - filled), '.'), 100.0 * share, what);
+    // Early guesses are worth nothing.
+    if (share > 0.02 && seconds > 1.0)
+        text += fmt::format(", {} left", time_text(seconds * (1.0 - share) / share));
+    return text.substr(0, 79);
 }
 
 } // namespace
@@ -31,22 +46,26 @@ void stop_on_interrupt() { std::signal(SIGINT, note_interrupt); }
 bool is_interrupted() { return interrupted != 0; }
 
 std::string progress_text(const CheckProgress& progress, double seconds) {
-    constexpr int width = 20;
-    const int filled = static_cast<int>(progress.share * width);
-    std::string text = fmt::format(
-        "[{}{}] {:3.0f} %  {} blocks, {} finding{}", std::string(static_cast<size_t>(filled), '#'),
-        std::string(static_cast<size_t>(width - filled), '.'), 100.0 * progress.share,
-        progress.blocks, progress.findings, progress.findings == 1 ? "" : "s");
-    // Early guesses are worth nothing.
-    if (progress.share > 0.02 && seconds > 1.0)
-        text += fmt::format(", {} left",
-                            duration_text(seconds * (1.0 - progress.share) / progress.share));
-    return text.substr(0, 79);
+    return bar_text(
+        progress.share,
+        fmt::format("{} blocks, {}", progress.blocks, counted(progress.findings, "finding")),
+        seconds);
+}
+
+std::string progress_text(const BatchProgress& progress, double seconds) {
+    return bar_text(progress.share,
+                    fmt::format("{} of {} programs, {} with errors", progress.done,
+                                progress.programs, progress.with_errors),
+                    seconds);
 }
 
 ProgressLine::ProgressLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-void ProgressLine::show(const CheckProgress& progress) {
+void ProgressLine::show(const CheckProgress& progress) { show_any(progress); }
+void ProgressLine::show(const BatchProgress& progress) { show_any(progress); }
+
+template <typename Progress>
+void ProgressLine::show_any(const Progress& progress) {
     using namespace std::chrono_literals;
     if (!is_terminal_) return;
     const Clock::time_point now = Clock::now();

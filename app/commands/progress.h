@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "app/session/check_run.h"
+#include "app/batch/batch_run.h"
 
 namespace app {
 
@@ -21,10 +21,14 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void show(const CheckProgress& progress);
+    void show(const BatchProgress& progress);
     void clear();
 
 private:
     using Clock = std::chrono::steady_clock;
+
+    template <typename Progress>
+    void show_any(const Progress& progress);
 
     bool is_terminal_;
     bool is_shown_ = false;
@@ -34,5 +38,6 @@ private:
 
 /// What the line says, `seconds` after the start. No longer than 79 characters.
 std::string progress_text(const CheckProgress& progress, double seconds);
+std::string progress_text(const BatchProgress& progress, double seconds);
 
 } // namespace app

@@ -84,8 +84,10 @@ TEST_F(BadInput, OfAMissingProgram) {
     expect_refused(check("nope.nc", "good.toml"), {"nope.nc", "No such file"});
 }
 
-TEST_F(BadInput, OfAFolderForAProgram) {
-    expect_refused(check(".", "good.toml"), {"is a directory"});
+TEST_F(BadInput, OfAFolderWithoutPrograms) {
+    std::filesystem::create_directory(folder / "empty");
+    files = folder.names().size();
+    expect_refused(check("empty", "good.toml"), {"empty", "holds no NC program"});
 }
 
 TEST_F(BadInput, OfAnEmptyProgram) { expect_program_refused("", {"bad.nc", "no blocks"}); }

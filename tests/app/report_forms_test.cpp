@@ -105,11 +105,11 @@ TEST(VerdictOnly, FindsTheSameAsAFullCheck) {
 }
 
 TEST(Progress, FitsALineOfATerminal) {
-    EXPECT_EQ(progress_text({.blocks = 1, .share = 0.0, .findings = 1}, 0.2),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .share = 0.0, .findings = 1}, 0.2),
               "[....................]   0 %  1 blocks, 1 finding");
-    EXPECT_EQ(progress_text({.blocks = 4500, .share = 0.25, .findings = 0}, 30.0),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 4500, .share = 0.25, .findings = 0}, 30.0),
               "[#####...............]  25 %  4500 blocks, 0 findings, 1 min 30 s left");
-    EXPECT_LE(progress_text({1'000'000'000, 0.03, 1'000'000}, 1e6).size(), 79U);
+    EXPECT_LE(progress_text(CheckProgress{1'000'000'000, 0.03, 1'000'000}, 1e6).size(), 79U);
 }
 
 TEST(Stopping, KeepsWhatWasCheckedAndSaysSo) {

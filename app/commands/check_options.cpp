@@ -1,0 +1,46 @@
+#include "app/commands/check_options.h"
+
+#include <fmt/format.h>
+
+#include "app/commands/output.h"
+
+namespace app {
+namespace {
+
+tl::unexpected<core::Error> refused(const std::string& why) {
+    return core::fail(core::ErrorCode::invalid_value, why);
+}
+
+} // namespace
+
+core::Result<std::vector<ReportTarget>> targets_of(const CheckOptions& options) {
+    std::vector<ReportTarget> targets;
+    for (const std::string& format : options.formats) targets.push_back({format, {}});
+    if (targets.empty()) targets.push_back({"text", {}});
+    if (options.outputs.size() > targets.size())
+        return refused("there are more -o than --format: say the format of each file");
+    if (targets.size() > options.outputs.size() + 1)
+        return refused("only one report can go to standard output: give -o to the others, in the "
+                       "order of --format");
+    for (size_t i = 0; i < options.outputs.size(); ++i) {
+        targets[i].path = options.outputs[i];
+        for (size_t k = 0; k < i; ++k)
+            if (targets[k].path == targets[i].path)
+                return refused(fmt::format("two reports would go to {}", targets[i].path));
+    }
+    return targets;
+}
+
+core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
+                                 std::initializer_list<std::string> read) {
+    for (const ReportTarget& target : targets)
+        if (auto safe = check_output(target.path, read); !safe) return safe;
+    return {};
+}
+
+core::Detail detail_of(const CheckOptions& options) {
+    if (options.pairs) return core::Detail::every_pair;
+    return options.verdict_only ? core::Detail::verdict : core::Detail::deciding_pair;
+}
+
+} // namespace app

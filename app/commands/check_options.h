@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/check_arguments.h"
+#include "app/commands/commands.h"
+
+namespace app {
+
+/// The options of `feeler check`, as words of a command line.
+struct CheckOptions {
+    CheckArguments what; // its program: the only one, if `programs` is one name
+    std::vector<std::string> programs;
+    std::vector<std::string> formats, outputs;
+    std::string stock, comparison;
+    Engine engine = Engine::exact;
+    bool blocks = false;
+    bool pairs = false;
+    bool verdict_only = false;
+    bool quiet = false;
+    bool verbose = false;
+    std::optional<unsigned> jobs;
+    std::optional<double> memory; // MB
+};
+
+/// A report that is to be written.
+struct ReportTarget {
+    std::string format;
+    std::string path; // empty: standard output
+};
+
+/// Each --format with its --output, in their order; the last ones may go without, to standard
+/// output.
+///
+/// Errors: invalid_value when they do not pair up.
+core::Result<std::vector<ReportTarget>> targets_of(const CheckOptions& options);
+
+/// Refuses targets that are a file that is read here.
+///
+/// Errors: invalid_value, with the path.
+core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
+                                 std::initializer_list<std::string> read);
+
+core::Detail detail_of(const CheckOptions& options);
+
+/// Checks many programs, says a line for each, and writes the reports.
+ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets);
+
+} // namespace app
