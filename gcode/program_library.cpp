@@ -1,11 +1,11 @@
 #include "gcode/program_library.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
-#include "gcode/lexer.h"
+#include "core/base/file_reads.h"
+#include "gcode/program_folder.h"
 
 namespace gcode {
 namespace {
@@ -20,32 +20,20 @@ bool is_plain(const std::string& name) {
            && name != ".." && name.find('\0') == std::string::npos;
 }
 
-/// The file in a folder with this name in any case, resolved; empty when there is none, or when it
-/// is a link that leads out of the folder.
-std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
-    std::error_code error;
-    const fs::path root = fs::canonical(folder, error);
-    if (error) return std::nullopt;
-    std::optional<fs::path> found;
-    const fs::path exact = root / name;
-    if (fs::is_regular_file(exact, error)) found = fs::canonical(exact, error);
-    if (!found || error || found->parent_path() != root) return std::nullopt;
-    return found;
+/// The same as file_in, and who listens is told.
+std::optional<fs::path> looked_up(const std::string& folder, const std::string& name) {
+    const std::optional<fs::path> path = file_in(folder, name);
+    const std::string place = path ? path->string() : std::string();
+    core::note_look({core::FileQuestion::in_folder, folder, name,
+                     path ? std::optional<std::string_view>(place) : std::nullopt});
+    return path;
 }
 
-/// The first file in a folder, by name, that is called so in some case.
-std::optional<std::string> name_in_any_case(const fs::path& folder, const std::string& wanted) {
-    std::optional<std::string> found;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        std::string name = entry->path().filename().string();
-        const auto same = [](char a, char b) { return upper(a) == b; };
-        if (std::equal(name.begin(), name.end(), wanted.begin(), wanted.end(), same)
-            && (!found || name < *found))
-            found = std::move(name);
-    }
-    return found;
+std::optional<std::string> looked_up_in_any_case(const std::string& folder,
+                                                 const std::string& name) {
+    const std::optional<std::string> actual = name_in_any_case(names_in(folder), name);
+    core::note_look({core::FileQuestion::any_case, folder, name, actual});
+    return actual;
 }
 
 } // namespace
@@ -72,7 +60,7 @@ ProgramLibrary::find(const std::vector<std::string>& file_names) {
     for (const std::string& folder : search_path_) {
         for (const std::string& name : file_names) {
             if (!is_plain(name)) continue;
-            const std::optional<fs::path> path = file_in(folder, name);
+            const std::optional<fs::path> path = looked_up(folder, name);
             if (!path) continue;
             if (const auto known = by_path_.find(path->string()); known != by_path_.end())
                 return known->second;
@@ -94,7 +82,7 @@ core::Result<std::optional<uint32_t>>
 ProgramLibrary::find_in_any_case(const std::vector<std::string>& file_names) {
     for (const std::string& folder : search_path_)
         for (const std::string& name : file_names)
-            if (const auto actual = name_in_any_case(folder, name)) return find({*actual});
+            if (const auto actual = looked_up_in_any_case(folder, name)) return find({*actual});
     return std::nullopt;
 }
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/file_reads.h"
 #include "gcode/program_text.h"
 
 namespace gcode {
@@ -31,6 +32,9 @@ public:
             if (auto error = add_piece(text.substr(at, chunk_size))) return error;
         return std::nullopt;
     }
+
+    /// Of the whole file, byte for byte.
+    std::string_view text() const { return program_.text; }
 
     core::Result<Program> finish() &&;
 
@@ -120,7 +124,10 @@ core::Result<std::optional<std::string_view>> Program::find_line(size_t number) 
     return line(number);
 }
 
-core::Result<Program> read_program(const std::string& path) {
+namespace {
+
+/// All of a file, as far as it can be an NC program.
+core::Result<Collector> collected(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         return tl::unexpected(cannot_read(path, "it is a directory; name an NC program in it"));
@@ -139,7 +146,20 @@ core::Result<Program> read_program(const std::string& path) {
             return tl::unexpected(std::move(*error));
     }
     if (stream.bad()) return tl::unexpected(cannot_read(path, "the file system reports an error"));
-    return std::move(collector).finish();
+    return collector;
+}
+
+} // namespace
+
+core::Result<Program> read_program(const std::string& path) {
+    auto collector = collected(path);
+    core::note_look(
+        {core::FileQuestion::content,
+         path,
+         {},
+         collector ? std::optional<std::string_view>(collector->text()) : std::nullopt});
+    if (!collector) return tl::unexpected(std::move(collector).error());
+    return std::move(*collector).finish();
 }
 
 core::Result<Program> open_program(const std::string& path, size_t window) {

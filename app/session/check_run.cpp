@@ -4,6 +4,7 @@
 
 #include "app/session/conclusion.h"
 #include "app/session/device_judge.h"
+#include "app/session/input_recorder.h"
 #include "app/session/program_runner.h"
 #include "app/session/stopwatch.h"
 
@@ -35,6 +36,7 @@ const CheckedBlock* nearest_block(const CheckRun& run) {
 }
 
 core::Result<CheckRun> run_check(const CheckJob& job) {
+    const InputRecorder recorder;
     FEELER_TRY(PreparedCheck check, prepare_check(job));
     const Stopwatch checking;
     ProgramRunner runner(check);
@@ -57,6 +59,8 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     check.run.times.check = checking.seconds();
     const std::vector<LengthDoubt> doubts = runner.length_doubts();
     conclude(check, std::move(runner.place_to_change().machine), doubts, job.needs_surface);
+    check.run.inputs = recorder.inputs();
+    check.run.sha256 = content_in(check.run.inputs, job.program);
     return std::move(check.run);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/session/input_file.h"
 #include "app/session/stock_file.h"
 #include "app/setup/setup_edits.h"
 #include "core/dbm/stock_mesh.h"
@@ -41,6 +42,7 @@ const char* name_of(Engine engine);
 struct CheckRun {
     std::string program_file;
     std::string sha256;
+    std::vector<InputFile> inputs; // all that was read, and looked for in vain
     gcode::DialectId dialect{};
     Engine engine = Engine::exact;
     core::Setup setup;

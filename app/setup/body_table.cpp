@@ -1,13 +1,12 @@
 #include "app/setup/body_table.h"
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "app/setup/text_lines.h"
+#include "core/base/file_reads.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/box_mesh.h"
 #include "core/geom/mesh_file.h"
@@ -211,12 +210,10 @@ std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup,
 }
 
 core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
+    const std::optional<std::string> bytes = core::file_bytes(path);
+    if (!bytes)
         return core::fail(core::ErrorCode::io, "there is no such file, or it cannot be read");
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    return core::stock_record(bytes.str());
+    return core::stock_record(*bytes);
 }
 
 /// A stock as an earlier program left it (check --save-stock).

@@ -4,13 +4,13 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "app/setup/ini_file.h"
 #include "app/setup/tool_file.h"
 #include "app/setup/variables_file.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
@@ -48,8 +48,7 @@ void take_places(gcode::Environment& environment) {
 /// A file that an ini file names, or nothing: LinuxCNC writes some of them only when it ends.
 std::string existing(const std::string& path, const ProgramSettings& settings,
                      std::vector<std::string>& notes) {
-    std::error_code failure;
-    if (path.empty() || std::filesystem::exists(path, failure)) return path;
+    if (path.empty() || core::is_there(path)) return path;
     notes.push_back(fmt::format("{}: there is no {}; it is taken as empty", settings.ini, path));
     return {};
 }

@@ -3,8 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
+
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
@@ -21,18 +22,16 @@ core::Result<std::vector<std::string>> lines_of_file(const std::string& path) {
     std::error_code failure;
     if (std::filesystem::is_directory(path, failure))
         return tl::unexpected(io_error(path, "is a folder, not a file"));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return tl::unexpected(io_error(path, "there is no such file, or no permission"));
+    std::optional<std::string> bytes = core::file_bytes(path, largest_file);
+    if (!bytes) return tl::unexpected(io_error(path, "there is no such file, or no permission"));
+    if (bytes->size() > largest_file)
+        return tl::unexpected(io_error(path, "is larger than 16 MiB: it is no such table"));
+    std::istringstream stream(*std::move(bytes));
     std::vector<std::string> lines;
-    size_t size = 0;
     for (std::string line; std::getline(stream, line);) {
-        size += line.size() + 1;
-        if (size > largest_file)
-            return tl::unexpected(io_error(path, "is larger than 16 MiB: it is no such table"));
         if (line.ends_with('\r')) line.pop_back();
         lines.push_back(std::move(line));
     }
-    if (stream.bad()) return tl::unexpected(io_error(path, "cannot be read to its end"));
     return lines;
 }
 

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "core/base/file_reads.h"
+
 namespace app {
 namespace {
 
@@ -28,8 +30,10 @@ core::Result<toml::table> read_toml(const std::string& path) {
         return tl::unexpected<core::Error>({ErrorCode::io, {}, "is a folder, not a file", path});
     if (!std::filesystem::exists(path, failure))
         return tl::unexpected<core::Error>({ErrorCode::io, {}, "there is no such file", path});
+    const std::optional<std::string> bytes = core::file_bytes(path);
+    if (!bytes) return tl::unexpected<core::Error>({ErrorCode::io, {}, "cannot be read", path});
     try {
-        return toml::table(toml::parse_file(path));
+        return toml::table(toml::parse(*bytes));
     } catch (const toml::parse_error& error) {
         return tl::unexpected(syntax_error(error, path));
     }

@@ -7,6 +7,7 @@
 #include "app/tools/json_tools.h"
 #include "app/tools/tool_text.h"
 #include "app/tools/tool_words.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
@@ -124,12 +125,11 @@ core::Result<FoundTool> tool_of_bit(const json& bit, int number,
 std::optional<std::filesystem::path> find_bit(const std::filesystem::path& library,
                                               const std::string& name) {
     const std::filesystem::path folder = library.parent_path();
-    std::error_code failure;
     for (const std::filesystem::path& candidate :
          {folder / name, folder.parent_path() / "Bit" / name, folder / "Bit" / name,
           folder / std::filesystem::path(name).filename(),
           folder.parent_path() / "Bit" / std::filesystem::path(name).filename()})
-        if (std::filesystem::is_regular_file(candidate, failure)) return candidate;
+        if (core::is_file(candidate)) return candidate;
     return std::nullopt;
 }
 

@@ -1,13 +1,12 @@
 #include "app/tools/tool_library.h"
 
-#include <fstream>
-
 #include <fmt/format.h>
 
 #include "app/setup/text_lines.h"
 #include "app/setup/tool_file.h"
 #include "app/tools/json_tools.h"
 #include "app/tools/tool_text.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
@@ -82,12 +81,12 @@ core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit 
 } // namespace
 
 core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure))
+    const std::optional<std::string> bytes =
+        core::is_file(path) ? core::file_bytes(path) : std::nullopt;
+    if (!bytes)
         return tl::unexpected(
             core::Error{ErrorCode::io, {}, "there is no such file", path.string()});
-    std::ifstream stream(path, std::ios::binary);
-    nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+    nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
     if (json.is_discarded())
         return tl::unexpected(core::Error{ErrorCode::syntax, {}, "is no JSON", path.string()});
     return json;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "core/base/file_reads.h"
 #include "core/geom/mesh_check.h"
 #include "core/geom/mesh_text.h"
 #include "core/geom/polygon_soup.h"
@@ -29,11 +30,9 @@ Result<std::string> read_bytes(const std::filesystem::path& path) {
     if (size > largest_file)
         return fail(ErrorCode::unsupported,
                     fmt::format("the file has {} bytes; meshes up to 2 GiB are read", size));
-    std::string bytes(size, '\0');
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
-        return fail(ErrorCode::io, "the file cannot be read");
-    return bytes;
+    std::optional<std::string> bytes = file_bytes(path);
+    if (!bytes || bytes->size() < size) return fail(ErrorCode::io, "the file cannot be read");
+    return *std::move(bytes);
 }
 
 bool is_text_stl(std::string_view bytes) {

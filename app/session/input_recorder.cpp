@@ -1,0 +1,24 @@
+#include "app/session/input_recorder.h"
+
+#include "app/session/digest.h"
+
+namespace app {
+
+InputRecorder::InputRecorder() : listening_([this](const core::FileLook& look) { note(look); }) {}
+
+void InputRecorder::note(const core::FileLook& look) {
+    InputFile input{look.question, look.path, look.name, std::nullopt};
+    if (look.answer)
+        input.answer = look.question == core::FileQuestion::content ? sha256_of(*look.answer)
+                                                                    : std::string(*look.answer);
+    inputs_.insert(std::move(input));
+}
+
+std::string content_in(const std::vector<InputFile>& inputs, const std::string& path) {
+    for (const InputFile& input : inputs)
+        if (input.question == core::FileQuestion::content && input.path == path)
+            return input.answer.value_or("");
+    return {};
+}
+
+} // namespace app

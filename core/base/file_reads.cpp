@@ -1,0 +1,72 @@
+#include "core/base/file_reads.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <utility>
+
+namespace core {
+namespace {
+
+thread_local const FileListening* youngest = nullptr;
+
+/// What answers the question of presence.
+std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
+    std::error_code failure;
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    if (!std::filesystem::exists(status)) return std::nullopt;
+    return std::filesystem::is_regular_file(status) ? "file" : "other";
+}
+
+std::optional<std::string_view> noted_presence(const std::filesystem::path& path) {
+    const std::optional<std::string_view> answer = presence_of(path);
+    note_look({FileQuestion::presence, path.string(), {}, answer});
+    return answer;
+}
+
+std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t limit) {
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) return std::nullopt;
+    std::string bytes;
+    std::array<char, 65536> chunk;
+    while (stream && bytes.size() <= limit) {
+        const size_t wanted = std::min(chunk.size(), limit + 1 - bytes.size());
+        stream.read(chunk.data(), static_cast<std::streamsize>(wanted));
+        bytes.append(chunk.data(), static_cast<size_t>(stream.gcount()));
+    }
+    if (stream.bad()) return std::nullopt;
+    return bytes;
+}
+
+} // namespace
+
+FileListening::FileListening(Told told) : told_(std::move(told)), older_(youngest) {
+    youngest = this;
+}
+
+FileListening::~FileListening() { youngest = older_; }
+
+void note_look(const FileLook& look) {
+    if (!youngest) return;
+    const int reason = errno;
+    youngest->told_(look);
+    errno = reason;
+}
+
+std::optional<std::string> file_bytes(const std::filesystem::path& path, size_t limit) {
+    std::optional<std::string> bytes = read_bytes(path, limit);
+    const bool is_whole = bytes && bytes->size() <= limit;
+    note_look({FileQuestion::content,
+               path.string(),
+               {},
+               is_whole ? std::optional<std::string_view>(*bytes) : std::nullopt});
+    return bytes;
+}
+
+bool is_there(const std::filesystem::path& path) { return noted_presence(path).has_value(); }
+
+bool is_file(const std::filesystem::path& path) { return noted_presence(path) == "file"; }
+
+} // namespace core

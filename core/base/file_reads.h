@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace core {
+
+/// What a reader asks the disk.
+enum class FileQuestion : uint8_t {
+    content,   // of the file: its bytes; no answer when it cannot be read, or not to its end
+    presence,  // "file", or "other" for a folder or a device; no answer when there is none
+    in_folder, // where a file of that name leads to; no answer when there is none in the folder
+    any_case,  // the name of a file that is called so in any case; no answer when there is none
+};
+
+/// A question to the disk and what it answered.
+struct FileLook {
+    FileQuestion question{};
+    std::string path; // of the file, or of the folder that is asked about a name
+    std::string name{};
+    std::optional<std::string_view> answer{};
+};
+
+/// While it lives, somebody is told of every look that readers of this thread take at the disk. It
+/// is how a check knows its inputs: all of the stack asks by the functions below. Of two that live,
+/// the younger is told.
+class FileListening {
+public:
+    using Told = std::function<void(const FileLook&)>;
+
+    explicit FileListening(Told told);
+    ~FileListening();
+    FileListening(const FileListening&) = delete;
+    FileListening& operator=(const FileListening&) = delete;
+
+private:
+    Told told_;
+    const FileListening* older_;
+
+    friend void note_look(const FileLook& look);
+};
+
+/// Tells who listens on this thread, if anybody does. errno stays what it was.
+void note_look(const FileLook& look);
+
+/// The bytes of a file; empty when it cannot be read, with the reason in errno. Of a file that is
+/// longer than `limit` one byte more than that is read.
+std::optional<std::string> file_bytes(const std::filesystem::path& path,
+                                      size_t limit = std::numeric_limits<size_t>::max() - 1);
+
+/// Whether there is anything of this name.
+bool is_there(const std::filesystem::path& path);
+
+/// Whether there is a file of this name that has bytes to be read.
+bool is_file(const std::filesystem::path& path);
+
+} // namespace core

@@ -1,0 +1,41 @@
+#include "gcode/program_folder.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "gcode/lexer.h"
+
+namespace gcode {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
+    std::error_code error;
+    const fs::path root = fs::canonical(folder, error);
+    if (error) return std::nullopt;
+    std::optional<fs::path> found;
+    const fs::path exact = root / name;
+    if (fs::is_regular_file(exact, error)) found = fs::canonical(exact, error);
+    if (!found || error || found->parent_path() != root) return std::nullopt;
+    return found;
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error))
+        names.push_back(entry->path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::optional<std::string> name_in_any_case(std::span<const std::string> names,
+                                            const std::string& wanted) {
+    const auto same = [](char a, char b) { return upper(a) == b; };
+    for (const std::string& name : names)
+        if (std::equal(name.begin(), name.end(), wanted.begin(), wanted.end(), same)) return name;
+    return std::nullopt;
+}
+
+} // namespace gcode

@@ -1,0 +1,71 @@
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/base/file_reads.h"
+#include "tests/support/scoped_folder.h"
+
+namespace {
+
+using core::FileLook;
+using core::FileQuestion;
+using test_support::ScopedFolder;
+
+/// "content a: hello", "presence b: -" and so on, with the file's own name only.
+struct Looks {
+    std::vector<std::string> seen;
+    core::FileListening listening{[this](const FileLook& look) {
+        const char* const words[] = {"content", "presence", "in_folder", "any_case"};
+        seen.push_back(std::string(words[static_cast<int>(look.question)]) + " "
+                       + std::filesystem::path(look.path).filename().string() + ": "
+                       + std::string(look.answer.value_or("-")));
+    }};
+};
+
+TEST(FileReads, TellOfWhatWasReadAndOfWhatIsNotThere) {
+    const ScopedFolder folder;
+    folder.write("a", "hello");
+    const Looks looks;
+    EXPECT_EQ(core::file_bytes(folder / "a"), "hello");
+    EXPECT_EQ(core::file_bytes(folder / "b"), std::nullopt);
+    EXPECT_TRUE(core::is_file(folder / "a"));
+    EXPECT_FALSE(core::is_there(folder / "b"));
+    EXPECT_FALSE(core::is_file(folder.path()));
+    const std::string own = folder.path().filename().string();
+    EXPECT_EQ(looks.seen,
+              (std::vector<std::string>{"content a: hello", "content b: -", "presence a: file",
+                                        "presence b: -", "presence " + own + ": other"}));
+}
+
+TEST(FileReads, OfAFileBeyondTheLimitIsNoContent) {
+    const ScopedFolder folder;
+    folder.write("a", "123456");
+    const Looks looks;
+    EXPECT_EQ(core::file_bytes(folder / "a", 6), "123456");
+    EXPECT_EQ(core::file_bytes(folder / "a", 5), "123456");
+    EXPECT_EQ(core::file_bytes(folder / "a", 3), "1234");
+    EXPECT_EQ(looks.seen,
+              (std::vector<std::string>{"content a: 123456", "content a: -", "content a: -"}));
+}
+
+TEST(FileReads, TheYoungestListenerIsToldAndThenTheOneBefore) {
+    const ScopedFolder folder;
+    folder.write("a", "1");
+    const Looks older;
+    {
+        const Looks younger;
+        core::file_bytes(folder / "a");
+        EXPECT_EQ(younger.seen.size(), 1u);
+    }
+    EXPECT_TRUE(older.seen.empty());
+    core::file_bytes(folder / "a");
+    EXPECT_EQ(older.seen.size(), 1u);
+}
+
+TEST(FileReads, LeaveTheReasonOfAFailureInErrno) {
+    const core::FileListening listening([](const FileLook&) { errno = 0; });
+    EXPECT_FALSE(core::file_bytes("/nowhere/at/all"));
+    EXPECT_EQ(errno, ENOENT);
+}
+
+} // namespace
