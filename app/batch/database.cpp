@@ -1,0 +1,130 @@
+#include "app/batch/database.h"
+
+#include <utility>
+
+#include <sqlite3.h>
+
+namespace app {
+namespace {
+
+constexpr int patience_ms = 60'000; // while others write
+
+core::Error error_of(sqlite3* database, const std::string& path) {
+    const char* message = database ? sqlite3_errmsg(database) : "there is not enough memory";
+    return {core::ErrorCode::io, {}, message, path};
+}
+
+} // namespace
+
+void Statement::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Statement& Statement::bind(int parameter, std::string_view text) {
+    // A view of nothing may have no place, which SQLite would take for null.
+    sqlite3_bind_text64(statement_.get(), parameter, text.data() ? text.data() : "", text.size(),
+                        SQLITE_TRANSIENT, SQLITE_UTF8);
+    return *this;
+}
+
+Statement& Statement::bind(int parameter, int64_t number) {
+    sqlite3_bind_int64(statement_.get(), parameter, number);
+    return *this;
+}
+
+core::Result<bool> Statement::step() {
+    const int code = sqlite3_step(statement_.get());
+    if (code == SQLITE_ROW) return true;
+    if (code == SQLITE_DONE) return false;
+    const core::Error error = error_of(sqlite3_db_handle(statement_.get()), path_);
+    sqlite3_reset(statement_.get());
+    return tl::unexpected(error);
+}
+
+core::Result<void> Statement::finish() {
+    for (bool more = true; more;) {
+        FEELER_TRY(more, step());
+    }
+    reset();
+    return {};
+}
+
+void Statement::reset() {
+    sqlite3_reset(statement_.get());
+    sqlite3_clear_bindings(statement_.get());
+}
+
+std::string Statement::text(int column) const {
+    const auto* bytes =
+        reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+    const auto size = static_cast<size_t>(sqlite3_column_bytes(statement_.get(), column));
+    return bytes ? std::string(bytes, size) : std::string();
+}
+
+int64_t Statement::number(int column) const {
+    return sqlite3_column_int64(statement_.get(), column);
+}
+
+void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+
+core::Error Database::error() const { return error_of(database_.get(), path_); }
+
+core::Result<Database> Database::open(const std::string& path, Access access) {
+    const int flags = access == Access::read_only ? SQLITE_OPEN_READONLY
+                                                  : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    sqlite3* opened = nullptr;
+    // With a "./" no name can be taken for an address or a name of SQLite's own.
+    const std::string name = path.starts_with('/') ? path : "./" + path;
+    const int code = sqlite3_open_v2(name.c_str(), &opened, flags, nullptr);
+    Database database;
+    database.path_ = path;
+    database.database_.reset(opened);
+    if (code != SQLITE_OK) return tl::unexpected(database.error());
+    sqlite3_busy_timeout(opened, patience_ms);
+    return database;
+}
+
+core::Result<void> Database::run(const std::string& sql) {
+    if (sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+        return tl::unexpected(error());
+    return {};
+}
+
+core::Result<Statement> Database::prepare(const std::string& sql) {
+    sqlite3_stmt* prepared = nullptr;
+    const int code = sqlite3_prepare_v3(database_.get(), sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT,
+                                        &prepared, nullptr);
+    Statement statement;
+    statement.statement_.reset(prepared);
+    statement.path_ = path_;
+    if (code != SQLITE_OK) return tl::unexpected(error());
+    return statement;
+}
+
+core::Result<int64_t> Database::number(const std::string& sql) {
+    FEELER_TRY(Statement statement, prepare(sql));
+    FEELER_TRY(const bool found, statement.step());
+    return found ? statement.number(0) : 0;
+}
+
+int64_t Database::last_row() const { return sqlite3_last_insert_rowid(database_.get()); }
+
+core::Result<Transaction> Transaction::begin(Database& database) {
+    if (auto begun = database.run("BEGIN IMMEDIATE"); !begun)
+        return tl::unexpected(std::move(begun).error());
+    return Transaction(database);
+}
+
+Transaction::Transaction(Transaction&& other) noexcept
+    : database_(std::exchange(other.database_, nullptr)) {}
+
+Transaction::~Transaction() {
+    // Where this fails SQLite has rolled back already.
+    if (database_) (void)database_->run("ROLLBACK");
+}
+
+core::Result<void> Transaction::commit() {
+    if (auto done = database_->run("COMMIT"); !done) return done;
+    database_ = nullptr;
+    return {};
+}
+
+} // namespace app

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace app {
+
+/// A statement of SQL, prepared once and run as often as one likes. Parameters count from 1,
+/// columns from 0, as with SQLite.
+class Statement {
+public:
+    /// A parameter that was not given since the last reset is null.
+    Statement& bind(int parameter, std::string_view text);
+    Statement& bind(int parameter, int64_t number);
+
+    /// Whether there is a (further) row.
+    ///
+    /// Errors: io, with the file: whatever keeps the statement from being carried out. It can be
+    ///         run again after a reset.
+    core::Result<bool> step();
+
+    /// Runs it to its end and makes it ready for the next time.
+    ///
+    /// Errors: as step.
+    core::Result<void> finish();
+
+    /// Ready for the next time, without parameters.
+    void reset();
+
+    std::string text(int column) const;
+    int64_t number(int column) const;
+
+private:
+    friend class Database;
+    struct Close {
+        void operator()(sqlite3_stmt* statement) const;
+    };
+
+    std::unique_ptr<sqlite3_stmt, Close> statement_;
+    std::string path_;
+};
+
+/// An SQLite database in a file. Of one thread at a time; several processes may have it open.
+class Database {
+public:
+    enum class Access : uint8_t { read_only, read_write };
+
+    /// Opens the file; with read_write it is made when it is not there. Whoever finds it in use
+    /// waits up to a minute.
+    ///
+    /// Errors: io, with the file.
+    static core::Result<Database> open(const std::string& path, Access access);
+
+    /// Runs statements that give no rows.
+    ///
+    /// Errors: io, with the file.
+    core::Result<void> run(const std::string& sql);
+
+    /// Errors: io, with the file, also when the database has no such tables.
+    core::Result<Statement> prepare(const std::string& sql);
+
+    /// The one number that a statement gives.
+    ///
+    /// Errors: io, with the file.
+    core::Result<int64_t> number(const std::string& sql);
+
+    int64_t last_row() const;
+
+private:
+    struct Close {
+        void operator()(sqlite3* database) const;
+    };
+
+    core::Error error() const;
+
+    std::unique_ptr<sqlite3, Close> database_;
+    std::string path_;
+};
+
+/// Everything done while it lives is done wholly when it is committed, else not at all.
+class Transaction {
+public:
+    /// Waits until nobody else writes.
+    ///
+    /// Errors: io, with the file.
+    static core::Result<Transaction> begin(Database& database);
+
+    Transaction(Transaction&& other) noexcept;
+    Transaction& operator=(Transaction&&) = delete;
+    ~Transaction();
+
+    core::Result<void> commit();
+
+private:
+    explicit Transaction(Database& database) : database_(&database) {}
+
+    Database* database_; // null when it is over
+};
+
+} // namespace app

@@ -1,0 +1,106 @@
+#include "app/batch/store_file.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+namespace app {
+namespace {
+
+constexpr int64_t application = 0x4665656C; // "Feel"
+constexpr int64_t format = 1;
+
+/// Results are never changed. What a check read is shared by all results that read the same.
+constexpr const char* tables = R"(
+CREATE TABLE program(
+    id INTEGER PRIMARY KEY,
+    path TEXT NOT NULL UNIQUE -- as seen from the database's folder
+) STRICT;
+CREATE TABLE result(
+    id INTEGER PRIMARY KEY,
+    program INTEGER NOT NULL REFERENCES program(id),
+    key TEXT NOT NULL,        -- of the job: see result_key
+    looks TEXT NOT NULL,      -- a digest of all looks
+    setup TEXT NOT NULL,
+    options TEXT NOT NULL,
+    version TEXT NOT NULL,
+    checked_at INTEGER NOT NULL, -- seconds since 1970
+    value TEXT NOT NULL,      -- JSON of a ProgramResult
+    seal TEXT NOT NULL,       -- a digest of key, looks and value
+    UNIQUE(key, looks)
+) STRICT;
+CREATE INDEX result_of_program ON result(program, id);
+CREATE TABLE look(
+    id INTEGER PRIMARY KEY,
+    question INTEGER NOT NULL,
+    path TEXT NOT NULL,
+    name TEXT NOT NULL,
+    answer TEXT NOT NULL,     -- "=" and the answer; empty when there was none
+    UNIQUE(question, path, name, answer)
+) STRICT;
+CREATE TABLE result_look(
+    result INTEGER NOT NULL REFERENCES result(id) ON DELETE CASCADE,
+    look INTEGER NOT NULL REFERENCES look(id),
+    PRIMARY KEY(result, look)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX look_of_result ON result_look(look);
+)";
+
+/// A rollback journal, not a log beside the file: that one needs memory shared by all who have the
+/// database open, which there is none of across a network. It stays when a result was kept, which
+/// is a tenth of the time that truncating it takes. FULL: a result that was kept outlives a power
+/// cut, and half of one never appears.
+constexpr const char* manners = "PRAGMA foreign_keys = ON;"
+                                "PRAGMA trusted_schema = OFF;"
+                                "PRAGMA journal_mode = PERSIST;"
+                                "PRAGMA synchronous = FULL;";
+
+core::Error refusal(const std::string& path, std::string why) {
+    return {core::ErrorCode::unsupported, {}, std::move(why), path};
+}
+
+/// Two who find the file empty at once take turns, and the second finds the tables of the first.
+core::Result<void> make_tables(Database& database) {
+    FEELER_TRY(Transaction making, Transaction::begin(database));
+    FEELER_TRY(const int64_t made, database.number("PRAGMA user_version"));
+    if (made == 0) {
+        if (auto done = database.run(tables); !done) return tl::unexpected(std::move(done).error());
+        if (auto done = database.run(fmt::format("PRAGMA application_id = {}", application)); !done)
+            return tl::unexpected(std::move(done).error());
+        if (auto done = database.run(fmt::format("PRAGMA user_version = {}", format)); !done)
+            return tl::unexpected(std::move(done).error());
+    }
+    return making.commit();
+}
+
+core::Result<void> settle(Database& database, const std::string& path) {
+    FEELER_TRY(const int64_t found, database.number("PRAGMA user_version"));
+    FEELER_TRY(const int64_t whose, database.number("PRAGMA application_id"));
+    FEELER_TRY(const int64_t content, database.number("SELECT count(*) FROM sqlite_schema"));
+    if (content > 0 && whose != application)
+        return tl::unexpected(refusal(path, "is a database of another program"));
+    if (found > format)
+        return tl::unexpected(
+            refusal(path, fmt::format("was written by a newer version of Feeler (its format is {}, "
+                                      "this version knows {})",
+                                      found, format)));
+    if (auto done = database.run(manners); !done) return tl::unexpected(std::move(done).error());
+    return content > 0 ? core::Result<void>{} : make_tables(database);
+}
+
+} // namespace
+
+std::string default_store_path(const std::string& folder) {
+    return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler/results.db").string();
+}
+
+core::Result<Database> open_store_file(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::error_code failure; // which opening the file tells as well
+    if (folder.filename() == ".feeler") std::filesystem::create_directory(folder, failure);
+    FEELER_TRY(Database database, Database::open(path, Database::Access::read_write));
+    if (auto done = settle(database, path); !done) return tl::unexpected(std::move(done).error());
+    return database;
+}
+
+} // namespace app

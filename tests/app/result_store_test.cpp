@@ -1,0 +1,273 @@
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "app/batch/database.h"
+#include "app/batch/result_key.h"
+#include "app/batch/result_store.h"
+#include "app/batch/store_file.h"
+#include "app/session/digest.h"
+#include "tests/support/scoped_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using app::CheckJob;
+using app::CheckRun;
+using app::ProgramResult;
+using app::ResultStore;
+using core::FileQuestion;
+using test_support::ScopedFolder;
+
+app::InputFile content(const std::string& path) {
+    return {FileQuestion::content, path, {}, app::sha256_of_file(path)};
+}
+
+ResultStore opened(const std::string& path, const std::string& version = "1") {
+    auto store = ResultStore::open(path, version);
+    if (!store) throw std::runtime_error(store.error().message);
+    return *std::move(store);
+}
+
+/// A program and a mesh, what a check of them read, and what it is taken to have said.
+class Kept : public testing::Test {
+protected:
+    Kept() {
+        job.program = folder.write("a.nc", "G0 X1\n");
+        job.setup = folder.write("job.toml", "mesh_size = 1\n");
+        folder.write("vise.stl", "solid");
+        run.sha256 = app::sha256_of_file(job.program);
+        run.inputs = {content(job.program),
+                      content(job.setup),
+                      content(folder / "vise.stl"),
+                      {FileQuestion::presence, folder / "control.var", {}, std::nullopt},
+                      {FileQuestion::in_folder, folder.path(), "O9000.nc", std::nullopt},
+                      {FileQuestion::any_case, folder.path(), "POCKET.SPF", std::nullopt}};
+        result.program = job.program;
+        result.setup = job.setup;
+        result.sha256 = run.sha256;
+        result.cycle_time = 0.1 + 0.2;
+        result.assumptions = {"ein \"Maß\""};
+    }
+
+    void keep() {
+        const auto kept = opened(path).keep(job, run, result);
+        EXPECT_TRUE(kept) << kept.error().message;
+    }
+
+    std::optional<ProgramResult> found(const CheckJob& asked) {
+        const auto answer = opened(path).find(asked);
+        EXPECT_TRUE(answer) << answer.error().message;
+        return answer ? *answer : std::nullopt;
+    }
+
+    const ScopedFolder folder;
+    const std::string path = folder / "results.db";
+    CheckJob job;
+    CheckRun run;
+    ProgramResult result;
+};
+
+TEST_F(Kept, IsFoundAgainToTheLastBit) {
+    EXPECT_EQ(found(job), std::nullopt);
+    keep();
+    EXPECT_EQ(found(job), result);
+}
+
+TEST_F(Kept, IsNotFoundWhenAnythingThatWasReadIsOther) {
+    keep();
+    for (const char* name : {"a.nc", "job.toml", "vise.stl"}) {
+        SCOPED_TRACE(name);
+        const std::string before = test_support::bytes_of(folder / name);
+        folder.write(name, before + "\n");
+        EXPECT_EQ(found(job), std::nullopt);
+        fs::remove(folder / name);
+        EXPECT_EQ(found(job), std::nullopt);
+        folder.write(name, before);
+        EXPECT_EQ(found(job), result);
+    }
+    for (const char* name : {"control.var", "O9000.nc", "Pocket.spf"}) {
+        SCOPED_TRACE(name);
+        folder.write(name, "%");
+        EXPECT_EQ(found(job), std::nullopt);
+        fs::remove(folder / name);
+        EXPECT_EQ(found(job), result);
+    }
+}
+
+TEST_F(Kept, IsNotFoundForOtherOptionsOrByAnotherVersion) {
+    keep();
+    std::vector<CheckJob> others(8, job);
+    others[0].allowance = 2.0;
+    others[1].mesh_size = 0.25;
+    others[2].detail = core::Detail::verdict;
+    others[3].engine = app::Engine::coprocessor;
+    others[4].start_line = "N20";
+    others[5].settings.dialect = gcode::DialectId::haas;
+    others[6].settings.start[2] = 0.0;
+    others[7].setup.clear();
+    for (size_t i = 0; i < others.size(); ++i) EXPECT_EQ(found(others[i]), std::nullopt) << i;
+    EXPECT_EQ(*opened(path, "2").find(job), std::nullopt);
+    CheckJob roomier = job;
+    roomier.memory_limit = 1e9;
+    EXPECT_EQ(found(roomier), result);
+}
+
+TEST_F(Kept, AreBothVersionsOfASetupThatGoesToAndFro) {
+    keep();
+    folder.write("job.toml", "mesh_size = 2\n");
+    run.inputs[1] = content(job.setup);
+    ProgramResult second = result;
+    second.verdict = core::Verdict::collision;
+    const auto kept = opened(path).keep(job, run, second);
+    ASSERT_TRUE(kept) << kept.error().message;
+    EXPECT_EQ(found(job), second);
+    folder.write("job.toml", "mesh_size = 1\n");
+    EXPECT_EQ(found(job), result);
+    const auto versions = opened(path).history(job.program);
+    ASSERT_TRUE(versions);
+    ASSERT_EQ(versions->size(), 2u);
+    EXPECT_EQ((*versions)[0].result, result);
+    EXPECT_EQ((*versions)[1].result, second);
+    EXPECT_NE((*versions)[0].inputs, (*versions)[1].inputs);
+}
+
+TEST_F(Kept, IsOneRowHoweverOftenItIsKept) {
+    keep();
+    keep();
+    EXPECT_EQ(opened(path).history(job.program)->size(), 1u);
+}
+
+TEST_F(Kept, HistoryIsThatOfTheProgramFromWhereverItIsNamed) {
+    keep();
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    const auto versions = opened("results.db").history("./a.nc");
+    fs::current_path(before);
+    ASSERT_TRUE(versions);
+    EXPECT_EQ(versions->size(), 1u);
+}
+
+TEST_F(Kept, AreNoRunsThatWereStopped) {
+    run.stopped = core::Error{core::ErrorCode::io, {}, "the check was stopped after this block"};
+    keep();
+    EXPECT_EQ(found(job), std::nullopt);
+    run.stopped = core::Error{core::ErrorCode::syntax, {}, "X has no number"};
+    keep();
+    EXPECT_EQ(found(job), result);
+}
+
+TEST_F(Kept, IsNotFoundWhenItWasDamaged) {
+    keep();
+    {
+        auto database = app::open_store_file(path);
+        ASSERT_TRUE(database);
+        ASSERT_TRUE(database->run("UPDATE result SET value = replace(value, 'clear', 'xlear'), "
+                                  "value = replace(value, 'undecided', 'clear')"));
+    }
+    EXPECT_EQ(found(job), std::nullopt);
+    EXPECT_TRUE(opened(path).history(job.program)->empty());
+}
+
+std::string why_not(const std::string& path) {
+    const auto store = ResultStore::open(path, "1");
+    return store ? "" : store.error().message;
+}
+
+TEST(ResultStore, RefusesFilesThatAreNotItsOwn) {
+    const ScopedFolder folder;
+    EXPECT_EQ(why_not(folder.write("text", std::string(5000, 'x'))), "file is not a database");
+    EXPECT_EQ(why_not(folder.path()), "unable to open database file");
+    EXPECT_EQ(why_not(folder / "nowhere/results.db"), "unable to open database file");
+    auto other = app::Database::open(folder / "other", app::Database::Access::read_write);
+    ASSERT_TRUE(other && other->run("CREATE TABLE customer(name)"));
+    EXPECT_EQ(why_not(folder / "other"), "is a database of another program");
+    { const ResultStore made = opened(folder / "newer"); }
+    auto newer = app::Database::open(folder / "newer", app::Database::Access::read_write);
+    ASSERT_TRUE(newer && newer->run("PRAGMA user_version = 2"));
+    EXPECT_EQ(why_not(folder / "newer"), "was written by a newer version of Feeler (its format is "
+                                         "2, this version knows 1)");
+}
+
+TEST(ResultStore, LiesInAFolderOfItsOwnUnlessAnotherIsNamed) {
+    const ScopedFolder folder;
+    const std::string path = app::default_store_path(folder.path());
+    EXPECT_EQ(why_not(path), "");
+    EXPECT_TRUE(fs::is_regular_file(folder / ".feeler/results.db"));
+}
+
+/// Job `number` of a folder, each with a program of its own.
+struct Numbered {
+    Numbered(const ScopedFolder& folder, int number) {
+        job.program = folder.write(fmt::format("{}.nc", number), fmt::format("G0 X{}\n", number));
+        run.sha256 = app::sha256_of_file(job.program);
+        run.inputs = {content(job.program), content(folder / "vise.stl")};
+        result.program = job.program;
+        result.cycle_time = number;
+    }
+
+    CheckJob job;
+    CheckRun run;
+    ProgramResult result;
+};
+
+TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
+    const ScopedFolder folder;
+    folder.write("vise.stl", "solid");
+    std::vector<Numbered> jobs;
+    for (int i = 0; i < 60; ++i) jobs.emplace_back(folder, i);
+    std::atomic<int> refused = 0;
+    std::vector<std::thread> threads;
+    ResultStore shared = opened(folder / "db");
+    for (int thread = 0; thread < 4; ++thread) {
+        threads.emplace_back([&, thread] {
+            ResultStore own = opened(folder / "db"); // as another process would have
+            ResultStore& store = thread < 2 ? shared : own;
+            for (int i = thread % 2; i < 60; i += 2)
+                if (!store.keep(jobs[i].job, jobs[i].run, jobs[i].result)) ++refused;
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(refused, 0);
+    ResultStore store = opened(folder / "db");
+    for (const Numbered& each : jobs) EXPECT_EQ(*store.find(each.job), each.result);
+    EXPECT_EQ(store.history(jobs[0].job.program)->size(), 1u);
+}
+
+TEST(ResultStore, FindsAThousandResultsInASecond) {
+    const ScopedFolder folder;
+    folder.write("vise.stl", std::string(1'000'000, 'v'));
+    ResultStore filled = opened(folder / "db");
+    for (int i = 0; i < 1000; ++i) {
+        const Numbered each(folder, i);
+        ASSERT_TRUE(filled.keep(each.job, each.run, each.result));
+    }
+    CheckJob job;
+    const auto begin = std::chrono::steady_clock::now();
+    ResultStore store = opened(folder / "db");
+    for (int i = 0; i < 1000; ++i) {
+        job.program = folder / fmt::format("{}.nc", i);
+        ASSERT_TRUE(store.find(job)->has_value()) << i;
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(taken.count(), 1.0);
+}
+
+TEST(ResultKey, NamesAnyBytesOfAPathApart) {
+    CheckJob latin, utf8;
+    latin.settings.ini = "fr\xe4s.ini";
+    utf8.settings.ini = "fr\xc3\xa4s.ini";
+    EXPECT_NE(*app::options_text(latin), *app::options_text(utf8));
+}
+
+TEST(ResultKey, HoldsTheBuildOfTheProgram) {
+    EXPECT_GE(app::build_version().size(), 40u);
+    EXPECT_EQ(app::build_version(), app::build_version());
+}
+
+} // namespace
