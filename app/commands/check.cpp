@@ -10,6 +10,7 @@
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
 #include "app/report/csv_report.h"
+#include "app/report/html_report.h"
 #include "app/report/json_report.h"
 #include "app/report/junit_report.h"
 #include "app/report/sarif_report.h"
@@ -36,6 +37,7 @@ std::string report(const CheckOptions& options, const std::string& format, const
     if (format == "csv") return csv_report(run);
     if (format == "jsonl") return json_lines_report(run, options.pairs);
     if (format == "json") return json_report(run, options.pairs);
+    if (format == "html") return html_report(run, {});
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
 
@@ -156,7 +158,7 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
                     "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
                     "program of many), sarif or junit; several with an -o each, in their order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "sarif", "junit"}))
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
         ->default_str("text");
     command.add_option("-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);

@@ -89,22 +89,6 @@ std::string blocks_text(const CheckRun& run) {
     return text + "\n";
 }
 
-std::string counts_text(const CheckRun& run) {
-    std::map<core::Severity, size_t> counts;
-    for (const core::Finding& finding : run.findings) ++counts[finding.severity];
-    return fmt::format("{}, {}, {}", counted(counts[core::Severity::error], "error"),
-                       counted(counts[core::Severity::warning], "warning"),
-                       counted(counts[core::Severity::note], "note"));
-}
-
-/// The line that is read first.
-std::string outcome_text(const CheckRun& run) {
-    if (run.stopped) return "STOPPED, not checked to its end";
-    if (run.verdict == core::Verdict::clear && run.has_errors())
-        return "ERRORS in the program; all distances are kept";
-    return verdict_text(run.verdict);
-}
-
 std::string summary_text(const CheckRun& run) {
     size_t moving = 0;
     for (const CheckedBlock& block : run.blocks)
@@ -138,6 +122,21 @@ std::string summary_text(const CheckRun& run) {
 }
 
 } // namespace
+
+std::string counts_text(const CheckRun& run) {
+    std::map<core::Severity, size_t> counts;
+    for (const core::Finding& finding : run.findings) ++counts[finding.severity];
+    return fmt::format("{}, {}, {}", counted(counts[core::Severity::error], "error"),
+                       counted(counts[core::Severity::warning], "warning"),
+                       counted(counts[core::Severity::note], "note"));
+}
+
+std::string outcome_text(const CheckRun& run) {
+    if (run.stopped) return "STOPPED, not checked to its end";
+    if (run.verdict == core::Verdict::clear && run.has_errors())
+        return "ERRORS in the program; all distances are kept";
+    return verdict_text(run.verdict);
+}
 
 std::string text_report(const CheckRun& run, const TextOptions& options) {
     std::string text = findings_text(run);

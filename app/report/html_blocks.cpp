@@ -1,0 +1,142 @@
+#include "app/report/html_blocks.h"
+
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "app/report/block_rules.h"
+#include "app/report/html_text.h"
+#include "app/report/text_layout.h"
+
+namespace app {
+namespace {
+
+/// Each different text once, and where it is in the table.
+class TextTable {
+public:
+    int64_t index_of(const std::string& text) {
+        const auto [at, is_new] = known_.try_emplace(text, static_cast<int64_t>(texts_.size()));
+        if (is_new) texts_.push_back(text);
+        return at->second;
+    }
+    std::string json() const { return string_array(texts_); }
+
+private:
+    std::unordered_map<std::string, int64_t> known_;
+    std::vector<std::string> texts_;
+};
+
+/// What is kept, 0 or more, as um that it certainly is.
+int64_t um_below(double mm) {
+    return static_cast<int64_t>(std::floor(1e3 * (mm + core::resolution)));
+}
+
+int64_t um_above(double mm) {
+    return static_cast<int64_t>(std::ceil(1e3 * (mm - core::resolution)));
+}
+
+/// The pairs that decide blocks, with what they must keep.
+class PairTable {
+public:
+    explicit PairTable(const core::Setup& setup) : setup_(setup) {}
+
+    int64_t index_of(const core::PairClearance& pair) {
+        const std::string entry = fmt::format(
+            "[{},{},{}]", script_string(core::part_name(setup_, pair.pair)),
+            script_string(core::body_name(setup_, pair.pair)), um_above(pair.allowance.distance));
+        const auto [at, is_new] = known_.try_emplace(entry, static_cast<int64_t>(known_.size()));
+        if (is_new) (json_ += json_.empty() ? "" : ",") += entry;
+        return at->second;
+    }
+    std::string json() const { return "[" + json_ + "]"; }
+
+private:
+    const core::Setup& setup_;
+    std::map<std::string, int64_t> known_;
+    std::string json_;
+};
+
+struct Columns {
+    StepRuns line, text;
+    NumberRuns file, motion, tool, pair, verdict;
+    std::vector<int64_t> time, removed, lower, width;
+};
+
+void add_clearance(const CheckRun& run, const core::BlockResult& result, PairTable& pairs,
+                   Columns& columns) {
+    int64_t lower = -1, width = -1, pair = -1;
+    if (result.motion != core::BlockMotion::none && result.checked) {
+        if (result.deciding) {
+            const core::PairClearance& near = result.pairs[*result.deciding];
+            lower = um_below(near.lower);
+            if (near.found()) width = std::max<int64_t>(um_above(near.upper) - lower, 0);
+            pair = pairs.index_of(near);
+        } else {
+            lower = um_below(least_clearance(run.setup, result));
+        }
+    }
+    columns.lower.push_back(lower);
+    columns.width.push_back(width);
+    columns.pair.add(pair);
+}
+
+/// Blocks with findings: "[[block,severity,rule,...],...]", and the names of the rules.
+std::string rules_json(const CheckRun& run) {
+    std::map<core::BlockIndex, core::Severity> worst;
+    for (const core::Finding& finding : run.findings) {
+        if (!finding.block) continue;
+        core::Severity& severity = worst[*finding.block];
+        severity = std::max(severity, finding.severity);
+    }
+    TextTable names;
+    std::string blocks;
+    for (const auto& [block, rules] : rules_of_blocks(run)) {
+        const auto found = worst.find(block);
+        blocks += fmt::format("{}[{},{}", blocks.empty() ? "" : ",", core::value_of(block),
+                              found == worst.end() ? 0 : static_cast<int>(found->second));
+        for (const std::string& rule : rules) blocks += fmt::format(",{}", names.index_of(rule));
+        blocks += ']';
+    }
+    return fmt::format(R"("rules":{},"found":[{}])", names.json(), blocks);
+}
+
+int64_t steps_of(double value, double step) { return std::llround(value / step); }
+
+} // namespace
+
+std::string blocks_json(const CheckRun& run) {
+    Columns columns;
+    TextTable texts, files;
+    PairTable pairs(run.setup);
+    int64_t last_time = 0;
+    for (const CheckedBlock& block : run.blocks) {
+        const core::BlockResult& result = block.result;
+        columns.line.add(block.line);
+        columns.text.add(texts.index_of(trimmed(block.text)));
+        columns.file.add(files.index_of(block.file));
+        columns.motion.add(static_cast<int64_t>(result.motion));
+        columns.tool.add(result.tool ? int64_t(core::value_of(*result.tool)) : -1);
+        columns.verdict.add(static_cast<int64_t>(result.verdict));
+        const int64_t time = steps_of(result.time, 1e-4);
+        columns.time.push_back(time - last_time);
+        last_time = time;
+        columns.removed.push_back(steps_of(result.removed, 0.01));
+        add_clearance(run, result, pairs, columns);
+    }
+    std::string json =
+        fmt::format(R"({{"count":{},"end":{},"limit":{},)", run.blocks.size(),
+                    steps_of(run.cycle_time, 1e-4), um_below(run.setup.search_limit));
+    json += R"("line":)" + columns.line.json() + R"(,"text":)" + columns.text.json()
+            + R"(,"texts":)" + texts.json() + R"(,"file":)" + columns.file.json() + R"(,"files":)"
+            + files.json() + R"(,"motion":)" + columns.motion.json() + R"(,"tool":)"
+            + columns.tool.json() + R"(,"verdict":)" + columns.verdict.json() + R"(,"pair":)"
+            + columns.pair.json() + R"(,"pairs":)" + pairs.json();
+    json += R"(,"time":)" + number_array(columns.time) + R"(,"removed":)"
+            + number_array(columns.removed) + R"(,"lower":)" + number_array(columns.lower)
+            + R"(,"width":)" + number_array(columns.width);
+    return json + "," + rules_json(run) + "}";
+}
+
+} // namespace app

@@ -1,0 +1,88 @@
+#include "app/report/html_report.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+#include "app/report/html_assets.h"
+#include "app/report/html_blocks.h"
+#include "app/report/html_cards.h"
+#include "app/report/html_facts.h"
+#include "app/report/html_palette.h"
+#include "app/report/html_text.h"
+#include "app/report/text_report.h"
+#include "app/version.h"
+
+namespace app {
+namespace {
+
+using Fillings = std::map<std::string, std::string, std::less<>>;
+
+/// The page with each {{name}} replaced. What is filled in is not looked at again.
+std::string filled(std::string_view page, const Fillings& fillings) {
+    std::string text;
+    while (true) {
+        const size_t open = page.find("{{");
+        if (open == page.npos) return text += page;
+        const size_t close = page.find("}}", open);
+        text += page.substr(0, open);
+        text += fillings.at(std::string(page.substr(open + 2, close - open - 2)));
+        page = page.substr(close + 2);
+    }
+}
+
+/// The class by which the page colours the outcome.
+const char* verdict_of(const CheckRun& run) {
+    const bool is_worse = run.stopped || run.has_errors();
+    return run.verdict == core::Verdict::clear && is_worse ? "error" : core::name_of(run.verdict);
+}
+
+std::string list_of(const std::vector<std::string>& lines) {
+    std::string list;
+    for (const std::string& line : lines) list += "<li>" + html_text(line) + "</li>\n";
+    return list;
+}
+
+std::string notice_of(const ReportViews& views) {
+    std::string notice;
+    const auto say = [&](const std::string& text) {
+        notice += "<p class=\"notice\">" + html_text(text) + "</p>\n";
+    };
+    if (!views.no_pictures.empty()) say("There are no pictures: " + views.no_pictures);
+    if (view_bundle().empty())
+        say("This Feeler was built without its 3D view (npm was not there): the report has "
+            "pictures only.");
+    return notice;
+}
+
+std::string views_json(const ReportViews& views) {
+    std::string list;
+    for (const BlockView& view : views.views)
+        list += fmt::format(R"({}{{"block":{},"scene":{}}})", list.empty() ? "" : ",", view.block,
+                            view.scene.empty() ? "null" : view.scene);
+    return fmt::format(R"({{"meshes":{},"views":[{}]}})",
+                       views.meshes.empty() ? "[]" : views.meshes, list);
+}
+
+} // namespace
+
+std::string html_report(const CheckRun& run, const ReportViews& views) {
+    const PageAssets assets = page_assets();
+    return filled(assets.page, {{"version", version},
+                                {"verdict", verdict_of(run)},
+                                {"outcome", html_text(outcome_text(run))},
+                                {"program", html_text(run.program_file)},
+                                {"palette", html_palette()},
+                                {"style", std::string(assets.style)},
+                                {"summary", html_summary(run)},
+                                {"notice", notice_of(views)},
+                                {"cards", html_cards(run, views)},
+                                {"terms", html_bound_terms(run)},
+                                {"assumptions", list_of(run.assumptions)},
+                                {"blocks", blocks_json(run)},
+                                {"views", views_json(views)},
+                                {"bundle", std::string(view_bundle())},
+                                {"script", std::string(assets.script)}});
+}
+
+} // namespace app

@@ -1,0 +1,191 @@
+#include <chrono>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "app/report/html_blocks.h"
+#include "app/report/html_report.h"
+#include "app/report/html_text.h"
+
+namespace app {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string folder = std::string(FEELER_SOURCE_DIR) + "/assets/";
+
+CheckRun clamped_plate() {
+    return *run_check({.program = folder + "programs/clamped_plate_low.nc",
+                       .setup = folder + "setups/clamped_plate.toml",
+                       .detail = core::Detail::deciding_pair});
+}
+
+std::string every_byte() {
+    std::string text;
+    for (int byte = 0; byte < 256; ++byte) text += static_cast<char>(byte);
+    return text;
+}
+
+size_t count_of(const std::string& text, const std::string& part) {
+    size_t count = 0;
+    for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+std::vector<int64_t> unpacked(const json& runs) {
+    std::vector<int64_t> values;
+    for (size_t i = 0; i < runs.size(); i += 2)
+        values.insert(values.end(), runs[i + 1].get<size_t>(), runs[i].get<int64_t>());
+    return values;
+}
+
+std::vector<int64_t> summed(std::vector<int64_t> steps) {
+    for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
+    return steps;
+}
+
+TEST(HtmlText, LeavesNothingThatABrowserReadsAsMoreThanText) {
+    const std::string safe = html_text("<b title='x' id=\"y\">" + every_byte() + "&amp;");
+    EXPECT_EQ(safe.find_first_of("<>\"'"), safe.npos);
+    EXPECT_THAT(safe, HasSubstr("&amp;amp;"));
+    EXPECT_EQ(safe.find('\n'), safe.npos);
+    EXPECT_EQ(safe.find('\0'), safe.npos);
+}
+
+TEST(ScriptString, ComesBackAsTheSameTextAndEndsNoScript) {
+    const std::string text = "</script><!-- \"\\ \x01 \xC3\xA4 ]]> & \t";
+    const std::string written = script_string(text);
+    EXPECT_EQ(json::parse(written).get<std::string>(), text);
+    EXPECT_EQ(written.find_first_of("<>&"), written.npos);
+}
+
+TEST(ScriptString, TakesAnyBytes) {
+    const std::string read = json::parse(script_string(every_byte())).get<std::string>();
+    EXPECT_EQ(read.substr(0, 128), every_byte().substr(0, 128));
+    EXPECT_GT(read.size(), 256U); // what is no UTF-8 was taken for Latin-1
+}
+
+TEST(Base64, WritesWhatRfc4648Says) {
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foo"), "Zm9v");
+    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64("\xFF\xFE\xFD"), "//79");
+}
+
+TEST(NumberRuns, HoldEachRunOnce) {
+    NumberRuns runs;
+    StepRuns steps;
+    for (const int64_t value : {7, 7, 7, -1, 3}) runs.add(value);
+    for (const int64_t value : {5, 6, 7, 8, 20}) steps.add(value);
+    EXPECT_EQ(runs.json(), "[7,3,-1,1,3,1]");
+    EXPECT_EQ(steps.json(), "[5,1,1,3,12,1]");
+    EXPECT_EQ(summed(unpacked(json::parse(steps.json()))), (std::vector<int64_t>{5, 6, 7, 8, 20}));
+    EXPECT_EQ(NumberRuns().json(), "[]");
+}
+
+TEST(HtmlBlocks, SayWhatTheRunSays) {
+    const CheckRun run = clamped_plate();
+    const json data = json::parse(blocks_json(run));
+    ASSERT_EQ(data["count"], run.blocks.size());
+    const auto lines = summed(unpacked(data["line"])), texts = summed(unpacked(data["text"]));
+    const auto verdicts = unpacked(data["verdict"]), pairs = unpacked(data["pair"]);
+    const auto times = summed(data["time"].get<std::vector<int64_t>>());
+    size_t measured = 0;
+    for (size_t i = 0; i < run.blocks.size(); ++i) {
+        const CheckedBlock& block = run.blocks[i];
+        EXPECT_EQ(lines[i], block.line);
+        EXPECT_EQ(verdicts[i], static_cast<int64_t>(block.result.verdict));
+        EXPECT_NEAR(static_cast<double>(times[i]) * 1e-4, block.result.time, 0.6e-4);
+        EXPECT_THAT(block.text,
+                    HasSubstr(data["texts"][static_cast<size_t>(texts[i])].get<std::string>()));
+        if (!block.result.deciding) continue;
+        const core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+        const double lower = 1e-3 * data["lower"][i].get<double>(),
+                     width = 1e-3 * data["width"][i].get<double>();
+        EXPECT_EQ(data["pairs"][static_cast<size_t>(pairs[i])][1],
+                  core::body_name(run.setup, pair.pair));
+        EXPECT_LE(lower, pair.lower + core::resolution);
+        EXPECT_GT(lower, pair.lower - 0.0011);
+        if (!pair.found()) continue;
+        EXPECT_GE(lower + width, pair.upper - 1.5 * core::resolution);
+        EXPECT_LT(lower + width, pair.upper + 0.0021);
+        ++measured;
+    }
+    EXPECT_GT(measured, 20U);
+    EXPECT_EQ(data["found"].size(), 4U);
+}
+
+TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {
+    CheckRun run = clamped_plate();
+    const std::string plain = html_report(run, {});
+    const std::string evil =
+        "</script><script>alert(1)</script><img src=x onerror=alert(2)>{{cards}}";
+    run.program_file = evil;
+    run.blocks.front().text = evil;
+    run.blocks[38].text = evil + every_byte();
+    run.findings.front().message = evil;
+    run.findings.front().cure = evil;
+    run.assumptions.push_back(evil);
+    const std::string page = html_report(run, {});
+    EXPECT_EQ(count_of(page, "<script"), count_of(plain, "<script"));
+    EXPECT_EQ(count_of(page, "</script"), count_of(plain, "</script"));
+    EXPECT_EQ(count_of(page, "<img"), count_of(plain, "<img"));
+    EXPECT_EQ(count_of(page, "<article"), count_of(plain, "<article"));
+    EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(1)"));
+}
+
+TEST(HtmlReport, AsksForNothingFromOutside) {
+    const std::string page = html_report(clamped_plate(), {});
+    EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+    EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+    EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
+    EXPECT_THAT(page, Not(HasSubstr("@import")));
+}
+
+TEST(HtmlReport, SaysWhyThereAreNoPictures) {
+    const std::string page = html_report(clamped_plate(), {.no_pictures = "no OpenGL <here>"});
+    EXPECT_THAT(page, HasSubstr("There are no pictures: no OpenGL &lt;here&gt;"));
+}
+
+/// A program of so many blocks, each with a text and numbers of its own.
+CheckRun long_run(size_t count) {
+    CheckRun run = clamped_plate();
+    const std::vector<CheckedBlock> blocks(run.blocks.begin() + 8, run.blocks.begin() + 30);
+    run.blocks.clear();
+    for (size_t i = 0; i < count; ++i) {
+        CheckedBlock block = blocks[i % blocks.size()];
+        const auto step = static_cast<double>(i);
+        block.block = core::BlockIndex{static_cast<uint32_t>(i)};
+        block.line = static_cast<uint32_t>(i + 5);
+        block.text =
+            fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", 0.0137 * step, 0.731 * step, -0.01 * step);
+        block.result.time = 0.0421 * step;
+        block.result.removed = std::fmod(0.37 * step, 11.0);
+        for (core::PairClearance& pair : block.result.pairs) {
+            pair.lower = std::fmod(0.0173 * step, 20.0);
+            pair.upper = pair.lower + std::fmod(0.0031 * step, 0.2);
+        }
+        run.blocks.push_back(std::move(block));
+    }
+    for (core::Finding& finding : run.findings) finding.block = core::BlockIndex{7};
+    return run;
+}
+
+TEST(HtmlReport, StaysSmallAndQuickForAHundredThousandBlocks) {
+    const CheckRun run = long_run(100'000);
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string page = html_report(run, {});
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(page.size(), 10'000'000U);
+    EXPECT_LT(took.count(), 3.0);
+    RecordProperty("bytes", static_cast<int>(page.size()));
+    RecordProperty("milliseconds", static_cast<int>(1e3 * took.count()));
+}
+
+} // namespace
+} // namespace app
