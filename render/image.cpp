@@ -31,6 +31,17 @@ core::Result<void> write_png(const Image& image, const std::filesystem::path& pa
     return {};
 }
 
+std::string jpeg_bytes(const Image& image, int quality) {
+    std::string bytes;
+    const auto append = [](void* text, void* data, int size) {
+        static_cast<std::string*>(text)->append(static_cast<const char*>(data),
+                                                static_cast<size_t>(size));
+    };
+    stbi_write_jpg_to_func(append, &bytes, image.width, image.height, 4, image.rgba.data(),
+                           quality);
+    return bytes;
+}
+
 core::Result<Image> read_png(const std::filesystem::path& path) {
     Image image;
     int channels = 0;

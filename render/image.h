@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -21,6 +22,9 @@ struct Image {
 };
 
 core::Result<void> write_png(const Image& image, const std::filesystem::path& path);
+/// The bytes of a JPEG file. `quality`: 1 to 100. What is seen through shows as if it covered.
+std::string jpeg_bytes(const Image& image, int quality);
+
 core::Result<Image> read_png(const std::filesystem::path& path);
 
 /// Half as large both ways, each pixel the mean of four: how pictures with smooth edges are made.
