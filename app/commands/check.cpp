@@ -13,6 +13,7 @@
 #include "app/report/html_report.h"
 #include "app/report/json_report.h"
 #include "app/report/junit_report.h"
+#include "app/report/pictured_run.h"
 #include "app/report/sarif_report.h"
 #include "app/report/text_report.h"
 #include "app/session/part_check.h"
@@ -32,12 +33,12 @@ std::string results_report(const std::string& format, ProgramResult result) {
 }
 
 std::string report(const CheckOptions& options, const std::string& format, const CheckJob& job,
-                   const CheckRun& run) {
+                   const CheckRun& run, const ReportViews& views) {
     if (is_of_results(format)) return results_report(format, result_of(run, job.setup));
     if (format == "csv") return csv_report(run);
     if (format == "jsonl") return json_lines_report(run, options.pairs);
     if (format == "json") return json_report(run, options.pairs);
-    if (format == "html") return html_report(run, {});
+    if (format == "html") return html_report(run, views);
     return text_report(run, {.blocks = options.blocks || options.pairs});
 }
 
@@ -92,13 +93,13 @@ bool say_memory(double bytes) {
 /// Writes the reports; false if one could not be. A run that did not come to its end goes to
 /// standard output: a file would look like a whole one. SARIF and JUnit say so themselves.
 bool write_reports(const CheckOptions& options, const CheckJob& job, const CheckRun& run,
-                   const std::vector<ReportTarget>& targets) {
+                   const ReportViews& views, const std::vector<ReportTarget>& targets) {
     bool all = true, is_said = false;
     for (const ReportTarget& target : targets) {
         const bool is_lost = run.stopped && !is_of_results(target.format);
         if (is_lost && std::exchange(is_said, true)) continue;
         const auto written = write_output(is_lost ? std::string() : target.path,
-                                          report(options, target.format, job, run));
+                                          report(options, target.format, job, run, views));
         if (!written) print_error(written.error());
         all = all && written.has_value();
     }
@@ -133,13 +134,18 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
         line.show(progress);
         return !is_interrupted();
     };
-    auto run = run_check(*job);
+    ReportViews views;
+    const bool is_pictured = options.engine == Engine::exact
+                             && std::any_of(targets.begin(), targets.end(), [](const auto& target) {
+                                    return target.format == "html";
+                                });
+    auto run = is_pictured ? run_pictured_check(*job, views) : run_check(*job);
     line.clear();
     if (!run) return fail(*job, run.error(), targets);
     if (run->stopped) print_error(*run->stopped);
     const auto saved = save_results(options, *run);
     if (!saved) print_error(saved.error());
-    const bool all_written = write_reports(options, *job, *run, targets);
+    const bool all_written = write_reports(options, *job, *run, views, targets);
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
@@ -147,7 +153,17 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
 ExitCode check(CheckOptions& options) {
     const auto targets = targets_of(options);
     if (!targets) return fail({}, targets.error(), {});
-    if (!is_one_program(options.programs)) return check_batch(options, *targets);
+    if (!is_one_program(options.programs)) {
+        for (const ReportTarget& target : *targets)
+            if (target.format == "html")
+                return fail({},
+                            {core::ErrorCode::invalid_value,
+                             {},
+                             "--format html tells of one program: name one, or take sarif, "
+                             "junit, json or csv for many"},
+                            {});
+        return check_batch(options, *targets);
+    }
     options.what.program = options.programs[0];
     return check_one(options, *targets);
 }
@@ -156,7 +172,8 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
     command
         .add_option("--format", options.formats,
                     "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
-                    "program of many), sarif or junit; several with an -o each, in their order")
+                    "program of many), html (one program: a page with pictures and a 3D view), "
+                    "sarif or junit; several with an -o each, in their order")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
         ->default_str("text");

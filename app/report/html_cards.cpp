@@ -116,6 +116,12 @@ std::vector<size_t> blocks_to_show(const std::vector<FindingGroup>& groups, size
     return blocks;
 }
 
+bool has_card(const std::vector<FindingGroup>& groups, size_t block) {
+    return std::any_of(groups.begin(), groups.end(), [&](const FindingGroup& group) {
+        return !group.stretches.empty() && group.stretches[group.worst].worst == block;
+    });
+}
+
 std::string html_cards(const CheckRun& run, const ReportViews& views) {
     std::string cards;
     for (const FindingGroup& group : finding_groups(run)) cards += card_of(run, group, views);

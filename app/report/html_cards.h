@@ -15,6 +15,9 @@ std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
 /// each group, then those of the other stretches.
 std::vector<size_t> blocks_to_show(const std::vector<viewer::FindingGroup>& groups, size_t most);
 
+/// Whether a card shows a picture of a block: the worst one of a group.
+bool has_card(const std::vector<viewer::FindingGroup>& groups, size_t block);
+
 /// A card for each group of findings, as HTML.
 std::string html_cards(const CheckRun& run, const ReportViews& views);
 

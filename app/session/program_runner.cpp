@@ -259,18 +259,20 @@ void ProgramRunner::end() {
     run_.cycle_time = place_.clock.time;
 }
 
+void ProgramRunner::stop_here() {
+    const CheckedBlock& last = run_.blocks.back();
+    run_.stopped = named({core::ErrorCode::io,
+                          {.line = last.line, .column = 1},
+                          "the check was stopped after this block: the rest of the program is "
+                          "not checked",
+                          last.file},
+                         check_.program->file);
+    end();
+}
+
 void ProgramRunner::to_the_end() {
-    while (advance()) {
-        if (!after_block || after_block(progress())) continue;
-        const CheckedBlock& last = run_.blocks.back();
-        run_.stopped = named({core::ErrorCode::io,
-                              {.line = last.line, .column = 1},
-                              "the check was stopped after this block: the rest of the program is "
-                              "not checked",
-                              last.file},
-                             check_.program->file);
-        return end();
-    }
+    while (advance())
+        if (after_block && !after_block(progress())) return stop_here();
 }
 
 } // namespace app

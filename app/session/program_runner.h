@@ -33,6 +33,9 @@ public:
     /// only be told behind the last block is in the run, too.
     bool advance();
 
+    /// Ends the run behind the last block, as one that somebody stopped. There must be a block.
+    void stop_here();
+
     /// Runs the program to its end or to its first error.
     void to_the_end();
 

@@ -15,6 +15,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
     if (const auto placed = place_check(job, check); !placed) return tl::unexpected(placed.error());
     std::unique_ptr<RecordedRun> run(new RecordedRun(std::move(check), memory_budget));
     run->needs_surface_ = job.needs_surface;
+    run->after_block_ = job.after_block;
     if (!job.start_line.empty())
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
@@ -40,7 +41,10 @@ bool RecordedRun::advance() {
     const double seconds = marks_.back().seconds + work.seconds();
     marks_.push_back({seconds, record().findings.size()});
     keyframes_.note(last_place(), seconds, runner_->place());
-    return true;
+    if (!after_block_ || after_block_(runner_->progress())) return true;
+    runner_->stop_here();
+    finish();
+    return false;
 }
 
 void RecordedRun::finish() {

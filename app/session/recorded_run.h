@@ -22,7 +22,8 @@ struct MadeChange {
 /// A place is counted in blocks that have been run: at place p block p of the record is the next.
 class RecordedRun {
 public:
-    /// Of a check that was read, but not placed.
+    /// Of a check that was read, but not placed. The job's `after_block` can end it as it ends
+    /// run_check.
     ///
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<RecordedRun>> open(const CheckJob& job, PreparedCheck check,
@@ -104,6 +105,7 @@ private:
 
     PreparedCheck check_;
     bool needs_surface_ = false;
+    std::function<bool(const CheckProgress&)> after_block_ = {};
     std::unique_ptr<ProgramRunner> runner_;
     BlockRunner replayer_;
     Keyframes keyframes_;

@@ -24,6 +24,8 @@ public:
 
     /// Opens another program; `publish` is called when its path is known, before the stock is.
     void open(const CheckJob& job, const std::function<void()>& publish);
+    /// The record as far as it is; null when nothing is open.
+    const CheckRun* checked() const { return session_ ? &session_->record() : nullptr; }
     /// Whether there is more to record.
     bool has_work() const { return session_ && (walk_ || !session_->is_recorded()); }
     /// Carries the walk that was asked for on for a slice, else the record.

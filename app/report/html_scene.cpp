@@ -1,0 +1,185 @@
+#include "app/report/html_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/report/html_text.h"
+#include "render/coarse_mesh.h"
+
+namespace app {
+namespace {
+
+constexpr size_t stock_triangles = 6000, body_triangles = 4000;
+constexpr uint32_t blocks_before = 30, blocks_behind = 8; // of whose path is shown
+constexpr size_t most_points = 400;
+
+const char* name_of(render::BodyRole role) {
+    constexpr const char* names[] = {"fixture", "clamp", "machine", "flutes", "shank",
+                                     "holder",  "nose",  "stock",   "part"};
+    return names[static_cast<size_t>(role)];
+}
+
+const char* name_of(render::ClearanceState state) {
+    constexpr const char* names[] = {"", "clear", "near", "violation"};
+    return names[static_cast<size_t>(state)];
+}
+
+/// Whole um, without trailing zeros.
+std::string number(double mm) {
+    const double rounded = std::round(1e3 * mm) / 1e3;
+    return fmt::format("{}", rounded == 0.0 ? 0.0 : rounded);
+}
+
+std::string numbers(const core::Vec3& p) {
+    return number(p.x) + "," + number(p.y) + "," + number(p.z);
+}
+
+/// Its three rows.
+std::string numbers(const core::Transform& transform) {
+    std::string text;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            text += fmt::format("{:.9g},", transform.rotation[column][row] + 0.0);
+        text += number(transform.translation[row]) + (row < 2 ? "," : "");
+    }
+    return text;
+}
+
+template <typename Number>
+void append(std::string& bytes, Number value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value); // browsers and all machines that Feeler runs on agree
+    bytes.append(raw, sizeof value);
+}
+
+/// A piece of the path that is drawn in one way.
+struct Stretch {
+    bool rapid = false, current = false;
+    std::vector<std::string> places;
+};
+
+std::string json_of(const Stretch& stretch) {
+    return fmt::format(R"({{"rapid":{},"current":{},"places":[{}]}})", stretch.rapid,
+                       stretch.current, fmt::join(stretch.places, ","));
+}
+
+/// The way of the tip some blocks before and behind one.
+std::string path_json(const render::ToolPath& path, uint32_t block) {
+    const auto first = std::lower_bound(
+        path.points.begin(), path.points.end(), block > blocks_before ? block - blocks_before : 0,
+        [](const render::PathPoint& point, uint32_t from) { return point.block < from; });
+    std::vector<std::string> pieces;
+    Stretch stretch;
+    size_t count = 0;
+    for (auto point = first; point != path.points.end(); ++point) {
+        if (point->block > block + blocks_behind || ++count > most_points) break;
+        const bool is_current = point->block == block;
+        const bool changes = stretch.rapid != point->rapid || stretch.current != is_current;
+        if (point->begins || changes) {
+            if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
+            std::vector<std::string> places;
+            if (!point->begins && !stretch.places.empty()) places = {stretch.places.back()};
+            stretch = {point->rapid, is_current, std::move(places)};
+        }
+        stretch.places.push_back(numbers(core::Vec3(point->place)));
+    }
+    if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
+    return fmt::format("[{}]", fmt::join(pieces, ","));
+}
+
+} // namespace
+
+std::string mesh_json(const render::TriangleMesh& mesh) {
+    core::Aabb box;
+    for (const render::MeshVertex& vertex : mesh.vertices) box.extend(core::Vec3(vertex.place));
+    const core::Vec3 step = glm::max((box.max - box.min) / 65535.0, core::Vec3(1e-9));
+    std::string bytes;
+    for (const render::MeshVertex& vertex : mesh.vertices)
+        for (int k = 0; k < 3; ++k)
+            append(bytes, static_cast<uint16_t>(
+                              std::lround((double(vertex.place[k]) - box.min[k]) / step[k])));
+    for (const render::MeshVertex& vertex : mesh.vertices) {
+        for (const int8_t part : vertex.normal) append(bytes, part);
+        append(bytes, vertex.tint);
+    }
+    const bool wide = mesh.vertices.size() > 65536;
+    while (wide && bytes.size() % 4 != 0) bytes += '\0';
+    for (const render::TriangleMesh::Corners& triangle : mesh.triangles)
+        for (const uint32_t corner : triangle)
+            wide ? append(bytes, corner) : append(bytes, static_cast<uint16_t>(corner));
+    return fmt::format(R"({{"count":{},"triangles":{},"wide":{},"origin":[{:.9g},{:.9g},{:.9g}],)"
+                       R"("step":[{:.9g},{:.9g},{:.9g}],"data":"{}"}})",
+                       mesh.vertices.size(), mesh.triangles.size(), wide, box.min.x, box.min.y,
+                       box.min.z, step.x, step.y, step.z, base64(bytes));
+}
+
+std::optional<size_t> SceneWriter::put(const render::TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
+    std::string json = mesh_json(mesh);
+    const auto same = std::find(meshes_.begin(), meshes_.end(), json);
+    if (same != meshes_.end()) return static_cast<size_t>(same - meshes_.begin());
+    meshes_.push_back(std::move(json));
+    return meshes_.size() - 1;
+}
+
+std::optional<size_t> SceneWriter::mesh_of(const render::SharedMesh& mesh) {
+    const auto [at, is_new] = known_.try_emplace(mesh.get());
+    if (is_new) {
+        kept_.push_back(mesh);
+        const render::TriangleMesh* const parts[] = {mesh.get()};
+        const bool is_small = mesh->triangles.size() <= body_triangles;
+        at->second = put(is_small ? *mesh : render::coarse(parts, body_triangles));
+    }
+    return at->second;
+}
+
+std::optional<size_t> SceneWriter::stock_of(const render::StockBricks& bricks) {
+    for (const auto& [known, mesh] : stocks_)
+        if (known == bricks) return mesh;
+    std::vector<const render::TriangleMesh*> parts;
+    for (const auto& brick : bricks) parts.push_back(&brick->mesh);
+    const std::optional<size_t> mesh = put(render::coarse(parts, stock_triangles));
+    stocks_.emplace_back(bricks, mesh);
+    return mesh;
+}
+
+std::string SceneWriter::body_json(const render::Body& body, size_t mesh) const {
+    std::string json =
+        fmt::format(R"({{"name":{},"role":"{}","mesh":{},"at":[{}])", script_string(body.name),
+                    name_of(body.role), mesh, numbers(body.stock_from_body));
+    if (body.highlighted) json += fmt::format(R"(,"state":"{}")", name_of(body.mark));
+    return json + "}";
+}
+
+std::string SceneWriter::bodies_json(const render::Scene& scene) {
+    std::vector<std::string> bodies;
+    if (const auto stock = stock_of(scene.stock))
+        bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}}})", *stock));
+    for (const render::Body& body : scene.bodies) {
+        const bool is_far = body.role == render::BodyRole::machine && !body.highlighted;
+        if (!body.visible || !body.mesh || is_far) continue;
+        if (const auto mesh = mesh_of(body.mesh)) bodies.push_back(body_json(body, *mesh));
+    }
+    return fmt::format("[{}]", fmt::join(bodies, ","));
+}
+
+std::string SceneWriter::add(const render::Scene& scene, const render::Camera& camera) {
+    std::string json = R"({"bodies":)" + bodies_json(scene);
+    json +=
+        R"(,"path":)"
+        + (scene.path && scene.current_block ? path_json(*scene.path, *scene.current_block) : "[]");
+    if (scene.witness)
+        json += fmt::format(R"(,"witness":[{},{}],"state":"{}")", numbers(scene.witness->a),
+                            numbers(scene.witness->b), name_of(scene.witness->state));
+    return json
+           + fmt::format(R"(,"camera":[{},{}]}})", numbers(render::eye(camera)),
+                         numbers(camera.target));
+}
+
+std::string SceneWriter::meshes() const { return fmt::format("[{}]", fmt::join(meshes_, ",\n")); }
+
+} // namespace app
