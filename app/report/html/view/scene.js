@@ -1,8 +1,8 @@
 // From what Feeler wrote of a block to a scene of three.js. Frame: that of the stock, Z up, mm.
 
 import {
-  BufferAttribute, BufferGeometry, CylinderGeometry, DoubleSide, Group, Line, LineBasicMaterial, LineDashedMaterial, Matrix4,
-  Mesh, MeshBasicMaterial, MeshStandardMaterial, SphereGeometry, Vector3,
+  BufferAttribute, BufferGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Group, Line, LineBasicMaterial,
+  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, SphereGeometry, Vector3,
 } from "three";
 
 function bytesOf(text) {
@@ -49,7 +49,8 @@ const seeThrough = { holder: 0.5, nose: 0.5 };
 function bodyOf(body, geometry, color) {
   const opacity = seeThrough[body.role] || 1;
   const material = new MeshStandardMaterial({
-    roughness: 0.75, metalness: 0.05, side: DoubleSide, transparent: opacity < 1, opacity, depthWrite: opacity === 1,
+    roughness: 0.8, metalness: 0, side: DoubleSide, transparent: opacity < 1, opacity, depthWrite: opacity === 1,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, // so that edges lie before faces
   });
   if (body.role === "stock") {
     tint(geometry, color("stock"), color("stock-cut"));
@@ -59,7 +60,7 @@ function bodyOf(body, geometry, color) {
   }
   if (body.state) {
     material.emissive = color(body.state);
-    material.emissiveIntensity = 0.35;
+    material.emissiveIntensity = 0.25;
   }
   const mesh = new Mesh(geometry, material);
   if (body.at) {
@@ -67,7 +68,16 @@ function bodyOf(body, geometry, color) {
     mesh.applyMatrix4(new Matrix4().set(...m, 0, 0, 0, 1));
   }
   mesh.renderOrder = opacity < 1 ? 1 : 0;
+  mesh.add(edgesOf(body, geometry, color));
   return mesh;
+}
+
+const creaseDegrees = 30;
+
+function edgesOf(body, geometry, color) {
+  geometry.userData.edges ||= new EdgesGeometry(geometry, creaseDegrees);
+  const material = new LineBasicMaterial({ color: color(body.state || "edge"), transparent: true, opacity: body.state ? 0.9 : 0.4 });
+  return new LineSegments(geometry.userData.edges, material);
 }
 
 function pointsOf(places) {

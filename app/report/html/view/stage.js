@@ -21,8 +21,8 @@ class Stage {
     this.camera = new PerspectiveCamera(30, 1, 1, 10000);
     this.camera.up.set(0, 0, 1);
     this.scene = new Scene();
-    this.light = new DirectionalLight(0xffffff, 2.2);
-    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8f98, 1.6));
+    this.light = new DirectionalLight(0xffffff, 2.4);
+    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0xb4bac4, 2.2));
     this.camera.add(this.light, this.light.target);
     this.light.position.set(-0.5, 0.8, 1);
     element.append(renderer.domElement);

@@ -1,0 +1,24 @@
+// Chromium, and a report in it of which all that goes wrong is kept.
+
+import { chromium } from "playwright-core";
+
+const flags = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+export function launch(more = []) {
+  return chromium.launch({ executablePath: "/usr/bin/chromium", args: [...flags, ...more] });
+}
+
+/** A report in a window of its own; `wrong` gets a line for every error and every request. */
+export async function openReport(browser, file, { width = 1400, height = 1000, colorScheme = "light", ...more } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme, ...more });
+  const page = await context.newPage(), wrong = [], url = "file://" + file;
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) wrong.push("console: " + message.text()); });
+  page.on("pageerror", (error) => wrong.push("error: " + error.message));
+  page.on("request", (request) => {
+    if (request.url() !== url && !/^(data|blob):/.test(request.url())) wrong.push("request: " + request.url());
+  });
+  page.on("dialog", (dialog) => { wrong.push("dialog: " + dialog.message()); dialog.dismiss(); });
+  await page.goto(url);
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
+  return { page, wrong };
+}

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# HTML reports in headless Chromium. Arguments: the program feeler, the folder of assets, a folder to
+# work in (reports and pictures are kept there). Without Chromium, node or npm's packages it is
+# skipped.
+set -euo pipefail
+feeler=$1 assets=$2 work=$3
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+
+skip() {
+    printf 'skipped: %s\n' "$1"
+    exit 77
+}
+for command in chromium node npm; do
+    command -v "$command" >/dev/null || skip "there is no $command"
+done
+mkdir -p "$work"
+cp "$here"/package.json "$here"/package-lock.json "$here"/*.mjs "$work"
+cd "$work"
+timeout 120 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=0 \
+    --fetch-timeout=20000 >npm.log 2>&1 || skip 'npm could not get playwright-core'
+
+make_report() {
+    local status=0
+    "$feeler" check "$@" || status=$?
+    ((status < 2)) || exit 1
+}
+make_report "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/clamped_plate.toml" \
+    --format html -o findings.html
+make_report "$assets/programs/PARALLEL.NC" --setup "$assets/setups/parallel.toml" \
+    --format html -o clear.html
+
+# Text that a browser must not take for more, and bytes of another code page.
+sed 's|^O1011.*|O1011 (</script><script>document.title="broken"</script><img src=x onerror=alert(1)> \xe4)|' \
+    "$assets/programs/clamped_plate_low.nc" >evil.nc
+make_report evil.nc --setup "$assets/setups/clamped_plate.toml" --format html -o evil.html
+
+# A hundred thousand blocks, in the air.
+awk 'BEGIN {
+    print "%\nG21 G90 G54\nT1 M6\nG43 H1 Z100.\nS3000 M3\nG0 X0. Y0. Z60.";
+    for (i = 0; i < 100000; ++i) printf "G1 X%.3f Y%.3f F900.\n", i % 150, (i * 7) % 143 + i * 0.0001;
+    print "M30\n%" }' >long.nc
+make_report long.nc --setup "$assets/setups/clamped_plate.toml" --format html -o long.html
+
+exec node report_test.mjs "$work"
