@@ -92,6 +92,7 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand(
         "coproc", "Run a program beside an emulated coprocessor that permits its blocks");
     add_check_arguments(command, options->what)->required();
+    add_start_line(command, options->what);
     command.add_option("--config", options->config,
                        "Device file (TOML): [device], [control], [energy]");
     command.add_option("--format", options->format, "text, json or csv")

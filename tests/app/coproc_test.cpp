@@ -213,6 +213,19 @@ TEST(CoprocessorRun, KeepsWhatTheDeviceHadCountedAfterEachBlock) {
     EXPECT_EQ(run->blocks.back().after[hwsim::Counter::nodes], run->totals[hwsim::Counter::nodes]);
 }
 
+TEST(CoprocessorRun, BeginsInTheMiddleAsACheckDoes) {
+    CoprocessorJob job = plate("clamped_plate_low.nc");
+    job.check.start_line = "38";
+    const auto run = run_beside_coprocessor(job);
+    ASSERT_TRUE(run.has_value());
+    EXPECT_EQ(run->check.blocks.front().line, 38U);
+    EXPECT_EQ(run->blocks.size(), run->check.blocks.size());
+    EXPECT_EQ(agreement(*run).missed, 0U);
+    EXPECT_GT(agreement(*run).violations, 0U);
+    job.check.start_line = "9999";
+    EXPECT_FALSE(run_beside_coprocessor(job));
+}
+
 TEST(CoprocessorRun, EndsEarlyWhereItIsTold) {
     CoprocessorJob job = plate("clamped_plate.nc");
     job.check.after_block = [](const CheckProgress& progress) { return progress.blocks < 7; };
