@@ -95,13 +95,20 @@ int take_build_id(dl_phdr_info* info, size_t, void* taken) {
 std::optional<std::string> options_text(const CheckJob& job) {
     // A limit of memory only decides whether there is a result.
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
-                 before_model, after_block, start_line, settings, engine, edits] = job;
+                 before_model, after_block, start_line, settings, engine, edits, rules,
+                 setup_was_found] = job;
     if (!edits.empty() || edits.tool_at_start) return std::nullopt;
-    const Json json = {
-        {"allowance", optional_json(allowance)}, {"mesh_size", optional_json(mesh_size)},
-        {"detail", static_cast<int>(detail)},    {"needs_surface", needs_surface},
-        {"start_line", path_json(start_line)},   {"engine", name_of(engine)},
-        {"settings", settings_json(settings)}};
+    Json severities = Json::object();
+    for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);
+    const Json json = {{"rules", severities},
+                       {"setup_was_found", setup_was_found},
+                       {"allowance", optional_json(allowance)},
+                       {"mesh_size", optional_json(mesh_size)},
+                       {"detail", static_cast<int>(detail)},
+                       {"needs_surface", needs_surface},
+                       {"start_line", path_json(start_line)},
+                       {"engine", name_of(engine)},
+                       {"settings", settings_json(settings)}};
     return json.dump();
 }
 
