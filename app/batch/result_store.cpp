@@ -59,7 +59,7 @@ int64_t now() {
 
 struct ResultStore::State {
     std::string version;
-    std::filesystem::path folder; // of the database
+    std::filesystem::path folder; // that the database is for
     InputAnswers answers;
     std::mutex mutex; // over all below
     Database database;
@@ -98,7 +98,7 @@ core::Result<void> ResultStore::State::prepare() {
     return {};
 }
 
-/// A program's path as seen from the database: the same from wherever one calls.
+/// A program's path as seen from the folder: the same from wherever one calls.
 std::string ResultStore::State::place_of(const std::string& program) const {
     std::error_code failure;
     const auto whole = std::filesystem::weakly_canonical(program, failure);
@@ -170,6 +170,7 @@ core::Result<ResultStore> ResultStore::open(const std::string& path, const std::
     std::error_code failure;
     state->folder =
         std::filesystem::weakly_canonical(std::filesystem::absolute(path), failure).parent_path();
+    if (state->folder.filename() == ".feeler") state->folder = state->folder.parent_path();
     if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
     return ResultStore(std::move(state));
 }

@@ -14,7 +14,7 @@ constexpr int64_t format = 1;
 constexpr const char* tables = R"(
 CREATE TABLE program(
     id INTEGER PRIMARY KEY,
-    path TEXT NOT NULL UNIQUE -- as seen from the database's folder
+    path TEXT NOT NULL UNIQUE -- as seen from the folder that has .feeler, or the file
 ) STRICT;
 CREATE TABLE result(
     id INTEGER PRIMARY KEY,
@@ -47,12 +47,11 @@ CREATE INDEX look_of_result ON result_look(look);
 )";
 
 /// A rollback journal, not a log beside the file: that one needs memory shared by all who have the
-/// database open, which there is none of across a network. It stays when a result was kept, which
-/// is a tenth of the time that truncating it takes. FULL: a result that was kept outlives a power
-/// cut, and half of one never appears.
+/// database open, which there is none of across a network. FULL: a result that was kept outlives a
+/// power cut, and half of one never appears.
 constexpr const char* manners = "PRAGMA foreign_keys = ON;"
                                 "PRAGMA trusted_schema = OFF;"
-                                "PRAGMA journal_mode = PERSIST;"
+                                "PRAGMA journal_mode = TRUNCATE;"
                                 "PRAGMA synchronous = FULL;";
 
 core::Error refusal(const std::string& path, std::string why) {
@@ -92,6 +91,19 @@ core::Result<void> settle(Database& database, const std::string& path) {
 
 std::string default_store_path(const std::string& folder) {
     return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler/results.db").string();
+}
+
+std::optional<std::string> store_above(const std::string& program) {
+    std::error_code failure;
+    std::filesystem::path folder = std::filesystem::absolute(program, failure).parent_path();
+    while (!failure) {
+        const std::string path = default_store_path(folder.string());
+        if (std::filesystem::is_regular_file(path, failure)) return path;
+        failure.clear(); // a folder that may not be looked into has none
+        if (folder == folder.parent_path()) break;
+        folder = folder.parent_path();
+    }
+    return std::nullopt;
 }
 
 core::Result<Database> open_store_file(const std::string& path) {

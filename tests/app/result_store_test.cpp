@@ -1,5 +1,4 @@
 #include <atomic>
-#include <chrono>
 #include <fstream>
 #include <thread>
 
@@ -237,25 +236,6 @@ TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
     ResultStore store = opened(folder / "db");
     for (const Numbered& each : jobs) EXPECT_EQ(*store.find(each.job), each.result);
     EXPECT_EQ(store.history(jobs[0].job.program)->size(), 1u);
-}
-
-TEST(ResultStore, FindsAThousandResultsInASecond) {
-    const ScopedFolder folder;
-    folder.write("vise.stl", std::string(1'000'000, 'v'));
-    ResultStore filled = opened(folder / "db");
-    for (int i = 0; i < 1000; ++i) {
-        const Numbered each(folder, i);
-        ASSERT_TRUE(filled.keep(each.job, each.run, each.result));
-    }
-    CheckJob job;
-    const auto begin = std::chrono::steady_clock::now();
-    ResultStore store = opened(folder / "db");
-    for (int i = 0; i < 1000; ++i) {
-        job.program = folder / fmt::format("{}.nc", i);
-        ASSERT_TRUE(store.find(job)->has_value()) << i;
-    }
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    EXPECT_LT(taken.count(), 1.0);
 }
 
 TEST(ResultKey, NamesAnyBytesOfAPathApart) {
