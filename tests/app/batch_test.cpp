@@ -26,11 +26,10 @@ const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z
 
 /// So many moves to and fro that nobody waits for their end.
 std::string long_program() {
-    std::vector<std::string> lines = {"X-20. Y50.", "Z-3.", "F500."};
-    for (int i = 0; i < 20'000; ++i)
-        lines.push_back("G1 X" + std::to_string(i % 2 * 90 + 5) + ". Y" + std::to_string(i % 97)
-                        + ".");
-    return program(lines);
+    std::string text = fine.substr(0, fine.find("M30"));
+    for (int i = 0; i < 300'000; ++i)
+        text += "G1 X" + std::to_string(i % 2 * 90 + 5) + ". Y" + std::to_string(i % 97) + ".\n";
+    return text + "M30\n";
 }
 
 /// A folder of programs with set-ups beside them.
@@ -184,7 +183,7 @@ TEST_F(Batch, KeepsWhatHasEndedWhenItIsInterrupted) {
     fs::copy_file(folder / "near.toml", folder / "long.toml");
     const Ran ran = check({all(), folder / "long.nc", "--jobs", "2", "--format", "json", "-o",
                            folder / "report.json"},
-                          "timeout --preserve-status -s INT 2");
+                          "timeout --foreground --preserve-status -s INT 3");
     EXPECT_EQ(ran.status, 2);
     EXPECT_THAT(ran.out, HasSubstr("not checked: " + folder / "long.nc"));
     EXPECT_THAT(ran.out, HasSubstr("violation  " + folder / "near.nc"));
@@ -220,6 +219,7 @@ TEST_F(Batch, IsColouredOnATerminalUnlessNoColourIsAskedFor) {
 
 TEST_F(Batch, ShowsHowFarItIsOnATerminal) {
     folder.write("long.nc", long_program());
+    fs::copy_file(folder / "near.toml", folder / "long.toml");
     test_support::Terminal terminal({FEELER_BINARY, "check", all()}, all());
     EXPECT_THAT(terminal.until(" of 4 programs"), HasSubstr("%"));
     terminal.type("\x03");
