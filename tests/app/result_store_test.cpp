@@ -1,9 +1,13 @@
 #include <atomic>
+#include <csignal>
 #include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "app/batch/database.h"
 #include "app/batch/result_key.h"
@@ -236,6 +240,73 @@ TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
     ResultStore store = opened(folder / "db");
     for (const Numbered& each : jobs) EXPECT_EQ(*store.find(each.job), each.result);
     EXPECT_EQ(store.history(jobs[0].job.program)->size(), 1u);
+}
+
+/// Runs something in a process that may make no file longer than so many bytes: a disk that is
+/// full.
+template <typename Action>
+void with_full_disk(rlim_t bytes, const Action& action) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::signal(SIGXFSZ, SIG_IGN); // writing then fails, as on a full disk
+        const rlimit limit{bytes, bytes};
+        ::_exit(::setrlimit(RLIMIT_FSIZE, &limit) == 0 && action() ? 0 : 1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(ResultStore, OnAFullDiskRefusesWhatItHasNoRoomForAndLosesNothing) {
+    const ScopedFolder folder;
+    folder.write("vise.stl", "solid");
+    std::vector<Numbered> jobs;
+    for (int i = 0; i < 40; ++i) {
+        jobs.emplace_back(folder, i);
+        jobs.back().result.assumptions = {std::string(5000, 'a')};
+    }
+    constexpr int before = 5;
+    {
+        ResultStore store = opened(folder / "db");
+        for (int i = 0; i < before; ++i)
+            ASSERT_TRUE(store.keep(jobs[i].job, jobs[i].run, jobs[i].result));
+    }
+    with_full_disk(fs::file_size(folder / "db") + 40'000, [&] {
+        ResultStore store = opened(folder / "db");
+        int kept = before;
+        while (kept < 40 && store.keep(jobs[kept].job, jobs[kept].run, jobs[kept].result)) ++kept;
+        const auto refused = store.keep(jobs[39].job, jobs[39].run, jobs[39].result);
+        // What was kept is found by who is still at it.
+        return kept > before && kept < 40 && !refused && !refused.error().message.empty()
+               && *store.find(jobs[kept - 1].job) == jobs[kept - 1].result;
+    });
+    ResultStore store = opened(folder / "db");
+    for (int i = 0; i < before; ++i) EXPECT_EQ(*store.find(jobs[i].job), jobs[i].result);
+    EXPECT_EQ(*store.find(jobs[39].job), std::nullopt);
+    EXPECT_TRUE(store.keep(jobs[39].job, jobs[39].run, jobs[39].result));
+    EXPECT_EQ(*store.find(jobs[39].job), jobs[39].result);
+}
+
+/// Another process that has the file of a store, and may only read it.
+TEST(ResultStore, ThatMayNotBeWrittenStillFindsResults) {
+    const ScopedFolder folder;
+    folder.write("vise.stl", "solid");
+    const Numbered each(folder, 1), other(folder, 2);
+    { ASSERT_TRUE(opened(folder / "db").keep(each.job, each.run, each.result)); }
+    const pid_t child = ::fork();
+    if (child == 0) {
+        fs::permissions(folder / "db", fs::perms(0444));
+        fs::permissions(folder.path(), fs::perms(0555));
+        if (::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
+        auto store = ResultStore::open(folder / "db", "1");
+        const bool finds = store && *store->find(each.job) == each.result;
+        const bool refuses = store && !store->keep(other.job, other.run, other.result);
+        ::_exit(finds && refuses ? 0 : 1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    fs::permissions(folder.path(), fs::perms(0755));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << WEXITSTATUS(status);
 }
 
 TEST(ResultKey, NamesAnyBytesOfAPathApart) {
