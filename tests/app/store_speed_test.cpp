@@ -37,6 +37,7 @@ TEST(ResultStore, FindsAThousandResultsInASecond) {
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
     EXPECT_LT(taken.count(), 1.0);
+    RecordProperty("milliseconds", static_cast<int>(1000.0 * taken.count()));
 }
 
 } // namespace
