@@ -194,6 +194,12 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
 }
 
 void add_batch_options(CLI::App& command, CheckOptions& options) {
+    CLI::Option* cache = command.add_option(
+        "--cache", options.cache,
+        "Many programs: database of results, so that nothing is checked twice; else "
+        ".feeler/results.db in the folder, or beside the project file, that is named");
+    command.add_flag("--no-cache", options.no_cache, "Many programs: check all, and keep nothing")
+        ->excludes(cache);
     command
         .add_option("-j,--jobs", options.jobs,
                     "Many programs: so many at the same time; else one for each core")

@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/batch/batch_run.h"
-#include "app/commands/check_options.h"
+#include "app/commands/batch_store.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
 #include "app/report/batch_report.h"
@@ -92,10 +91,12 @@ Talk talk_of(const CheckOptions& options, const std::vector<ReportTarget>& targe
     return talk;
 }
 
-BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Talk& talk) {
+BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Talk& talk,
+                      BatchStore& store) {
     stop_on_interrupt();
     ProgressLine line;
     BatchHooks hooks;
+    store.serve(hooks);
     hooks.is_stopped = is_interrupted;
     hooks.waiting = [&line](const BatchProgress& progress) { line.show(progress); };
     hooks.ended = [&](const ProgramResult& result) {
@@ -147,8 +148,12 @@ ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
     const Talk talk = talk_of(options, targets);
-    const BatchResult batch = run_aloud(*plan, limits_of(options), talk);
+    BatchStore store(options);
+    const BatchResult batch = run_aloud(*plan, limits_of(options), talk, store);
     talk.say("\n" + batch_summary(batch, watch.seconds(), talk.style));
+    if (store.found() > 0)
+        talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
+                             store.found(), batch.programs.size()));
     if (is_interrupted())
         fmt::print(stderr, "feeler: interrupted; {} of {} programs were checked\n",
                    batch.programs.size(), batch.programs.size() + batch.unchecked.size());

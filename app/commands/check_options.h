@@ -14,7 +14,8 @@ struct CheckOptions {
     CheckArguments what; // its program: the only one, if `programs` is one name
     std::vector<std::string> programs;
     std::vector<std::string> formats, outputs;
-    std::string stock, comparison;
+    std::string stock, comparison, cache;
+    bool no_cache = false;
     Engine engine = Engine::exact;
     bool blocks = false;
     bool pairs = false;
