@@ -110,7 +110,8 @@ std::string blocks_json(const CheckRun& run) {
     Columns columns;
     TextTable texts, files;
     PairTable pairs(run.setup);
-    int64_t last_time = 0;
+    int64_t last_time = 0, last_removed = 0;
+    double removed = 0.0; // so far: rounded as a whole, so that small pieces add up
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         columns.line.add(block.line);
@@ -122,7 +123,10 @@ std::string blocks_json(const CheckRun& run) {
         const int64_t time = steps_of(result.time, 1e-4);
         columns.time.push_back(time - last_time);
         last_time = time;
-        columns.removed.push_back(steps_of(result.removed, 0.01));
+        removed += result.removed;
+        const int64_t removed_steps = steps_of(removed, 0.01);
+        columns.removed.push_back(removed_steps - last_removed);
+        last_removed = removed_steps;
         add_clearance(run, result, pairs, columns);
     }
     std::string json =

@@ -27,14 +27,18 @@ std::string line_of(const CheckedBlock& block) {
     return block.file.empty() ? line : html_text(block.file) + ", " + line;
 }
 
-std::string picture_of(const CheckRun& run, const FindingGroup& group, size_t block,
+void add_new(std::vector<size_t>& blocks, size_t block) {
+    if (std::find(blocks.begin(), blocks.end(), block) == blocks.end()) blocks.push_back(block);
+}
+
+std::string picture_of(const CheckRun& run, const std::string& rule, size_t block,
                        const ReportViews& views) {
     const BlockView* view = view_of(views, block);
     if (!view || view->picture.empty()) return "";
     return fmt::format(
         R"(<button type="button" class="shot" data-block="{0}" aria-label="Show block {0} in 3D">)"
         R"(<img alt="{1} in block {0}, {2}" src="data:image/jpeg;base64,{3}"></button>)",
-        block, html_text(group.rule), line_of(run.blocks[block]), base64(view->picture));
+        block, html_text(rule), line_of(run.blocks[block]), base64(view->picture));
 }
 
 std::string clearance_of(const FindingStretch& stretch) {
@@ -83,7 +87,7 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
     if (group.stretches.empty()) return card + said(group.message, group.cure) + "</article>\n";
     const FindingStretch& worst = group.stretches[group.worst];
     const CheckedBlock& block = run.blocks[worst.worst];
-    card += picture_of(run, group, worst.worst, views) + said(worst.message, worst.cure);
+    card += picture_of(run, group.rule, worst.worst, views) + said(worst.message, worst.cure);
     card += fmt::format(
         R"(<p class="where"><button type="button" data-block="{}">Block {}, {}{}</button> )"
         R"(<code>{}</code>{}</p>)",
@@ -91,6 +95,25 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
         html_text(trimmed(block.text)),
         group.count > 1 ? fmt::format(" The worst of {} blocks.", group.count) : std::string());
     return card + places_of(run, group) + "</article>\n";
+}
+
+/// The block that comes nearest, where nothing was found of any.
+std::string tightest_card(const CheckRun& run, const ReportViews& views) {
+    const CheckedBlock* nearest = nearest_block(run);
+    if (!nearest) return "";
+    const size_t block = core::value_of(nearest->block);
+    const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
+    return fmt::format(
+               R"(<article class="card"><header><span class="badge">tightest</span><h3>{}</h3>)"
+               R"(<span class="pair">{} / {}</span></header>)",
+               line_of(*nearest), html_text(core::part_name(run.setup, pair.pair)),
+               html_text(core::body_name(run.setup, pair.pair)))
+           + picture_of(run, "tightest", block, views)
+           + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
+                         "\xC2\xB7 {1:.3f} mm, {2:.3f} mm to keep</button> <code>{3}</code></p>"
+                         "</article>\n",
+                         block, pair.lower, pair.allowance.distance,
+                         html_text(trimmed(nearest->text)));
 }
 
 } // namespace
@@ -102,30 +125,32 @@ std::vector<FindingGroup> finding_groups(const CheckRun& run) {
     return viewer::grouped(rows, run.findings);
 }
 
-std::vector<size_t> blocks_to_show(const std::vector<FindingGroup>& groups, size_t most) {
+std::vector<size_t> blocks_of_cards(const CheckRun& run) {
     std::vector<size_t> blocks;
-    const auto add = [&](size_t block) {
-        if (blocks.size() < most && std::find(blocks.begin(), blocks.end(), block) == blocks.end())
-            blocks.push_back(block);
-    };
-    for (const FindingGroup& group : groups)
-        if (!group.stretches.empty()) add(group.stretches[group.worst].worst);
-    for (const FindingGroup& group : groups)
-        for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
-            add(group.stretches[i].worst);
+    for (const FindingGroup& group : finding_groups(run))
+        if (!group.stretches.empty()) add_new(blocks, group.stretches[group.worst].worst);
+    const CheckedBlock* nearest = nearest_block(run);
+    if (blocks.empty() && nearest) blocks.push_back(core::value_of(nearest->block));
     return blocks;
 }
 
-bool has_card(const std::vector<FindingGroup>& groups, size_t block) {
-    return std::any_of(groups.begin(), groups.end(), [&](const FindingGroup& group) {
-        return !group.stretches.empty() && group.stretches[group.worst].worst == block;
-    });
+std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most) {
+    std::vector<size_t> blocks = blocks_of_cards(run);
+    for (const FindingGroup& group : finding_groups(run))
+        for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
+            add_new(blocks, group.stretches[i].worst);
+    if (blocks.size() > most) blocks.resize(most);
+    return blocks;
 }
 
 std::string html_cards(const CheckRun& run, const ReportViews& views) {
     std::string cards;
-    for (const FindingGroup& group : finding_groups(run)) cards += card_of(run, group, views);
-    return cards.empty() ? R"(<p class="none">Nothing was found.</p>)" : cards;
+    const auto groups = finding_groups(run);
+    for (const FindingGroup& group : groups) cards += card_of(run, group, views);
+    if (groups.empty()) cards = R"(<p class="none">Nothing was found.</p>)";
+    const bool has_block = std::any_of(groups.begin(), groups.end(),
+                                       [](const auto& group) { return !group.stretches.empty(); });
+    return has_block ? cards : cards + tightest_card(run, views);
 }
 
 } // namespace app

@@ -11,12 +11,13 @@ namespace app {
 /// The findings of a check as the window groups them.
 std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
 
-/// The blocks that a report should show, at most so many, the most telling ones first: the worst of
-/// each group, then those of the other stretches.
-std::vector<size_t> blocks_to_show(const std::vector<viewer::FindingGroup>& groups, size_t most);
+/// The blocks that have a card of their own: the worst one of each group of findings; without any,
+/// the block with the least margin.
+std::vector<size_t> blocks_of_cards(const CheckRun& run);
 
-/// Whether a card shows a picture of a block: the worst one of a group.
-bool has_card(const std::vector<viewer::FindingGroup>& groups, size_t block);
+/// The blocks that a report should show, at most so many, the most telling ones first: those of
+/// cards, then those of the groups' other stretches.
+std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most);
 
 /// A card for each group of findings, as HTML.
 std::string html_cards(const CheckRun& run, const ReportViews& views);

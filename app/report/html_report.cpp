@@ -1,5 +1,6 @@
 #include "app/report/html_report.h"
 
+#include <filesystem>
 #include <map>
 
 #include <fmt/format.h>
@@ -37,6 +38,11 @@ const char* verdict_of(const CheckRun& run) {
     return run.verdict == core::Verdict::clear && is_worse ? "error" : core::name_of(run.verdict);
 }
 
+std::string name_of_file(const std::string& path) {
+    const std::string name = std::filesystem::path(path).filename().string();
+    return name.empty() ? path : name;
+}
+
 std::string list_of(const std::vector<std::string>& lines) {
     std::string list;
     for (const std::string& line : lines) list += "<li>" + html_text(line) + "</li>\n";
@@ -72,6 +78,7 @@ std::string html_report(const CheckRun& run, const ReportViews& views) {
                                 {"verdict", verdict_of(run)},
                                 {"outcome", html_text(outcome_text(run))},
                                 {"program", html_text(run.program_file)},
+                                {"name", html_text(name_of_file(run.program_file))},
                                 {"palette", html_palette()},
                                 {"style", std::string(assets.style)},
                                 {"summary", html_summary(run)},

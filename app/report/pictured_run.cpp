@@ -1,5 +1,7 @@
 #include "app/report/pictured_run.h"
 
+#include <algorithm>
+
 #include "app/report/html_cards.h"
 #include "app/report/html_scene.h"
 #include "app/viewer/camera_of.h"
@@ -68,13 +70,13 @@ void add_views(Stage& stage, const CheckRun& run, ReportViews& views) {
     auto camera = Camera::make();
     if (!camera) views.no_pictures = camera.error().message;
     SceneWriter writer;
-    const auto groups = finding_groups(run);
-    for (const size_t block : blocks_to_show(groups, most_views)) {
+    const std::vector<size_t> cards = blocks_of_cards(run);
+    for (const size_t block : blocks_to_show(run, most_views)) {
         if (block >= stage.model.rows.size()) continue;
         stage.go_to(block);
         const render::Scene scene = viewer::scene_of(stage.model);
         BlockView view{.block = block, .scene = writer.add(scene, stage.model.camera)};
-        if (camera && has_card(groups, block)) {
+        if (camera && std::find(cards.begin(), cards.end(), block) != cards.end()) {
             auto picture = camera->picture(stage.model, scene);
             if (picture)
                 view.picture = *std::move(picture);

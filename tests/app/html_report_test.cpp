@@ -120,6 +120,27 @@ TEST(HtmlBlocks, SayWhatTheRunSays) {
     EXPECT_EQ(data["found"].size(), 4U);
 }
 
+TEST(HtmlBlocks, AddUpToWhatWasRemoved) {
+    const CheckRun run = clamped_plate();
+    const json data = json::parse(blocks_json(run));
+    double sum = 0.0;
+    for (const json& steps : data["removed"])
+        sum += 0.01 * steps.get<double>();
+    EXPECT_NEAR(sum, run.removed, 0.006);
+}
+
+TEST(HtmlReport, ShowsTheTightestBlockWhereNothingWasFound) {
+    const CheckRun run = *run_check({.program = folder + "programs/clamped_plate.nc",
+                                     .setup = folder + "setups/clamped_plate.toml",
+                                     .detail = core::Detail::deciding_pair});
+    ASSERT_TRUE(run.findings.empty());
+    const std::string page = html_report(run, {});
+    EXPECT_THAT(page, HasSubstr("Nothing was found."));
+    EXPECT_EQ(count_of(page, "<article"), 1U);
+    EXPECT_THAT(page, HasSubstr(fmt::format("data-block=\"{}\"",
+                                            core::value_of(nearest_block(run)->block))));
+}
+
 TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {
     CheckRun run = clamped_plate();
     const std::string plain = html_report(run, {});

@@ -116,7 +116,7 @@ TEST(PicturedRun, FindsWhatACheckFindsAndShowsTheWorstBlocks) {
         EXPECT_EQ(view.picture.substr(0, 2), "\xFF\xD8");
         EXPECT_EQ(view.picture.substr(view.picture.size() - 2), "\xFF\xD9");
     }
-    EXPECT_EQ(blocks, blocks_to_show(finding_groups(plain), 12));
+    EXPECT_EQ(blocks, blocks_to_show(plain, 12));
     EXPECT_EQ(blocks.size(), 4U);
 }
 

@@ -55,9 +55,12 @@ function makeChart(canvas, blocks, onChoose, onPoint) {
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
     context.textBaseline = "middle";
+    let last = Infinity; // no label upon another
     for (const mm of [0, 0.1, 0.5, 1, 2, 5, 10, 20, 50]) {
       if (mm * 1000 > top) break;
       const y = chartMargin.top + height * (1 - heightShare(mm * 1000, top));
+      if (last - y < 13) continue;
+      last = y;
       context.fillText(String(mm), chartMargin.left - 6, y);
       context.beginPath();
       context.moveTo(chartMargin.left, Math.round(y) + 0.5);
