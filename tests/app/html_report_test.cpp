@@ -124,8 +124,7 @@ TEST(HtmlBlocks, AddUpToWhatWasRemoved) {
     const CheckRun run = clamped_plate();
     const json data = json::parse(blocks_json(run));
     double sum = 0.0;
-    for (const json& steps : data["removed"])
-        sum += 0.01 * steps.get<double>();
+    for (const json& steps : data["removed"]) sum += 0.01 * steps.get<double>();
     EXPECT_NEAR(sum, run.removed, 0.006);
 }
 

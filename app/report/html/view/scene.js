@@ -76,7 +76,8 @@ const creaseDegrees = 30;
 
 function edgesOf(body, geometry, color) {
   geometry.userData.edges ||= new EdgesGeometry(geometry, creaseDegrees);
-  const material = new LineBasicMaterial({ color: color(body.state || "edge"), transparent: true, opacity: body.state ? 0.9 : 0.4 });
+  const opacity = body.state ? 0.9 : body.role === "stock" ? 0.2 : 0.4; // a coarse stock has edges that are none
+  const material = new LineBasicMaterial({ color: color(body.state || "edge"), transparent: true, opacity });
   return new LineSegments(geometry.userData.edges, material);
 }
 
