@@ -35,67 +35,110 @@ function heightShare(um, top) {
   return Math.sqrt(Math.min(1, Math.max(0, um) / top));
 }
 
-/** `onChoose(block)` is told of clicks, `onPoint(block)` of the block under the pointer, -1: none. */
-function makeChart(canvas, blocks, onChoose, onPoint) {
-  const context = canvas.getContext("2d");
-  let axis = "time", range = null, chosen = -1, drag = null, columns = null;
+class Chart {
+  /** `onChoose(block)` is told of clicks, `onPoint(block)` of the block under the pointer, -1: none. */
+  constructor(canvas, blocks, onChoose, onPoint) {
+    Object.assign(this, { canvas, blocks, onChoose, onPoint, axis: "time", range: null, chosen: -1, drag: null, columns: null });
+    this.context = canvas.getContext("2d");
+    this.top = Math.max(blocks.limit, 1000); // um
+    canvas.addEventListener("pointerdown", (event) => { this.drag = { from: this.place(event), to: this.place(event) }; });
+    canvas.addEventListener("pointermove", (event) => this.onMove(event));
+    canvas.addEventListener("pointerleave", () => { onPoint(-1); });
+    addEventListener("pointerup", () => this.onRelease());
+    canvas.addEventListener("keydown", (event) => this.onKey(event));
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
 
-  const whole = () => (axis === "time" ? [0, Math.max(blocks.end, 1e-3)] : [0, Math.max(blocks.count, 1)]);
-  const startOf = (i) => (axis === "time" ? blocks.time[i] : i);
-  const endOf = (i) => (axis === "time" ? blocks.time[i] + durationOf(blocks, i) : i + 1);
-  const inner = () => Math.max(10, Math.floor(canvas.clientWidth - chartMargin.left - chartMargin.right));
-  const pixelOf = (value) => ((value - range[0]) / (range[1] - range[0])) * inner();
-  const valueAt = (pixel) => range[0] + (pixel / inner()) * (range[1] - range[0]);
+  choose(block) {
+    this.chosen = block;
+    this.draw();
+  }
+  along(name) {
+    this.axis = name;
+    this.look(null);
+  }
+  /** Shows a range of the axis; null: the whole program. */
+  look(range) {
+    this.range = range;
+    this.columns = null;
+    this.draw();
+  }
 
-  const top = Math.max(blocks.limit, 1000);
+  whole() {
+    return this.axis === "time" ? [0, Math.max(this.blocks.end, 1e-3)] : [0, Math.max(this.blocks.count, 1)];
+  }
+  startOf(i) { return this.axis === "time" ? this.blocks.time[i] : i; }
+  endOf(i) { return this.axis === "time" ? this.blocks.time[i] + durationOf(this.blocks, i) : i + 1; }
+  width() { return Math.max(10, Math.floor(this.canvas.clientWidth - chartMargin.left - chartMargin.right)); }
+  height() { return this.canvas.clientHeight - chartMargin.top - chartMargin.bottom; }
+  pixelOf(value) { return ((value - this.range[0]) / (this.range[1] - this.range[0])) * this.width(); }
+  valueAt(pixel) { return this.range[0] + (pixel / this.width()) * (this.range[1] - this.range[0]); }
+  heightOf(um) { return chartMargin.top + this.height() * (1 - heightShare(um, this.top)); }
 
-  function drawAxes(height) {
+  draw() {
+    const { canvas, context } = this, scale = devicePixelRatio || 1;
+    if (canvas.clientWidth === 0) return;
+    canvas.width = Math.round(canvas.clientWidth * scale);
+    canvas.height = Math.round(canvas.clientHeight * scale);
+    context.setTransform(scale, 0, 0, scale, 0, 0);
+    this.range ||= this.whole();
+    if (!this.columns || this.columns.block.length !== this.width())
+      this.columns = leastPerPixel(this.blocks, (i) => [this.pixelOf(this.startOf(i)), this.pixelOf(this.endOf(i))], this.width());
     context.fillStyle = colorOf("dim");
     context.strokeStyle = colorOf("line");
     context.font = "11px system-ui, sans-serif";
+    this.drawHeights();
+    this.drawAxis();
+    this.drawBars();
+    this.drawMarks();
+  }
+
+  drawHeights() {
+    const { context } = this;
     context.textAlign = "right";
     context.textBaseline = "middle";
     let last = Infinity; // no label upon another
     for (const mm of [0, 0.1, 0.5, 1, 2, 5, 10, 20, 50]) {
-      if (mm * 1000 > top) break;
-      const y = chartMargin.top + height * (1 - heightShare(mm * 1000, top));
-      if (last - y < 13) continue;
+      const y = this.heightOf(mm * 1000);
+      if (mm * 1000 > this.top || last - y < 13) continue;
       last = y;
       context.fillText(String(mm), chartMargin.left - 6, y);
       context.beginPath();
       context.moveTo(chartMargin.left, Math.round(y) + 0.5);
-      context.lineTo(chartMargin.left + inner(), Math.round(y) + 0.5);
+      context.lineTo(chartMargin.left + this.width(), Math.round(y) + 0.5);
       context.stroke();
     }
+  }
+
+  drawAxis() {
+    const { context, range, axis } = this, least = axis === "time" ? 1e-3 : 1;
     context.textAlign = "center";
     context.textBaseline = "top";
-    const step = Math.max(niceStep(range[1] - range[0], inner() / 90), axis === "time" ? 1e-3 : 1);
-    for (let value = Math.ceil(range[0] / step) * step; value <= range[1]; value += step) {
-      const text = axis === "time" ? (step < 1 ? value.toFixed(3) + " s" : secondsText(value)) : String(Math.round(value));
-      context.fillText(text, chartMargin.left + pixelOf(value), chartMargin.top + height + 6);
-    }
+    const step = Math.max(niceStep(range[1] - range[0], this.width() / 90), least);
+    const text = (value) => (axis === "block" ? String(Math.round(value)) : step < 1 ? value.toFixed(3) + " s" : secondsText(value));
+    for (let value = Math.ceil(range[0] / step) * step; value <= range[1]; value += step)
+      context.fillText(text(value), chartMargin.left + this.pixelOf(value), chartMargin.top + this.height() + 6);
   }
 
-  function drawBars(height) {
+  drawBars() {
+    const { context, columns } = this, foot = chartMargin.top + this.height();
     const colors = { violation: colorOf("violation"), near: colorOf("near"), clear: colorOf("clear") };
     for (let x = 0; x < columns.block.length; ++x) {
-      const i = columns.block[x];
-      if (i < 0) continue;
-      const tall = Math.max(height * heightShare(columns.least[x], top), 2);
-      context.fillStyle = colors[stateOf(blocks, i)] || colors.clear;
-      context.fillRect(chartMargin.left + x, chartMargin.top + height - tall, 1, tall);
+      if (columns.block[x] < 0) continue;
+      const state = stateOf(this.blocks, columns.block[x]);
+      const tall = Math.max(foot - this.heightOf(columns.least[x]), 2);
+      context.fillStyle = colors[state] || colors.clear;
+      context.fillRect(chartMargin.left + x, foot - tall, 1, tall);
       // A finding of which the clearance says nothing still has to be seen.
-      if (stateOf(blocks, i) === "violation")
-        context.fillRect(chartMargin.left + x - 1, chartMargin.top + height - 5, 3, 5);
+      if (state === "violation") context.fillRect(chartMargin.left + x - 1, foot - 5, 3, 5);
     }
   }
 
-  function drawMarks(height) {
-    if (chosen >= 0) {
-      context.fillStyle = colorOf("current");
-      const x = pixelOf(startOf(chosen));
-      if (x >= 0 && x <= inner()) context.fillRect(chartMargin.left + x - 1, chartMargin.top, 2, height);
-    }
+  drawMarks() {
+    const { context, chosen, drag } = this, height = this.height();
+    const x = chosen < 0 ? -1 : this.pixelOf(this.startOf(chosen));
+    context.fillStyle = colorOf("current");
+    if (x >= 0 && x <= this.width()) context.fillRect(chartMargin.left + x - 1, chartMargin.top, 2, height);
     if (!drag || drag.from === drag.to) return;
     context.globalAlpha = 0.25;
     context.fillStyle = colorOf("accent");
@@ -103,62 +146,40 @@ function makeChart(canvas, blocks, onChoose, onPoint) {
     context.globalAlpha = 1;
   }
 
-  function draw() {
-    const scale = devicePixelRatio || 1, height = canvas.clientHeight - chartMargin.top - chartMargin.bottom;
-    if (canvas.clientWidth === 0) return;
-    canvas.width = Math.round(canvas.clientWidth * scale);
-    canvas.height = Math.round(canvas.clientHeight * scale);
-    context.setTransform(scale, 0, 0, scale, 0, 0);
-    if (!range) range = whole();
-    if (!columns || columns.block.length !== inner())
-      columns = leastPerPixel(blocks, (i) => [pixelOf(startOf(i)), pixelOf(endOf(i))], inner());
-    drawAxes(height);
-    drawBars(height);
-    drawMarks(height);
+  place(event) {
+    return Math.max(0, Math.min(this.width() - 1, Math.floor(event.offsetX - chartMargin.left)));
   }
 
-  function look(fresh) {
-    range = fresh;
-    columns = null;
-    draw();
-  }
-
-  const place = (event) => Math.max(0, Math.min(inner() - 1, Math.floor(event.offsetX - chartMargin.left)));
-  // The worst within reach of a finger or a mouse.
-  function blockNear(pixel) {
+  /** The worst block within reach of a finger or a mouse; -1: none. */
+  blockNear(pixel) {
+    const { block, least } = this.columns;
     let best = -1;
-    for (let x = Math.max(0, pixel - 3); x <= Math.min(inner() - 1, pixel + 3); ++x)
-      if (columns.block[x] >= 0 && (best < 0 || columns.least[x] < columns.least[best])) best = x;
-    return best < 0 ? -1 : columns.block[best];
+    for (let x = Math.max(0, pixel - 3); x <= Math.min(this.width() - 1, pixel + 3); ++x)
+      if (block[x] >= 0 && (best < 0 || least[x] < least[best])) best = x;
+    return best < 0 ? -1 : block[best];
   }
-  canvas.addEventListener("pointerdown", (event) => { drag = { from: place(event), to: place(event) }; });
-  canvas.addEventListener("pointermove", (event) => {
-    onPoint(blockNear(place(event)));
-    if (!drag) return;
-    drag.to = place(event);
-    draw();
-  });
-  canvas.addEventListener("pointerleave", () => { onPoint(-1); });
-  addEventListener("pointerup", () => {
-    if (!drag) return;
-    const [from, to] = [Math.min(drag.from, drag.to), Math.max(drag.from, drag.to)];
-    drag = null;
-    if (to - from > 5) return look([valueAt(from), valueAt(to)]);
-    const block = blockNear(from);
-    if (block >= 0) onChoose(block);
-    draw();
-  });
-  canvas.addEventListener("keydown", (event) => {
+
+  onMove(event) {
+    this.onPoint(this.blockNear(this.place(event)));
+    if (!this.drag) return;
+    this.drag.to = this.place(event);
+    this.draw();
+  }
+
+  onRelease() {
+    if (!this.drag) return;
+    const from = Math.min(this.drag.from, this.drag.to), to = Math.max(this.drag.from, this.drag.to);
+    this.drag = null;
+    if (to - from > 5) return this.look([this.valueAt(from), this.valueAt(to)]);
+    const block = this.blockNear(from);
+    if (block >= 0) this.onChoose(block);
+    this.draw();
+  }
+
+  onKey(event) {
     const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!way || blocks.count === 0) return;
+    if (!way || this.blocks.count === 0) return;
     event.preventDefault();
-    onChoose(Math.max(0, Math.min(blocks.count - 1, chosen + way)));
-  });
-  new ResizeObserver(draw).observe(canvas);
-  return {
-    draw,
-    choose(block) { chosen = block; draw(); },
-    along(name) { axis = name; look(null); },
-    whole() { look(null); },
-  };
+    this.onChoose(Math.max(0, Math.min(this.blocks.count - 1, this.chosen + way)));
+  }
 }

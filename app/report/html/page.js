@@ -52,10 +52,10 @@ function startPage() {
   const blocks = unpackBlocks(dataIn("block-data")), views = dataIn("view-data");
   const by = (id) => document.getElementById(id);
   const view = makeView(by("view"), views);
-  const chart = makeChart(by("clearance-chart"), blocks, (block) => choose(block), (block) => {
+  const chart = new Chart(by("clearance-chart"), blocks, (block) => choose(block), (block) => {
     by("chart-read").textContent = block < 0 ? "" : captionOf(blocks, block);
   });
-  const table = makeTable(by("grid"), blocks, (block) => choose(block));
+  const table = new Table(by("grid"), blocks, (block) => choose(block));
 
   function choose(block) {
     chart.choose(block);
@@ -87,7 +87,7 @@ function startPage() {
   });
   for (const id of ["filter-text", "filter-verdict", "filter-near"]) by(id).addEventListener("input", filter);
   by("chart-axis").addEventListener("input", (event) => chart.along(event.target.value));
-  by("chart-all").addEventListener("click", () => chart.whole());
+  by("chart-all").addEventListener("click", () => chart.look(null));
   const repaint = () => {
     chart.draw();
     if (view) view.recolor();

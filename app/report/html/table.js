@@ -30,85 +30,94 @@ function rowOf(blocks, i, isChosen) {
   return row;
 }
 
-/** `onChoose(block)` is told of clicks and keys. */
-function makeTable(grid, blocks, onChoose) {
-  const body = grid.querySelector(".grid-body");
-  const rows = grid.querySelector(".grid-rows");
-  let shown = new Int32Array(0); // blocks
-  let chosen = -1; // block
+class Table {
+  /** `onChoose(block)` is told of clicks and keys. */
+  constructor(grid, blocks, onChoose) {
+    const shown = new Int32Array(0); // blocks
+    Object.assign(this, { grid, blocks, onChoose, shown, chosen: -1 });
+    this.body = grid.querySelector(".grid-body");
+    this.rows = grid.querySelector(".grid-rows");
+    grid.addEventListener("keydown", (event) => this.onKey(event));
+    grid.addEventListener("click", (event) => {
+      const row = event.target.closest(".grid-row");
+      if (row) onChoose(Number(row.dataset.row));
+    });
+    grid.addEventListener("scroll", () => this.draw(), { passive: true });
+    new ResizeObserver(() => this.draw()).observe(grid);
+    addEventListener("beforeprint", () => this.toPaper());
+    addEventListener("afterprint", () => this.fromPaper());
+  }
 
-  const room = () => Math.max(1, Math.floor((grid.clientHeight - headHeight) / rowHeight));
-  const height = () => Math.min(shown.length * rowHeight, tallest);
-  // Beyond `tallest` a pixel of scrolling is more than a pixel of rows.
-  const ratio = () => {
-    const way = height() - room() * rowHeight;
-    return way > 0 ? (shown.length - room()) / way : 0;
-  };
+  /** Rows that fit into sight. */
+  room() { return Math.max(1, Math.floor((this.grid.clientHeight - headHeight) / rowHeight)); }
+  height() { return Math.min(this.shown.length * rowHeight, tallest); }
+  /** Rows to a pixel of scrolling: beyond `tallest` a pixel is more than a pixel of rows. */
+  ratio() {
+    const way = this.height() - this.room() * rowHeight;
+    return way > 0 ? (this.shown.length - this.room()) / way : 0;
+  }
 
-  function draw() {
-    const first = Math.max(0, Math.min(Math.floor(grid.scrollTop * ratio()), shown.length - room()));
-    const last = Math.min(shown.length, first + room() + 2);
+  draw() {
+    const { grid, shown } = this, ratio = this.ratio(), place = grid.scrollTop * ratio;
+    const first = Math.max(0, Math.min(Math.floor(place), shown.length - this.room()));
+    const last = Math.min(shown.length, first + this.room() + 2);
     const fresh = [];
-    for (let k = first; k < last; ++k) fresh.push(rowOf(blocks, shown[k], shown[k] === chosen));
-    rows.replaceChildren(...fresh);
-    const top = grid.scrollTop - (ratio() > 0 ? (grid.scrollTop * ratio() - first) * rowHeight : grid.scrollTop);
-    rows.style.top = Math.max(0, Math.min(top, height() - fresh.length * rowHeight)) + "px";
+    for (let k = first; k < last; ++k) fresh.push(rowOf(this.blocks, shown[k], shown[k] === this.chosen));
+    this.rows.replaceChildren(...fresh);
+    const top = ratio > 0 ? grid.scrollTop - (place - first) * rowHeight : 0;
+    this.rows.style.top = Math.max(0, Math.min(top, this.height() - fresh.length * rowHeight)) + "px";
     grid.setAttribute("aria-rowcount", String(shown.length));
   }
 
-  function show(passed) {
-    shown = passed;
-    body.style.height = height() + "px";
-    grid.scrollTop = 0;
-    draw();
+  show(passed) {
+    this.shown = passed;
+    this.body.style.height = this.height() + "px";
+    this.grid.scrollTop = 0;
+    this.draw();
   }
 
-  function placeOf(block) {
-    let low = 0, high = shown.length;
+  /** Where a block is among those shown, or would be. */
+  placeOf(block) {
+    let low = 0, high = this.shown.length;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (shown[middle] < block) low = middle + 1; else high = middle;
+      if (this.shown[middle] < block) low = middle + 1; else high = middle;
     }
     return low;
   }
 
   /** Marks a block and brings it into sight, if the filter lets it through. */
-  function choose(block) {
-    chosen = block;
-    const at = placeOf(block);
-    if (shown[at] === block && ratio() > 0) {
-      const first = grid.scrollTop * ratio();
-      if (at < first) grid.scrollTop = at / ratio();
-      if (at > first + room() - 1) grid.scrollTop = (at - room() + 1) / ratio();
+  choose(block) {
+    this.chosen = block;
+    const at = this.placeOf(block), ratio = this.ratio();
+    if (this.shown[at] === block && ratio > 0) {
+      const first = this.grid.scrollTop * ratio;
+      if (at < first) this.grid.scrollTop = at / ratio;
+      if (at > first + this.room() - 1) this.grid.scrollTop = (at - this.room() + 1) / ratio;
     }
-    draw();
+    this.draw();
   }
 
-  const steps = { ArrowDown: () => 1, ArrowUp: () => -1, PageDown: room, PageUp: () => -room(),
-    Home: () => -blocks.count, End: () => blocks.count };
-  grid.addEventListener("keydown", (event) => {
+  onKey(event) {
+    const { shown, chosen } = this, room = this.room();
+    const steps = { ArrowDown: 1, ArrowUp: -1, PageDown: room, PageUp: -room, Home: -shown.length, End: shown.length };
     const step = steps[event.key];
-    if (!step || shown.length === 0) return;
+    if (step === undefined || shown.length === 0) return;
     event.preventDefault();
-    const at = Math.max(0, Math.min(shown.length - 1, placeOf(Math.max(chosen, 0)) + (chosen < 0 ? 0 : step())));
-    onChoose(shown[at]);
-  });
-  grid.addEventListener("click", (event) => {
-    const row = event.target.closest(".grid-row");
-    if (row) onChoose(Number(row.dataset.row));
-  });
-  grid.addEventListener("scroll", draw, { passive: true });
-  new ResizeObserver(draw).observe(grid);
-  // On paper there is nothing to scroll: the first rows stand there, and how many are missing.
-  addEventListener("beforeprint", () => {
-    rows.replaceChildren(...Array.from(shown.slice(0, mostPrinted), (i) => rowOf(blocks, i, false)));
-    if (shown.length > mostPrinted)
-      rows.append(cell("and " + (shown.length - mostPrinted) + " more in the file"));
-    body.style.height = "auto";
-  });
-  addEventListener("afterprint", () => {
-    body.style.height = height() + "px";
-    draw();
-  });
-  return { show, choose };
+    const from = this.placeOf(Math.max(chosen, 0)) + (chosen < 0 ? 0 : step);
+    this.onChoose(shown[Math.max(0, Math.min(shown.length - 1, from))]);
+  }
+
+  /** On paper there is nothing to scroll: the first rows stand there, and how many are missing. */
+  toPaper() {
+    const { rows, shown } = this;
+    rows.replaceChildren(...Array.from(shown.slice(0, mostPrinted), (i) => rowOf(this.blocks, i, false)));
+    if (shown.length > mostPrinted) rows.append(cell("and " + (shown.length - mostPrinted) + " more in the file"));
+    this.body.style.height = "auto";
+  }
+
+  fromPaper() {
+    this.body.style.height = this.height() + "px";
+    this.draw();
+  }
 }
