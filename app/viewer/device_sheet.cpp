@@ -45,7 +45,8 @@ std::string number_of(const Subject& subject) {
 }
 
 std::string answer_words(const Subject& subject) {
-    const std::string why = refusal(subject.study.result, subject.index);
+    // Only of a block that the run has come to.
+    const auto why = [&] { return refusal(subject.study.result, subject.index); };
     switch (subject.answer()) {
     case DeviceAnswer::unknown:
         return "The run ended before this block";
@@ -58,10 +59,10 @@ std::string answer_words(const Subject& subject) {
         return "Permitted too late: the machine brakes and waits";
     case DeviceAnswer::refused:
         return subject.block().permit.stop == hwsim::Stop::violation
-                   ? why + " come nearer than they may"
-                   : "The device has stopped: " + why;
+                   ? why() + " come nearer than they may"
+                   : "The device has stopped: " + why();
     case DeviceAnswer::not_asked:
-        return "Not permitted: " + why;
+        return "Not permitted: " + why();
     }
     return {};
 }
