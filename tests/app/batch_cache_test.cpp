@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+
+namespace app_test {
+namespace {
+
+const std::string clear_program = "G21 G90 G54\nT1 M6\nG0 X0 Y0\nM30\n";
+
+/// A folder with some programs.
+void fill(const test_support::ScopedFolder& folder) {
+    for (const std::string name : {"a.nc", "b.nc", "c d.nc"}) folder.write(name, clear_program);
+}
+
+bool says(const test_support::Ran& ran, const std::string& text) {
+    return ran.out.find(text) != std::string::npos;
+}
+
+TEST(BatchCache, ChecksNothingTwice) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    const auto first =
+        feeler({"check", folder.path().string(), "--format", "jsonl", "-o", folder / "1"});
+    EXPECT_FALSE(says(first, "nothing has changed")) << first.out;
+    EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results.db"));
+    const auto second =
+        feeler({"check", folder.path().string(), "--format", "jsonl", "-o", folder / "2"});
+    EXPECT_TRUE(says(second, "3 of 3 results are those of earlier checks")) << second.out;
+    EXPECT_EQ(second.status, first.status);
+    folder.write("b.nc", clear_program + "( changed )\n");
+    const auto third = feeler({"check", folder.path().string()});
+    EXPECT_TRUE(says(third, "2 of 3 results")) << third.out;
+    const auto other = feeler({"check", folder.path().string(), "--mesh-size", "0.7"});
+    EXPECT_FALSE(says(other, "nothing has changed")) << "another mesh size is another check";
+    const auto history = feeler({"history", folder / "b.nc"});
+    EXPECT_TRUE(says(history, "3 versions")) << history.out;
+}
+
+TEST(BatchCache, IsNotThereWhereNobodyWantsIt) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    EXPECT_EQ(feeler({"check", folder.path().string(), "--no-cache"}).status, 0);
+    EXPECT_EQ(feeler({"check", folder / "a.nc"}).status, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / ".feeler"));
+    const auto named = feeler({"check", folder.path().string(), "--cache", folder / "r.db"});
+    EXPECT_EQ(named.status, 0) << named.err;
+    EXPECT_TRUE(std::filesystem::exists(folder / "r.db"));
+}
+
+TEST(BatchCache, ThatCannotBeUsedIsToldAndTheCheckGoesOn) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    const std::string wrong = folder.write("wrong.db", std::string(5000, 'x'));
+    const auto ran = feeler({"check", folder.path().string(), "--cache", wrong});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(ran.err.find("wrong.db"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("the check goes on"), std::string::npos) << ran.err;
+    EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
+}
+
+} // namespace
+} // namespace app_test
