@@ -227,11 +227,15 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: add every pair of bodies to every block");
     command
-        .add_option("--engine", options->engine,
-                    "Who measures: exact, or coprocessor (feeler coproc says what it is)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Engine>{
-            {"exact", Engine::exact}, {"coprocessor", Engine::coprocessor}}))
-        ->option_text("exact|coprocessor");
+        .add_option_function<std::string>(
+            "--engine",
+            [options](const std::string& name) {
+                options->engine =
+                    name == name_of(Engine::exact) ? Engine::exact : Engine::coprocessor;
+            },
+            "Who measures: exact, or coprocessor (feeler coproc says what it is)")
+        ->check(CLI::IsMember({name_of(Engine::exact), name_of(Engine::coprocessor)}))
+        ->default_str(name_of(Engine::exact));
     command
         .add_flag("--verdict-only", options->verdict_only,
                   "Faster: no clearance of blocks that a bound already clears")
