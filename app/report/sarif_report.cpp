@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/batch/block_text.h"
 #include "app/report/rule_help.h"
 #include "app/session/digest.h"
 #include "app/version.h"
@@ -131,19 +132,6 @@ Json invocation_json(const BatchResult& batch) {
             {"toolExecutionNotifications", notes}};
 }
 
-/// The text of a block without its number, blanks and letter case, which mean nothing.
-std::string unnumbered(const std::string& text) {
-    std::string plain;
-    for (const char c : text)
-        if (static_cast<unsigned char>(c) > ' ')
-            plain += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    size_t at = plain.starts_with('/') ? 1 : 0;
-    const size_t number = at;
-    if (at < plain.size() && (plain[at] == 'N' || plain[at] == ':')) ++at;
-    const size_t end = std::min(plain.find_first_not_of("0123456789", at), plain.size());
-    return end == at ? plain : plain.erase(number, end - number);
-}
-
 } // namespace
 
 std::string uri_of(const std::string& path) {
@@ -162,7 +150,7 @@ std::string uri_of(const std::string& path) {
 
 std::string fingerprint_of(const KeptFinding& finding, size_t before) {
     return sha256_of(fmt::format("{}\n{}\n{}\n{}\n{}", finding.rule, finding.pair[0],
-                                 finding.pair[1], unnumbered(finding.text), before));
+                                 finding.pair[1], without_number(finding.text), before));
 }
 
 std::string sarif_report(const BatchResult& batch, const std::string& folder) {
