@@ -1,15 +1,11 @@
 #include "app/batch/input_files.h"
 
 #include "app/session/digest.h"
+#include "core/base/file_reads.h"
 #include "gcode/program_folder.h"
 
 namespace app {
 namespace {
-
-std::optional<std::string> presence_of(const std::string& path) {
-    if (core::is_file(path)) return "file";
-    return core::is_there(path) ? std::optional<std::string>("other") : std::nullopt;
-}
 
 std::optional<std::string> place_of(const InputFile& input) {
     const auto found = gcode::file_in(input.path, input.name);
@@ -23,7 +19,7 @@ bool InputAnswers::is_same(const InputFile& input) {
     case core::FileQuestion::content:
         return input.answer && !input.answer->empty() && content_of(input.path) == *input.answer;
     case core::FileQuestion::presence:
-        return presence_of(input.path) == input.answer;
+        return core::presence_of(input.path) == input.answer;
     case core::FileQuestion::in_folder:
         return place_of(input) == input.answer;
     case core::FileQuestion::any_case:

@@ -11,20 +11,6 @@ namespace {
 
 thread_local const FileListening* youngest = nullptr;
 
-/// What answers the question of presence.
-std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
-    std::error_code failure;
-    const std::filesystem::file_status status = std::filesystem::status(path, failure);
-    if (!std::filesystem::exists(status)) return std::nullopt;
-    return std::filesystem::is_regular_file(status) ? "file" : "other";
-}
-
-std::optional<std::string_view> noted_presence(const std::filesystem::path& path) {
-    const std::optional<std::string_view> answer = presence_of(path);
-    note_look({FileQuestion::presence, path.string(), {}, answer});
-    return answer;
-}
-
 std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t limit) {
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
@@ -65,8 +51,18 @@ std::optional<std::string> file_bytes(const std::filesystem::path& path, size_t 
     return bytes;
 }
 
-bool is_there(const std::filesystem::path& path) { return noted_presence(path).has_value(); }
+std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
+    std::error_code failure;
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    std::optional<std::string_view> answer;
+    if (std::filesystem::exists(status))
+        answer = std::filesystem::is_regular_file(status) ? "file" : "other";
+    note_look({FileQuestion::presence, path.string(), {}, answer});
+    return answer;
+}
 
-bool is_file(const std::filesystem::path& path) { return noted_presence(path) == "file"; }
+bool is_there(const std::filesystem::path& path) { return presence_of(path).has_value(); }
+
+bool is_file(const std::filesystem::path& path) { return presence_of(path) == "file"; }
 
 } // namespace core

@@ -53,6 +53,9 @@ void note_look(const FileLook& look);
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       size_t limit = std::numeric_limits<size_t>::max() - 1);
 
+/// What there is of this name: "file" that has bytes to be read, "other", or nothing.
+std::optional<std::string_view> presence_of(const std::filesystem::path& path);
+
 /// Whether there is anything of this name.
 bool is_there(const std::filesystem::path& path);
 
