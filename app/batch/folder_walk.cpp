@@ -82,16 +82,6 @@ FolderWalk walk_folder(const std::string& folder) {
     return found;
 }
 
-std::vector<fs::path> names_in(const fs::path& folder) {
-    std::vector<fs::path> names;
-    std::error_code failure;
-    for (fs::directory_iterator at(folder.empty() ? fs::path(".") : folder, failure), end;
-         !failure && at != end; at.increment(failure))
-        names.push_back(at->path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 std::vector<fs::path> folders_below(const fs::path& folder) {
     const fs::path here = folder.empty() ? fs::path(".") : folder;
     std::vector<fs::path> below;

@@ -26,9 +26,6 @@ struct FolderWalk {
 /// again. Real folders come before links to them.
 FolderWalk walk_folder(const std::string& folder);
 
-/// The names in a folder, sorted; none where it cannot be read.
-std::vector<std::filesystem::path> names_in(const std::filesystem::path& folder);
-
 /// The folders below one, each once, as walk_folder enters them.
 std::vector<std::filesystem::path> folders_below(const std::filesystem::path& folder);
 

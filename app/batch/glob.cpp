@@ -6,6 +6,7 @@
 #include <fnmatch.h>
 
 #include "app/batch/folder_walk.h"
+#include "gcode/program_folder.h"
 
 namespace app {
 namespace {
@@ -29,7 +30,7 @@ private:
         const fs::path& part = parts_[i];
         if (part == "**") return expand_below(folder, i);
         if (!is_glob(part)) return go_on(folder / part, i);
-        for (const fs::path& name : names_in(folder))
+        for (const std::string& name : gcode::names_in(folder.empty() ? "." : folder))
             if (::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) go_on(folder / name, i);
     }
 
