@@ -72,10 +72,7 @@ private:
         CheckJob job = asked_;
         job.program = program;
         if (job.setup.empty()) job.setup = terms.setup;
-        if (job.setup.empty()) {
-            job.setup = setup_beside(program);
-            job.setup_was_found = !job.setup.empty();
-        }
+        look_beside(job);
         if (!job.settings.dialect) job.settings.dialect = terms.dialect;
         if (!job.allowance) job.allowance = terms.allowance;
         if (!job.mesh_size) job.mesh_size = terms.mesh_size;

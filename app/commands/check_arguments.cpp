@@ -1,7 +1,6 @@
 #include "app/commands/check_arguments.h"
 
 #include "app/commands/number_range.h"
-#include "app/setup/setup_beside.h"
 
 namespace app {
 
@@ -39,10 +38,7 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     CheckJob job;
     job.program = arguments.program;
     job.setup = arguments.setup;
-    if (job.setup.empty() && !job.program.empty()) {
-        job.setup = setup_beside(job.program);
-        job.setup_was_found = !job.setup.empty();
-    }
+    look_beside(job);
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;
     if (arguments.memory_limit) job.memory_limit = *arguments.memory_limit * 1e6;

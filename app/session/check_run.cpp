@@ -7,6 +7,7 @@
 #include "app/session/input_recorder.h"
 #include "app/session/program_runner.h"
 #include "app/session/stopwatch.h"
+#include "app/setup/setup_beside.h"
 
 namespace app {
 
@@ -33,6 +34,12 @@ const CheckedBlock* nearest_block(const CheckRun& run) {
         if (block.result.deciding && (!nearest || margin(block) < margin(*nearest)))
             nearest = &block;
     return nearest;
+}
+
+void look_beside(CheckJob& job) {
+    if (!job.setup.empty() || job.program.empty()) return;
+    job.setup = setup_beside(job.program);
+    job.setup_was_found = !job.setup.empty();
 }
 
 core::Result<CheckRun> run_check(const CheckJob& job) {

@@ -100,6 +100,9 @@ struct CheckJob {
     bool setup_was_found = false;    // nobody named it: it stands beside the program
 };
 
+/// Names the set-up that stands beside the program, if none was named.
+void look_beside(CheckJob& job);
+
 /// Runs a program against its set-up, or against what the program itself tells when `setup` is
 /// empty.
 ///
