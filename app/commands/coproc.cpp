@@ -43,7 +43,7 @@ core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
     FEELER_TRY(job.check, job_of(options.what));
     job.check.detail = core::Detail::every_pair;
     job.device = file.device;
-    if (!options.no_fit) job.other_elements = {1, 2, 4, 8, 16};
+    if (!options.no_fit) job.other_elements.assign(tried_elements.begin(), tried_elements.end());
     if (!options.vcd.empty()) {
         trace.vcd.emplace(job.device);
         trace.from = options.from.value_or(0);

@@ -14,6 +14,9 @@ struct DeviceFit {
 /// What clocks are tried, MHz.
 constexpr std::array<uint32_t, 12> clocks = {1, 2, 5, 10, 20, 25, 50, 75, 100, 150, 200, 300};
 
+/// What numbers of elements are.
+constexpr std::array<uint32_t, 5> tried_elements = {1, 2, 4, 8, 16};
+
 /// How long a device at this clock takes for each block.
 std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz);
 

@@ -9,9 +9,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto progress_interval = std::chrono::milliseconds(100);
 
-/// Devices that are tried to find the smallest one.
-const std::vector<uint32_t> tried_elements = {1, 2, 4, 8, 16};
-
 } // namespace
 
 DeviceWorker::DeviceWorker(std::function<void()> wake)
@@ -111,7 +108,8 @@ void DeviceWorker::carry_out(const DeviceJob& job, uint64_t run) {
         if (!read) return fail(read.error());
         file = *read;
     }
-    for (const std::vector<uint32_t>& others : {std::vector<uint32_t>(), tried_elements}) {
+    const std::vector<uint32_t> tried(tried_elements.begin(), tried_elements.end());
+    for (const std::vector<uint32_t>& others : {std::vector<uint32_t>(), tried}) {
         auto result = emulate(job, file, others, run);
         if (is_over(run)) return;
         if (!result) return fail(result.error());
