@@ -5,8 +5,11 @@
 namespace app {
 namespace {
 
-double seconds_of(uint64_t cycles, uint32_t clock_mhz) {
-    return static_cast<double>(cycles) / (1e6 * clock_mhz);
+BlockService service_of(const BlockCycles& cycles, uint32_t clock_mhz) {
+    const auto seconds = [&](uint64_t count) {
+        return static_cast<double>(count) / (1e6 * clock_mhz);
+    };
+    return {.seconds = seconds(cycles.latency), .interval = seconds(cycles.interval)};
 }
 
 /// Whether no permit is late, where the machine never has to wait.
@@ -14,8 +17,7 @@ bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<Blo
               uint32_t clock_mhz) {
     double permitted = 0.0;
     for (size_t i = 0; i < undisturbed.size(); ++i) {
-        permitted = std::max(permitted + seconds_of(cycles[i].interval, clock_mhz),
-                             undisturbed[i].asked + seconds_of(cycles[i].latency, clock_mhz));
+        permitted = permit_time(service_of(cycles[i], clock_mhz), undisturbed[i].asked, permitted);
         if (permitted > undisturbed[i].due) return false;
     }
     return true;
@@ -25,9 +27,10 @@ bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<Blo
 
 std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz) {
     std::vector<BlockService> services;
-    for (const DeviceBlock& block : run.blocks)
-        services.push_back({seconds_of(block.cycles, clock_mhz), !block.permit.permitted,
-                            seconds_of(block.interval, clock_mhz)});
+    for (const DeviceBlock& block : run.blocks) {
+        services.push_back(service_of({block.cycles, block.interval}, clock_mhz));
+        services.back().refused = !block.permit.permitted;
+    }
     return services;
 }
 

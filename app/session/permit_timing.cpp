@@ -45,8 +45,7 @@ private:
             BlockTiming& block = made_.blocks[asked_];
             block.asked = machine_.time();
             const BlockService& service = services_[asked_];
-            block.permitted =
-                std::max(last_permit_ + service.interval, block.asked + service.seconds);
+            block.permitted = permit_time(service, block.asked, last_permit_);
             made_.busy += service.interval;
             last_permit_ = is_refused(asked_) ? core::infinity : block.permitted; // it has stopped
         }

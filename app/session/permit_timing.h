@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,12 @@ struct BlockService {
     bool refused = false;
     double interval = 0.0; // behind the permit of the block before
 };
+
+/// When a block is permitted at the latest that was asked for then, the one before having been
+/// permitted then.
+inline double permit_time(const BlockService& service, double asked, double before) {
+    return std::max(before + service.interval, asked + service.seconds);
+}
 
 /// When a block was asked for, permitted, needed and begun, seconds after the start of the program.
 struct BlockTiming {

@@ -57,13 +57,15 @@ void BlockRun::round_corners(const Motion& motion) {
 
 void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
-    std::vector<PairClearance> pairs;
-    for (const Leg& leg : path.legs)
-        if (!block.judgement) leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
-    const PairClearance* worst = deciding_pair(pairs);
-    if (!block.judgement && !path.legs.empty() && (!worst || worst->verdict == Verdict::clear)) {
-        for (PairClearance& pair : pairs) result.pairs.push_back(pair);
-        return;
+    if (!block.judgement && !path.legs.empty()) {
+        std::vector<PairClearance> pairs;
+        for (const Leg& leg : path.legs)
+            leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
+        const PairClearance* worst = deciding_pair(pairs);
+        if (!worst || worst->verdict == Verdict::clear) {
+            for (PairClearance& pair : pairs) result.pairs.push_back(pair);
+            return;
+        }
     }
     result.checked = false;
     if (std::exchange(state.told_unknown_start, true)) return;
