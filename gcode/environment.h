@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,7 +19,8 @@ namespace gcode {
 /// How long and how deep a program may run.
 struct Limits {
     uint64_t blocks = 50'000'000;
-    size_t calls = 0; // 0: as many as the dialect's control has
+    size_t calls = 0;                      // 0: as many as the dialect's control has
+    std::function<bool()> is_stopped = {}; // by a person; asked now and then
 };
 
 /// What the control holds before the program starts. Lengths in mm, places in machine coordinates.

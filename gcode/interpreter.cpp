@@ -62,6 +62,9 @@ struct Interpreter::Scratch {
     void begin_result(const InterpreterState& state, Place place);
     core::Result<bool> try_next(InterpreterState& state);
     bool try_quick_move(InterpreterState& state);
+    bool asks_for_stop(const InterpreterState& state) const {
+        return state.next_block % 1024 == 0 && environment.limits.is_stopped;
+    }
     core::SourceSpan place_of(core::SourceSpan where) const;
     void place_in_lines();
 };
@@ -225,6 +228,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
                                       "be that long, raise the limit with --max-blocks",
                                       environment.limits.blocks),
                           {.line = block.line, .column = 1});
+    if (asks_for_stop(state) && environment.limits.is_stopped())
+        return core::fail(ErrorCode::io, "the program was stopped", {.line = block.line});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
     if (auto watched = watch_for_endless_loop(state, place); !watched)
@@ -236,7 +241,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
 /// changed then. Nothing can fail here, so nothing is kept to be taken back.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     if (dialect.language != Language::words || environment.counts_smallest_steps
-        || state.next_block >= environment.limits.blocks || !moves_quickly(state))
+        || state.next_block >= environment.limits.blocks || asks_for_stop(state)
+        || !moves_quickly(state))
         return false;
     const auto found = library.program(state.next.source).find_line(state.next.line);
     if (!found || !*found) return false;
