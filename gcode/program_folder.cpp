@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/base/file_reads.h"
 #include "gcode/lexer.h"
 
 namespace gcode {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
+namespace {
+
+std::optional<fs::path> found_in(const fs::path& folder, const std::string& name) {
     std::error_code error;
     const fs::path root = fs::canonical(folder, error);
     if (error) return std::nullopt;
@@ -18,6 +21,16 @@ std::optional<fs::path> file_in(const fs::path& folder, const std::string& name)
     if (fs::is_regular_file(exact, error)) found = fs::canonical(exact, error);
     if (!found || error || found->parent_path() != root) return std::nullopt;
     return found;
+}
+
+} // namespace
+
+std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
+    const std::optional<fs::path> path = found_in(folder, name);
+    const std::string place = path ? path->string() : std::string();
+    core::note_look({core::FileQuestion::in_folder, folder.string(), name,
+                     path ? std::optional<std::string_view>(place) : std::nullopt});
+    return path;
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {

@@ -9,7 +9,7 @@
 namespace gcode {
 
 /// The file in a folder with this name, resolved; empty when there is none, or when it is a link
-/// that leads out of the folder.
+/// that leads out of the folder. Who listens is told of the look.
 std::optional<std::filesystem::path> file_in(const std::filesystem::path& folder,
                                              const std::string& name);
 

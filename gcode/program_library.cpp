@@ -20,15 +20,6 @@ bool is_plain(const std::string& name) {
            && name != ".." && name.find('\0') == std::string::npos;
 }
 
-/// The same as file_in, and who listens is told.
-std::optional<fs::path> looked_up(const std::string& folder, const std::string& name) {
-    const std::optional<fs::path> path = file_in(folder, name);
-    const std::string place = path ? path->string() : std::string();
-    core::note_look({core::FileQuestion::in_folder, folder, name,
-                     path ? std::optional<std::string_view>(place) : std::nullopt});
-    return path;
-}
-
 std::optional<std::string> looked_up_in_any_case(const std::string& folder,
                                                  const std::string& name) {
     const std::optional<std::string> actual = name_in_any_case(names_in(folder), name);
@@ -60,7 +51,7 @@ ProgramLibrary::find(const std::vector<std::string>& file_names) {
     for (const std::string& folder : search_path_) {
         for (const std::string& name : file_names) {
             if (!is_plain(name)) continue;
-            const std::optional<fs::path> path = looked_up(folder, name);
+            const std::optional<fs::path> path = file_in(folder, name);
             if (!path) continue;
             if (const auto known = by_path_.find(path->string()); known != by_path_.end())
                 return known->second;

@@ -2,13 +2,11 @@
 # which tells the check what it hangs on. Run from the root of the sources.
 cmake_minimum_required(VERSION 3.25)
 
-# gcode/source and core/geom/mesh_file say why a file is refused before they read it, app/setup/toml_file
-# and text_lines likewise; line_windows is for programs that are only translated; setup_beside is asked
-# before a check begins, and its answer is a part of the job.
+# gcode/source and core/geom/mesh_file say why a file is refused before they read it; line_windows is
+# for programs that are only translated.
 set(allowed
   core/base/file_reads.cpp gcode/program_folder.cpp gcode/line_windows.cpp gcode/source.cpp
-  core/geom/mesh_file.cpp app/setup/toml_file.cpp app/setup/text_lines.cpp app/setup/setup_beside.cpp
-  app/session/digest.cpp)
+  core/geom/mesh_file.cpp app/session/digest.cpp)
 set(readers "ifstream|fopen|[^A-Za-z]::open\\(|parse_file|directory_iterator|is_regular_file|is_directory"
   "|filesystem::exists|fs::exists|file_size|read_symlink")
 string(REPLACE ";" "" readers "${readers}")

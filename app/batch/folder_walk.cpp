@@ -6,6 +6,8 @@
 
 #include <sys/stat.h>
 
+#include "core/base/file_reads.h"
+
 namespace app {
 namespace {
 
@@ -40,6 +42,7 @@ private:
 
     void enter(const fs::path& folder) {
         folders.push_back(folder);
+        core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
         std::error_code failure;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
              at.increment(failure))

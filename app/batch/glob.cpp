@@ -6,6 +6,7 @@
 #include <fnmatch.h>
 
 #include "app/batch/folder_walk.h"
+#include "core/base/file_reads.h"
 #include "gcode/program_folder.h"
 
 namespace app {
@@ -30,7 +31,9 @@ private:
         const fs::path& part = parts_[i];
         if (part == "**") return expand_below(folder, i);
         if (!is_glob(part)) return go_on(folder / part, i);
-        for (const std::string& name : gcode::names_in(folder.empty() ? "." : folder))
+        const fs::path here = folder.empty() ? fs::path(".") : folder;
+        core::note_look({core::FileQuestion::listing, here.string(), {}, {}});
+        for (const std::string& name : gcode::names_in(here))
             if (::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) go_on(folder / name, i);
     }
 

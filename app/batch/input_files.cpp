@@ -23,9 +23,23 @@ bool InputAnswers::is_same(const InputFile& input) {
     case core::FileQuestion::in_folder:
         return place_of(input) == input.answer;
     case core::FileQuestion::any_case:
-        return gcode::name_in_any_case(names_of(input.path), input.name) == input.answer;
+        return name_in_any_case(input) == input.answer;
+    case core::FileQuestion::listing:
+        return false; // no check hangs on all the names in a folder
     }
     return false;
+}
+
+std::optional<std::string> InputAnswers::name_in_any_case(const InputFile& input) {
+    auto name = gcode::name_in_any_case(names_of(input.path), input.name);
+    core::note_look({input.question, input.path, input.name, name});
+    return name;
+}
+
+void InputAnswers::forget() {
+    const std::lock_guard lock(mutex_);
+    contents_.clear();
+    names_.clear();
 }
 
 std::string InputAnswers::content_of(const std::string& path) {
@@ -33,7 +47,8 @@ std::string InputAnswers::content_of(const std::string& path) {
         const std::lock_guard lock(mutex_);
         if (const auto known = contents_.find(path); known != contents_.end()) return known->second;
     }
-    std::string content = sha256_of_file(path);
+    const std::optional<std::string> bytes = core::file_bytes(path);
+    std::string content = bytes ? sha256_of(*bytes) : std::string();
     const std::lock_guard lock(mutex_);
     return contents_.emplace(path, std::move(content)).first->second;
 }

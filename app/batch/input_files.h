@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,11 @@ public:
     /// The SHA-256 of a file; empty when it cannot be read.
     std::string content_of(const std::string& path);
 
+    /// From here on all is asked anew. Nobody may be asking.
+    void forget();
+
 private:
+    std::optional<std::string> name_in_any_case(const InputFile& input);
     const std::vector<std::string>& names_of(const std::string& folder);
 
     std::mutex mutex_;

@@ -2,13 +2,14 @@
 
 #include <filesystem>
 
+#include "core/base/file_reads.h"
+
 namespace app {
 
 std::string setup_beside(const std::string& program) {
     const std::filesystem::path setup = std::filesystem::path(program).replace_extension(".toml");
-    std::error_code ignored;
-    const bool is_one = setup.filename() != project_file_name && setup != program
-                        && std::filesystem::is_regular_file(setup, ignored);
+    const bool is_one =
+        setup.filename() != project_file_name && setup != program && core::is_file(setup);
     return is_one ? setup.string() : std::string();
 }
 

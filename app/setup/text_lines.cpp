@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <sstream>
 
 #include "core/base/file_reads.h"
@@ -19,9 +18,7 @@ core::Error io_error(const std::string& path, const std::string& why) {
 } // namespace
 
 core::Result<std::vector<std::string>> lines_of_file(const std::string& path) {
-    std::error_code failure;
-    if (std::filesystem::is_directory(path, failure))
-        return tl::unexpected(io_error(path, "is a folder, not a file"));
+    if (core::is_folder(path)) return tl::unexpected(io_error(path, "is a folder, not a file"));
     std::optional<std::string> bytes = core::file_bytes(path, largest_file);
     if (!bytes) return tl::unexpected(io_error(path, "there is no such file, or no permission"));
     if (bytes->size() > largest_file)

@@ -1,7 +1,5 @@
 #include "app/setup/toml_file.h"
 
-#include <filesystem>
-
 #include "core/base/file_reads.h"
 
 namespace app {
@@ -25,10 +23,9 @@ core::Result<toml::table> parsed_toml(std::string_view text) {
 
 core::Result<toml::table> read_toml(const std::string& path) {
     using core::ErrorCode;
-    std::error_code failure;
-    if (std::filesystem::is_directory(path, failure))
+    if (core::is_folder(path))
         return tl::unexpected<core::Error>({ErrorCode::io, {}, "is a folder, not a file", path});
-    if (!std::filesystem::exists(path, failure))
+    if (!core::is_there(path))
         return tl::unexpected<core::Error>({ErrorCode::io, {}, "there is no such file", path});
     const std::optional<std::string> bytes = core::file_bytes(path);
     if (!bytes) return tl::unexpected<core::Error>({ErrorCode::io, {}, "cannot be read", path});

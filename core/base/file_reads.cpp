@@ -37,7 +37,7 @@ FileListening::~FileListening() { youngest = older_; }
 void note_look(const FileLook& look) {
     if (!youngest) return;
     const int reason = errno;
-    youngest->told_(look);
+    for (const FileListening* each = youngest; each; each = each->older_) each->told_(look);
     errno = reason;
 }
 
@@ -55,13 +55,19 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
     std::error_code failure;
     const std::filesystem::file_status status = std::filesystem::status(path, failure);
     std::optional<std::string_view> answer;
-    if (std::filesystem::exists(status))
-        answer = std::filesystem::is_regular_file(status) ? "file" : "other";
+    if (std::filesystem::is_regular_file(status))
+        answer = "file";
+    else if (std::filesystem::is_directory(status))
+        answer = "folder";
+    else if (std::filesystem::exists(status))
+        answer = "other";
     note_look({FileQuestion::presence, path.string(), {}, answer});
     return answer;
 }
 
 bool is_there(const std::filesystem::path& path) { return presence_of(path).has_value(); }
+
+bool is_folder(const std::filesystem::path& path) { return presence_of(path) == "folder"; }
 
 bool is_file(const std::filesystem::path& path) { return presence_of(path) == "file"; }
 

@@ -13,9 +13,10 @@ namespace core {
 /// What a reader asks the disk.
 enum class FileQuestion : uint8_t {
     content,   // of the file: its bytes; no answer when it cannot be read, or not to its end
-    presence,  // "file", or "other" for a folder or a device; no answer when there is none
+    presence,  // "file", "folder", or "other" for a device; no answer when there is none
     in_folder, // where a file of that name leads to; no answer when there is none in the folder
     any_case,  // the name of a file that is called so in any case; no answer when there is none
+    listing,   // of a folder, all names in it; the answer is not told
 };
 
 /// A question to the disk and what it answered.
@@ -27,8 +28,7 @@ struct FileLook {
 };
 
 /// While it lives, somebody is told of every look that readers of this thread take at the disk. It
-/// is how a check knows its inputs: all of the stack asks by the functions below. Of two that live,
-/// the younger is told.
+/// is how a check knows its inputs: all of the stack asks by the functions below.
 class FileListening {
 public:
     using Told = std::function<void(const FileLook&)>;
@@ -53,11 +53,14 @@ void note_look(const FileLook& look);
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       size_t limit = std::numeric_limits<size_t>::max() - 1);
 
-/// What there is of this name: "file" that has bytes to be read, "other", or nothing.
+/// What there is of this name: "file" that has bytes to be read, "folder", "other", or nothing.
 std::optional<std::string_view> presence_of(const std::filesystem::path& path);
 
 /// Whether there is anything of this name.
 bool is_there(const std::filesystem::path& path);
+
+/// Whether there is a folder of this name.
+bool is_folder(const std::filesystem::path& path);
 
 /// Whether there is a file of this name that has bytes to be read.
 bool is_file(const std::filesystem::path& path);

@@ -19,11 +19,11 @@ namespace {
 constexpr uintmax_t largest_file = uintmax_t{2} << 30U; // bytes
 
 Result<std::string> read_bytes(const std::filesystem::path& path) {
+    const auto found = presence_of(path);
+    if (!found) return fail(ErrorCode::io, "there is no such file");
+    if (*found == "folder") return fail(ErrorCode::io, "this is a folder");
+    if (*found != "file") return fail(ErrorCode::io, "this is no file");
     std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) return fail(ErrorCode::io, "there is no such file");
-    if (std::filesystem::is_directory(status)) return fail(ErrorCode::io, "this is a folder");
-    if (!std::filesystem::is_regular_file(status)) return fail(ErrorCode::io, "this is no file");
     const uintmax_t size = std::filesystem::file_size(path, error);
     if (error) return fail(ErrorCode::io, error.message());
     if (size == 0) return fail(ErrorCode::syntax, "the file is empty");
