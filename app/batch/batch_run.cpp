@@ -70,6 +70,8 @@ private:
     bool is_stopped() const { return hooks_.is_stopped && hooks_.is_stopped(); }
 
     void work(size_t thread) {
+        std::optional<core::FileListening> listening;
+        if (hooks_.looked) listening.emplace(hooks_.looked);
         while (!is_stopped()) {
             const size_t place = next_++;
             if (place >= order_.size()) break;
@@ -97,6 +99,7 @@ private:
             is_cut = is_stopped();
             return !is_cut;
         };
+        watched.is_stopped = [&] { return is_cut = is_cut || is_stopped(); };
         {
             const auto run = run_whatever_comes(watched);
             if (!is_cut) end(i, thread, result(job, run));

@@ -5,13 +5,14 @@
 
 #include "app/batch/batch_job.h"
 #include "app/batch/batch_result.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 
 /// What a batch may take.
 struct BatchLimits {
     unsigned jobs = 1;     // programs at the same time
-    double memory = 1e300; // bytes that the models of all stocks at the same time may take
+    double memory = 1e300; // bytes that they may take together, by their estimates
 };
 
 /// How far a batch has come.
@@ -28,6 +29,9 @@ struct BatchHooks {
 
     /// Told of each check that has run, in the thread that ran it, but one at a time.
     std::function<void(const CheckJob&, const CheckRun&, const ProgramResult&)> keep = {};
+
+    /// Told of every look at the disk, in the thread that takes it.
+    std::function<void(const core::FileLook&)> looked = {};
 
     /// Told of each program as it ends, in the caller's thread.
     std::function<void(const ProgramResult&)> ended = {};

@@ -95,7 +95,7 @@ int take_build_id(dl_phdr_info* info, size_t, void* taken) {
 std::optional<std::string> options_text(const CheckJob& job) {
     // A limit of memory only decides whether there is a result.
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
-                 before_model, after_block, start_line, settings, engine, edits, rules,
+                 before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
                  setup_was_found] = job;
     if (!edits.empty() || edits.tool_at_start) return std::nullopt;
     Json severities = Json::object();

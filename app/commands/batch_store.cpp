@@ -25,7 +25,8 @@ std::string place_of_store(const CheckOptions& options) {
 } // namespace
 
 BatchStore::BatchStore(const CheckOptions& options) {
-    const std::string place = place_of_store(options);
+    path_ = place_of_store(options);
+    const std::string place = path_.empty() && options.watch ? ":memory:" : path_;
     if (place.empty()) return;
     auto store = ResultStore::open(place, build_version());
     if (store)
@@ -39,6 +40,11 @@ void BatchStore::give_up(const core::Error& error) {
     if (std::exchange(is_told_, true)) return;
     print_error(error);
     std::fputs("feeler: results are not kept; the check goes on\n", stderr);
+}
+
+void BatchStore::look_again() {
+    if (store_) store_->look_again();
+    found_ = 0;
 }
 
 void BatchStore::serve(BatchHooks& hooks) {

@@ -15,8 +15,15 @@ namespace app {
 class BatchStore {
 public:
     /// The database that was asked for, else that of the first folder or project file that was
-    /// named; none for files alone.
+    /// named; none for files alone. While files are watched there is always one, in memory if
+    /// nowhere else.
     explicit BatchStore(const CheckOptions& options);
+
+    /// The file of the database; empty if there is none.
+    const std::string& path() const { return path_; }
+
+    /// From here on files are taken to stay as they are now.
+    void look_again();
 
     /// Lets a batch ask it, and keep in it what it finds out.
     void serve(BatchHooks& hooks);
@@ -31,6 +38,7 @@ private:
     std::mutex guard_;
     bool is_told_ = false;
     size_t found_ = 0;
+    std::string path_;
 };
 
 } // namespace app

@@ -9,6 +9,7 @@
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/watch.h"
 #include "app/report/csv_report.h"
 #include "app/report/html_report.h"
 #include "app/report/json_report.h"
@@ -32,14 +33,26 @@ std::string results_report(const std::string& format, ProgramResult result) {
                              : sarif_report(batch, std::filesystem::current_path(ignored).string());
 }
 
-std::string report(const CheckOptions& options, const std::string& format, const CheckJob& job,
-                   const CheckRun& run, const ReportViews& views) {
+/// What reports tell of.
+struct Checked {
+    const CheckJob& job;
+    const CheckRun& run;
+    const ReportViews& views;
+    const std::vector<std::string>& told; // assumptions that are on the screen already
+};
+
+std::string report(const CheckOptions& options, const ReportTarget& target,
+                   const Checked& checked) {
+    const auto& [job, run, views, told] = checked;
+    const std::string& format = target.format;
     if (is_of_results(format)) return results_report(format, result_of(run, job.setup));
     if (format == "csv") return csv_report(run);
     if (format == "jsonl") return json_lines_report(run, options.pairs);
     if (format == "json") return json_report(run, options.pairs);
     if (format == "html") return html_report(run, views);
-    return text_report(run, {.blocks = options.blocks || options.pairs});
+    TextOptions text{.blocks = options.blocks || options.pairs};
+    if (target.path.empty()) text.told = told;
+    return text_report(run, text);
 }
 
 /// Whether what is to be written can be, as far as that is known beforehand.
@@ -84,22 +97,21 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run) {
 bool say_memory(double bytes) {
     constexpr double much = 1e9;
     if (bytes >= much)
-        std::fputs(
-            fmt::format("the model of the stock takes about {:.1f} GB\n", 1e-9 * bytes).c_str(),
-            stderr);
+        std::fputs(fmt::format("the check takes about {:.1f} GB of memory\n", 1e-9 * bytes).c_str(),
+                   stderr);
     return true;
 }
 
 /// Writes the reports; false if one could not be. A run that did not come to its end goes to
 /// standard output: a file would look like a whole one. SARIF and JUnit say so themselves.
-bool write_reports(const CheckOptions& options, const CheckJob& job, const CheckRun& run,
-                   const ReportViews& views, const std::vector<ReportTarget>& targets) {
+bool write_reports(const CheckOptions& options, const Checked& checked,
+                   const std::vector<ReportTarget>& targets) {
     bool all = true, is_said = false;
     for (const ReportTarget& target : targets) {
-        const bool is_lost = run.stopped && !is_of_results(target.format);
+        const bool is_lost = checked.run.stopped && !is_of_results(target.format);
         if (is_lost && std::exchange(is_said, true)) continue;
-        const auto written = write_output(is_lost ? std::string() : target.path,
-                                          report(options, target.format, job, run, views));
+        const auto written =
+            write_output(is_lost ? std::string() : target.path, report(options, target, checked));
         if (!written) print_error(written.error());
         all = all && written.has_value();
     }
@@ -119,7 +131,9 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
     return ExitCode::failed;
 }
 
-ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
+/// `told`: the assumptions that are on the screen; those of this check come in their place.
+ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
+                   std::vector<std::string>& told) {
     auto job = job_of(options.what);
     if (!job) return fail({}, job.error(), {});
     if (const auto safe = check_files(options, *job, targets); !safe)
@@ -130,6 +144,7 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
     job->engine = options.engine;
     job->needs_surface = !options.stock.empty() || !options.comparison.empty();
     job->before_model = say_memory;
+    job->is_stopped = is_interrupted;
     job->after_block = [&line](const CheckProgress& progress) {
         line.show(progress);
         return !is_interrupted();
@@ -145,7 +160,8 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
     if (run->stopped) print_error(*run->stopped);
     const auto saved = save_results(options, *run);
     if (!saved) print_error(saved.error());
-    const bool all_written = write_reports(options, *job, *run, views, targets);
+    const bool all_written = write_reports(options, {*job, *run, views, told}, targets);
+    told = run->assumptions;
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
@@ -165,7 +181,11 @@ ExitCode check(CheckOptions& options) {
         return check_batch(options, *targets);
     }
     options.what.program = options.programs[0];
-    return check_one(options, *targets);
+    std::vector<std::string> told;
+    if (!options.watch) return check_one(options, *targets, told);
+    std::vector<std::string> own = paths_of(*targets);
+    own.insert(own.end(), {options.stock, options.comparison});
+    return watch(own, [&](WatchedFiles&) { return check_one(options, *targets, told); });
 }
 
 void add_report_options(CLI::App& command, CheckOptions& options) {
@@ -206,9 +226,15 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
         ->check(number_range(1.0, 1024.0));
     command
         .add_option("--memory", options.memory,
-                    "Many programs: what the models of all stocks may take together, MB; else "
-                    "half of the machine's")
+                    "Many programs: what all that run at the same time may take together, MB; "
+                    "else half of the machine's")
         ->check(number_range(1.0, 1e9));
+}
+
+void add_watch(CLI::App& command, CheckOptions& options) {
+    command.add_flag("--watch", options.watch,
+                     "Check again what changes on disk, programs, set-ups and all they name, "
+                     "until Ctrl-C");
 }
 
 } // namespace
@@ -224,6 +250,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     add_start_line(command, options->what);
     add_report_options(command, *options);
     add_batch_options(command, *options);
+    add_watch(command, *options);
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: add every pair of bodies to every block");
     command

@@ -1,6 +1,9 @@
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,6 +11,7 @@
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/watch.h"
 #include "app/report/batch_report.h"
 #include "app/report/batch_text.h"
 #include "app/report/junit_report.h"
@@ -91,16 +95,34 @@ Talk talk_of(const CheckOptions& options, const std::vector<ReportTarget>& targe
     return talk;
 }
 
+/// Between the passes of --watch.
+struct Watch {
+    WatchedFiles* files = nullptr; // of this pass; null: nothing is watched
+    bool is_again = false;         // not the first pass: what is known already is not said
+};
+
 BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Talk& talk,
-                      BatchStore& store) {
+                      BatchStore& store, const Watch& watch) {
     stop_on_interrupt();
     ProgressLine line;
     BatchHooks hooks;
     store.serve(hooks);
+    std::mutex guard;
+    std::set<std::string> known; // programs
+    if (hooks.known && watch.is_again)
+        hooks.known = [&, find = hooks.known](const CheckJob& job) {
+            auto found = find(job);
+            const std::scoped_lock lock(guard);
+            if (found) known.insert(found->program);
+            return found;
+        };
+    if (watch.files) hooks.looked = [&](const core::FileLook& look) { watch.files->note(look); };
     hooks.is_stopped = is_interrupted;
     hooks.waiting = [&line](const BatchProgress& progress) { line.show(progress); };
     hooks.ended = [&](const ProgramResult& result) {
-        const std::string text = program_text(result, talk.style);
+        const std::scoped_lock lock(guard);
+        const std::string text =
+            known.contains(result.program) ? "" : program_text(result, talk.style);
         if (text.empty()) return;
         line.clear();
         talk.say(text);
@@ -133,25 +155,18 @@ ExitCode failed(const std::vector<core::Error>& errors) {
     return ExitCode::failed;
 }
 
-} // namespace
-
-ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
-    const Stopwatch watch;
-    if (const auto allowed = refuse_single_options(options); !allowed)
-        return failed(allowed.error());
-    auto asked = job_of(options.what);
-    if (!asked) return failed(asked.error());
-    asked->engine = options.engine;
-    asked->detail = detail_of(options);
-    const auto plan = plan_batch(options.programs, *asked);
+/// Once through the whole batch.
+ExitCode pass(const CheckOptions& options, const CheckJob& asked,
+              const std::vector<ReportTarget>& targets, BatchStore& store, const Watch& watch) {
+    const Stopwatch time;
+    const auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
     const Talk talk = talk_of(options, targets);
-    BatchStore store(options);
-    const BatchResult batch = run_aloud(*plan, limits_of(options), talk, store);
-    talk.say("\n" + batch_summary(batch, watch.seconds(), talk.style));
-    if (store.found() > 0)
+    const BatchResult batch = run_aloud(*plan, limits_of(options), talk, store, watch);
+    talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));
+    if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
     if (is_interrupted())
@@ -163,6 +178,26 @@ ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget
         all_written = false;
     }
     return all_written ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;
+}
+
+} // namespace
+
+ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
+    if (const auto allowed = refuse_single_options(options); !allowed)
+        return failed(allowed.error());
+    auto asked = job_of(options.what);
+    if (!asked) return failed(asked.error());
+    asked->engine = options.engine;
+    asked->detail = detail_of(options);
+    BatchStore store(options);
+    if (!options.watch) return pass(options, *asked, targets, store, {});
+    std::vector<std::string> own = paths_of(targets);
+    own.push_back(store.path());
+    bool is_again = false;
+    return watch(own, [&](WatchedFiles& files) {
+        store.look_again();
+        return pass(options, *asked, targets, store, {&files, std::exchange(is_again, true)});
+    });
 }
 
 } // namespace app

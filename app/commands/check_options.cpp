@@ -38,6 +38,13 @@ core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
     return {};
 }
 
+std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets) {
+    std::vector<std::string> paths;
+    for (const ReportTarget& target : targets)
+        if (!target.path.empty()) paths.push_back(target.path);
+    return paths;
+}
+
 core::Detail detail_of(const CheckOptions& options) {
     if (options.pairs) return core::Detail::every_pair;
     return options.verdict_only ? core::Detail::verdict : core::Detail::deciding_pair;

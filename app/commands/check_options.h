@@ -22,6 +22,7 @@ struct CheckOptions {
     bool verdict_only = false;
     bool quiet = false;
     bool verbose = false;
+    bool watch = false;
     std::optional<unsigned> jobs;
     std::optional<double> memory; // MB
 };
@@ -46,7 +47,11 @@ core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
 
 core::Detail detail_of(const CheckOptions& options);
 
-/// Checks many programs, says a line for each, and writes the reports.
+/// Checks many programs, says a line for each, and writes the reports; with --watch again whenever
+/// something changes, and then a line for each program that was checked again.
 ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets);
+
+/// The files that targets name.
+std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets);
 
 } // namespace app

@@ -89,7 +89,21 @@ std::string blocks_text(const CheckRun& run) {
     return text + "\n";
 }
 
-std::string summary_text(const CheckRun& run) {
+std::string assumptions_text(const std::vector<std::string>& all,
+                             const std::vector<std::string>& told) {
+    const auto is_in = [](const std::vector<std::string>& list) {
+        return [&list](const std::string& each) {
+            return std::find(list.begin(), list.end(), each) != list.end();
+        };
+    };
+    const bool is_more = !told.empty() && std::all_of(told.begin(), told.end(), is_in(all));
+    std::string text = is_more ? "  assuming   what was told before\n" : "  assuming\n";
+    for (const std::string& assumption : all)
+        if (!is_more || !is_in(told)(assumption)) text += wrapped("- " + assumption, 4, 2);
+    return text;
+}
+
+std::string summary_text(const CheckRun& run, const std::vector<std::string>& told) {
     size_t moving = 0;
     for (const CheckedBlock& block : run.blocks)
         moving += block.result.motion != core::BlockMotion::none;
@@ -116,9 +130,7 @@ std::string summary_text(const CheckRun& run) {
         text +=
             fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
     if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
-    text += "  assuming\n";
-    for (const std::string& assumption : run.assumptions) text += wrapped("- " + assumption, 4, 2);
-    return text;
+    return text + assumptions_text(run.assumptions, told);
 }
 
 } // namespace
@@ -141,7 +153,7 @@ std::string outcome_text(const CheckRun& run) {
 std::string text_report(const CheckRun& run, const TextOptions& options) {
     std::string text = findings_text(run);
     if (options.blocks) text += blocks_text(run);
-    return text + summary_text(run);
+    return text + summary_text(run, options.told);
 }
 
 std::string error_text(const core::Error& error) {

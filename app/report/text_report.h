@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/session/check_run.h"
 
@@ -8,7 +9,8 @@ namespace app {
 
 /// What a text report holds beside findings and summary.
 struct TextOptions {
-    bool blocks = false; // the table of all blocks that move
+    bool blocks = false;                // the table of all blocks that move
+    std::vector<std::string> told = {}; // assumptions that need not be told again while they hold
 };
 
 /// The report of a check for a person at an 80-column terminal: findings first.

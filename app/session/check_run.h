@@ -89,9 +89,11 @@ struct CheckJob {
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     core::Detail detail = core::Detail::deciding_pair;
     bool needs_surface = false; // that of the stock is wanted, also without a part
-    // Told the bytes that the model will take; false: do not begin.
+    // Told the bytes that the check will take, about; false: do not begin.
     std::function<bool(double)> before_model = {};
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
+    // Asked while the program is looked over, before its first block; true: give up.
+    std::function<bool()> is_stopped = {};
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace what the set-up says under [program]
     Engine engine = Engine::exact;

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -121,6 +122,20 @@ TEST_F(BatchRun, DoesNotRunWhatIsKnown) {
     EXPECT_EQ(run, 1);
     EXPECT_EQ(of(batch, "wrong.nc").blocks, 77U);
     EXPECT_EQ(status_of(of(batch, "near0.nc")), 1);
+}
+
+TEST_F(BatchRun, StopsWhileAProgramIsLookedOver) {
+    asked.setup.clear(); // so that the whole program is run once for its stock
+    asked.settings.max_blocks.reset();
+    const BatchPlan endless = *plan_batch({folder / "endless.nc"}, asked);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto time = [&] { return std::chrono::steady_clock::now() - begin; };
+    BatchHooks hooks;
+    hooks.is_stopped = [&] { return time() > std::chrono::milliseconds(300); };
+    const BatchResult batch = run_batch(endless, {}, hooks);
+    EXPECT_LT(time(), std::chrono::seconds(10));
+    EXPECT_EQ(batch.unchecked.size(), 1U);
+    EXPECT_TRUE(batch.programs.empty());
 }
 
 TEST_F(BatchRun, KeepsWhatHasEndedWhenItIsStopped) {

@@ -61,6 +61,13 @@ public:
         return "never '" + text + "' but: " + screen_;
     }
 
+    /// What has come up to now and was not asked for.
+    std::string seen_so_far() {
+        struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
+        while (::poll(&ready, 1, 0) > 0 && more());
+        return screen_;
+    }
+
     /// How the program ended; -1 where it does not end in time.
     int status() {
         const auto end = Clock::now() + patience;

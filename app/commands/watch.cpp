@@ -1,0 +1,86 @@
+#include "app/commands/watch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/chrono.h>
+#include <fmt/ranges.h>
+
+#include "app/commands/progress.h"
+#include "app/report/text_layout.h"
+
+namespace app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// A twentieth of the time goes into looking at most, however many files there are.
+constexpr int idle_share = 20;
+constexpr auto least_wait = 200ms;
+
+void wait(Clock::duration duration) {
+    const Clock::time_point end = Clock::now() + duration;
+    while (!is_interrupted() && Clock::now() < end)
+        std::this_thread::sleep_for(std::min<Clock::duration>(50ms, end - Clock::now()));
+}
+
+/// What has changed, once whoever writes it has finished; empty after Ctrl-C.
+std::vector<std::string> wait_for_change(WatchedFiles& files) {
+    Clock::duration pause = least_wait;
+    while (true) {
+        wait(pause);
+        if (is_interrupted()) return {};
+        const Clock::time_point begin = Clock::now();
+        WatchedFiles::Change change = files.look_again();
+        pause = std::max<Clock::duration>(least_wait, idle_share * (Clock::now() - begin));
+        if (!change.paths.empty() && change.is_settled) return std::move(change.paths);
+    }
+}
+
+std::string names_of(const std::vector<std::string>& paths) {
+    constexpr size_t most = 3;
+    std::vector<std::string> names;
+    for (size_t i = 0; i < std::min(paths.size(), most); ++i) {
+        const std::filesystem::path path(paths[i]);
+        names.push_back((path.has_filename() ? path.filename() : path).string());
+    }
+    std::string text = fmt::format("{}", fmt::join(names, ", "));
+    if (paths.size() > most) text += fmt::format(" and {} more", paths.size() - most);
+    return text;
+}
+
+void say(const std::string& text) {
+    std::fflush(stdout);
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+}
+
+} // namespace
+
+ExitCode watch(const std::vector<std::string>& own,
+               const std::function<ExitCode(WatchedFiles&)>& pass) {
+    stop_on_interrupt();
+    while (true) {
+        WatchedFiles files(own);
+        ExitCode code{};
+        {
+            const core::FileListening listening(
+                [&files](const core::FileLook& look) { files.note(look); });
+            code = pass(files);
+        }
+        if (is_interrupted()) return code;
+        say(fmt::format("feeler: watching {}; Ctrl-C ends it\n", counted(files.size(), "place")));
+        const std::vector<std::string> changed = wait_for_change(files);
+        if (changed.empty()) return code;
+        const std::time_t now = std::time(nullptr);
+        say(fmt::format("\nfeeler: {:%H:%M:%S} {} changed\n", fmt::localtime(now),
+                        names_of(changed)));
+    }
+}
+
+} // namespace app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/batch/watched_files.h"
+#include "app/commands/commands.h"
+
+namespace app {
+
+/// Runs a check, and again whenever something on disk that it looked at changes, until Ctrl-C.
+/// `pass` is told where to note the looks that are taken on other threads than its own; `own` is
+/// what it writes. Returns what the last pass did.
+ExitCode watch(const std::vector<std::string>& own,
+               const std::function<ExitCode(WatchedFiles&)>& pass);
+
+} // namespace app

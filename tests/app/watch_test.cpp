@@ -1,0 +1,115 @@
+#include <chrono>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+#include "tests/support/terminal.h"
+
+namespace app_test {
+namespace {
+
+using test_support::bytes_of;
+using test_support::program;
+using test_support::ScopedFolder;
+using test_support::SetupWriter;
+using test_support::Terminal;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string fine = program({"X-20. Y50.", "Z-3.", "G1 X120. F500.", "G0 Z60."});
+const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z60."});
+
+/// Somebody at a terminal who watches a folder of programs.
+class Watch : public testing::Test {
+protected:
+    void SetUp() override {
+        folder.write("plate.nc", fine);
+        folder.write("plate.toml", setup("42"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    }
+
+    static std::string setup(const std::string& height) {
+        return SetupWriter()
+            .fixture("clamp", "box = [[40, 104, 0], [60, 130, " + height + "]]")
+            .text();
+    }
+
+    Terminal watching(std::vector<std::string> words) const {
+        words.insert(words.begin(), {FEELER_BINARY, "check", "--watch"});
+        return Terminal(words, folder.path());
+    }
+
+    /// What is said until all is checked and nothing more happens.
+    static std::string pass(Terminal& terminal) { return terminal.until("Ctrl-C ends it"); }
+
+    static int end(Terminal& terminal) {
+        terminal.type("\x03");
+        return terminal.status();
+    }
+
+    ScopedFolder folder;
+};
+
+TEST_F(Watch, ChecksAProgramAgainThatWasSaved) {
+    Terminal terminal = watching({folder / "plate.nc"});
+    EXPECT_THAT(pass(terminal), HasSubstr("clear"));
+    folder.write("plate.nc", near);
+    const std::string seen = pass(terminal);
+    EXPECT_THAT(seen, HasSubstr("plate.nc changed"));
+    EXPECT_THAT(seen, HasSubstr("near-miss"));
+    EXPECT_EQ(end(terminal), 1);
+}
+
+TEST_F(Watch, SeesASetupThatChangesGoesAndComes) {
+    Terminal terminal = watching({folder / "plate.nc"});
+    pass(terminal);
+    folder.write("plate.toml", "[stock");
+    EXPECT_THAT(pass(terminal), HasSubstr("plate.toml:1"));
+    std::filesystem::remove(folder / "plate.toml");
+    EXPECT_THAT(pass(terminal), HasSubstr("no set-up"));
+    folder.write("plate.toml", setup("42"));
+    EXPECT_THAT(pass(terminal), HasSubstr("because it stands beside"));
+    EXPECT_EQ(end(terminal), 0);
+}
+
+TEST_F(Watch, GoesOnWhileAProgramIsNotThere) {
+    Terminal terminal = watching({folder / "later.nc"});
+    EXPECT_THAT(pass(terminal), HasSubstr("No such file"));
+    folder.write("later.nc", fine);
+    EXPECT_THAT(pass(terminal), HasSubstr("CLEAR"));
+    EXPECT_EQ(end(terminal), 0);
+}
+
+TEST_F(Watch, SaysOnlyWhatWasCheckedAgainOfMany) {
+    folder.write("other.nc", fine);
+    folder.write("other.toml", setup("42"));
+    const std::string report = folder / "report.jsonl";
+    Terminal terminal = watching({folder.path(), "--no-cache", "--format", "jsonl", "-o", report});
+    EXPECT_THAT(pass(terminal), HasSubstr("2 programs in"));
+    folder.write("plate.nc", near);
+    std::string seen = pass(terminal);
+    EXPECT_THAT(seen, HasSubstr(folder / "plate.nc: 3 errors"));
+    EXPECT_THAT(seen, Not(HasSubstr("other.nc:")));
+    EXPECT_THAT(seen, HasSubstr("2 programs in"));
+    EXPECT_THAT(bytes_of(report), HasSubstr("near-miss"));
+    folder.write("third.nc", fine);
+    seen = pass(terminal);
+    EXPECT_THAT(seen, HasSubstr("third.nc"));
+    EXPECT_THAT(seen, HasSubstr("3 programs in"));
+    EXPECT_EQ(end(terminal), 1);
+    EXPECT_FALSE(std::filesystem::exists(folder / ".feeler"));
+}
+
+TEST_F(Watch, DoesNotWakeUpBecauseOfItsOwnReports) {
+    Terminal terminal = watching({folder.path(), "--cache", folder / "kept.db", "--format", "csv",
+                                  "-o", folder / "report.txt"});
+    pass(terminal);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    EXPECT_EQ(terminal.seen_so_far().find("changed"), std::string::npos);
+    EXPECT_EQ(end(terminal), 0);
+}
+
+} // namespace
+} // namespace app_test

@@ -1,0 +1,125 @@
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "app/batch/folder_walk.h"
+#include "app/batch/watched_files.h"
+#include "gcode/program_folder.h"
+#include "tests/support/scoped_folder.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+using test_support::ScopedFolder;
+
+/// So long that nothing written before counts as written just now.
+void let_it_rest() { std::this_thread::sleep_for(std::chrono::milliseconds(80)); }
+
+class WatchedFilesTest : public testing::Test {
+protected:
+    void SetUp() override {
+        folder.write("a.nc", "G0 X1\n");
+        let_it_rest();
+    }
+
+    /// Looks at places as a check does.
+    template <typename Looks>
+    void watch(Looks&& looks) {
+        const core::FileListening listening(
+            [this](const core::FileLook& look) { files.note(look); });
+        looks();
+    }
+
+    std::vector<std::string> changed() {
+        std::vector<std::string> names;
+        for (const std::string& path : files.look_again().paths)
+            names.push_back(fs::path(path).filename());
+        return names;
+    }
+
+    using Names = std::vector<std::string>;
+
+    ScopedFolder folder;
+    WatchedFiles files{{folder / "report.json"}};
+};
+
+TEST_F(WatchedFilesTest, TellOfAFileThatWasWrittenOrReplacedOrTakenAway) {
+    folder.write("b.nc", "G0 X2\n");
+    folder.write("c.nc", "G0 X3\n");
+    let_it_rest();
+    watch([&] {
+        for (const char* name : {"a.nc", "b.nc", "c.nc"}) core::file_bytes(folder / name);
+    });
+    EXPECT_EQ(changed(), Names{});
+    folder.write("a.nc", "G0 X9\n"); // as long as before
+    fs::remove(folder / "b.nc");
+    folder.write("new", "G0 X3\n"); // as an editor does it
+    fs::rename(folder / "new", folder / "c.nc");
+    EXPECT_EQ(changed(), (Names{"a.nc", "b.nc", "c.nc"}));
+}
+
+TEST_F(WatchedFilesTest, TellOfAFileThatWasLookedForAndHasCome) {
+    watch([&] {
+        core::is_file(folder / "plate.toml");
+        gcode::file_in(folder.path(), "o1000.nc");
+    });
+    EXPECT_EQ(changed(), Names{});
+    folder.write("plate.toml", "");
+    EXPECT_EQ(changed(), Names{"plate.toml"});
+    folder.write("o1000.nc", "");
+    EXPECT_EQ(changed(), (Names{"o1000.nc", "plate.toml"}));
+}
+
+TEST_F(WatchedFilesTest, TellOfNamesThatComeIntoAFolderAndBelow) {
+    fs::create_directories(folder / "sub/deep");
+    let_it_rest();
+    watch([&] { walk_folder(folder.path()); });
+    EXPECT_EQ(changed(), Names{});
+    folder.write("sub/deep/x.nc", "");
+    EXPECT_EQ(changed(), Names{"deep"});
+    fs::remove(folder / "sub/deep/x.nc");
+    EXPECT_EQ(changed(), Names{}) << "all is as it was";
+}
+
+TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesItself) {
+    watch([&] {
+        walk_folder(folder.path());
+        core::file_bytes(folder / "report.json");
+    });
+    folder.write("report.json", "{}");
+    folder.write("report.json-journal", "");
+    fs::create_directory(folder / ".feeler");
+    EXPECT_EQ(changed(), Names{});
+    folder.write("report2.json", "{}");
+    EXPECT_EQ(changed(), Names{folder.path().filename()});
+}
+
+TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
+    folder.write("a.nc", "G0 X2\n");
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
+}
+
+TEST_F(WatchedFilesTest, AreSettledOnceNothingMovesAnyMore) {
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    EXPECT_TRUE(files.look_again().is_settled);
+    folder.write("a.nc", "G0 X1\nG1");
+    EXPECT_FALSE(files.look_again().is_settled);
+    folder.write("a.nc", "G0 X1\nG1 X5\n");
+    EXPECT_FALSE(files.look_again().is_settled);
+    const WatchedFiles::Change change = files.look_again();
+    EXPECT_TRUE(change.is_settled);
+    EXPECT_EQ(change.paths.size(), 1U);
+}
+
+TEST_F(WatchedFilesTest, KeepTheFirstLookOfSeveral) {
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    folder.write("a.nc", "G0 X1\nG1 X5\n");
+    let_it_rest();
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    EXPECT_EQ(changed(), Names{"a.nc"});
+}
+
+} // namespace
+} // namespace app
