@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
     app::add_distance(cli, exit_code);
     app::add_view(cli, exit_code);
     app::add_shot(cli, exit_code);
+    app::add_merge(cli, exit_code);
     app::add_history(cli, exit_code);
     app::add_diff(cli, exit_code);
     app::add_bench(cli, exit_code);

@@ -172,7 +172,7 @@ private:
 
 BatchResult run_batch(const BatchPlan& plan, const BatchLimits& limits, const BatchHooks& hooks) {
     BatchResult batch{.programs = {}, .unchecked = {}, .skipped = plan.skipped};
-    for (SkippedFile& file : batch.skipped) file.path = utf8_text(file.path);
+    for (SkippedFile& file : batch.skipped) file = {utf8_text(file.path), utf8_text(file.why)};
     auto results = BatchRunner(plan.jobs, limits, hooks).run();
     for (size_t i = 0; i < results.size(); ++i) {
         if (results[i])

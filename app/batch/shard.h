@@ -1,53 +1,46 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "app/batch/program_result.h"
+#include "app/batch/batch_job.h"
+#include "app/batch/batch_result.h"
+#include "app/batch/share.h"
 
 namespace app {
 
-/// The places in a list of the programs that share `i` of `n` has, sorted; shares count from 1. It
-/// depends on the sizes and their order alone, so every machine comes to the same: the largest
-/// first, each to the share that has the least so far.
-std::vector<size_t> share_of(std::span<const uintmax_t> sizes, size_t i, size_t n);
+/// A program as the plan of a batch has it, and what every machine must see alike of it.
+struct PlannedProgram {
+    std::string name;   // its path, as its result has it
+    uintmax_t size = 0; // of its file, bytes; 0 if it cannot be read
+    std::string terms;  // a digest of its options, of its set-up, and of files that options name
 
-/// "2/8": which share of how many.
-struct ShareName {
-    size_t i = 1, n = 1;
-
-    bool operator==(const ShareName&) const = default;
+    bool operator==(const PlannedProgram&) const = default;
 };
 
-/// Errors: a text that is no share, or one of none.
-core::Result<ShareName> share_named(const std::string& text);
-
-/// What one machine has done of a batch.
+/// What one machine has done of a batch, and of which.
 struct Shard {
     std::string file;    // it was read from; not kept
-    std::string version; // of the program that checked
-    std::string options; // of the batch
+    std::string version; // of the program that checked: see build_version
     ShareName share;
-    std::vector<std::string> programs; // of the whole batch, in their order
-    std::vector<size_t> places;        // of the results in that list
+    std::vector<PlannedProgram> programs; // of the whole batch, in their order
+    std::vector<ProgramResult> failures;  // words of the whole batch that stand for nothing
+    std::vector<SkippedFile> skipped;     // of the whole batch
+    std::vector<size_t> places;           // in `programs`, of the results
     std::vector<ProgramResult> results;
+    std::vector<size_t> unchecked; // places in `programs` that it was stopped before or in
+    double seconds = 0.0;          // of wall time that all of it took
 
     bool operator==(const Shard&) const = default;
 };
 
-/// As a JSON object, an entry to a line, and back.
-///
-/// Errors: text that is no such object.
-std::string json_of(const Shard& shard);
-core::Result<Shard> shard_from_json(const std::string& text);
+/// What a plan says of its programs.
+std::vector<PlannedProgram> planned_programs(const BatchPlan& plan);
 
-/// The results of all shares in the order of the whole list: what one run would have given.
-///
-/// Errors: with the names of the files: shares of different batches, one that is there twice or is
-///         missing, one that lacks a program's result or has another's.
-core::Result<std::vector<ProgramResult>> merged(std::vector<Shard> shards);
+/// The places of the programs that a share has.
+std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShareName& share);
+
+/// A plan for some of its programs alone. Words that stand for nothing are everybody's.
+BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& places);
+
+/// What became of the plan of these places, as a shard. `shard` says of which batch.
+Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult& batch);
 
 } // namespace app

@@ -166,10 +166,19 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 
+core::Result<void> check_share(const CheckOptions& options) {
+    const bool is_written = std::count(options.formats.begin(), options.formats.end(), "shard") > 0;
+    if (options.share || !is_written) return {};
+    return core::fail(core::ErrorCode::invalid_value,
+                      "--format shard is what a machine has done of a batch: say with --shard I/N "
+                      "which share that is");
+}
+
 ExitCode check(CheckOptions& options) {
-    const auto targets = targets_of(options);
+    const auto targets = targets_of(options.formats, options.outputs);
     if (!targets) return fail({}, targets.error(), {});
-    if (!is_one_program(options.programs)) {
+    if (auto fits = check_share(options); !fits) return fail({}, fits.error(), {});
+    if (options.share || !is_one_program(options.programs)) {
         for (const ReportTarget& target : *targets)
             if (target.format == "html")
                 return fail({},
@@ -193,9 +202,9 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
         .add_option("--format", options.formats,
                     "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
                     "program of many), html (one program: a page with pictures and a 3D view), "
-                    "sarif or junit; several with an -o each, in their order")
+                    "sarif, junit, or shard (for merge); several with an -o each, in their order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit", "shard"}))
         ->default_str("text");
     command.add_option("-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);
@@ -220,6 +229,16 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
         ".feeler/results.db in the folder, or beside the project file, that is named");
     command.add_flag("--no-cache", options.no_cache, "Many programs: check all, and keep nothing")
         ->excludes(cache);
+    command
+        .add_option_function<std::string>(
+            "--shard", [&options](const std::string& name) { options.share = *share_named(name); },
+            "Many machines: check share I of N alone; merge joins what --format shard writes")
+        ->check(CLI::Validator(
+            [](const std::string& name) {
+                const auto share = share_named(name);
+                return share ? std::string() : share.error().message;
+            },
+            "I/N"));
     command
         .add_option("-j,--jobs", options.jobs,
                     "Many programs: so many at the same time; else one for each core")

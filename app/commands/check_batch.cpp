@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -8,14 +7,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/batch/result_key.h"
+#include "app/commands/batch_ending.h"
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
 #include "app/commands/watch.h"
-#include "app/report/batch_report.h"
-#include "app/report/batch_text.h"
-#include "app/report/junit_report.h"
-#include "app/report/sarif_report.h"
 #include "app/session/stopwatch.h"
 
 namespace app {
@@ -60,39 +57,48 @@ core::Result<void> refuse_lost_input(const BatchPlan& plan,
     return {};
 }
 
-std::string report_of(const BatchResult& batch, const std::string& format,
-                      const BatchStyle& style) {
-    std::error_code ignored;
-    if (format == "json") return batch_json_report(batch);
-    if (format == "jsonl") return batch_lines_report(batch);
-    if (format == "csv") return batch_csv_report(batch);
-    if (format == "junit") return junit_report(batch);
-    if (format == "sarif")
-        return sarif_report(batch, std::filesystem::current_path(ignored).string());
-    return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});
-}
-
-/// Where lines for a person go: to standard output, unless a report for others does.
-struct Talk {
-    std::FILE* stream = stdout;
-    BatchStyle style;
-
-    void say(const std::string& text) const {
-        std::fputs(text.c_str(), stream);
-        std::fflush(stream);
-    }
+/// What is to be done here, of a batch that other machines may have shares of.
+struct SharedWork {
+    BatchPlan plan;
+    std::vector<PlannedProgram> programs; // of the whole batch
+    std::vector<size_t> places;           // of the plan's programs among them
 };
 
-bool goes_to_standard_output(const ReportTarget& target) { return target.path.empty(); }
+SharedWork work_of(const CheckOptions& options, const BatchPlan& whole) {
+    if (!options.share) return {.plan = whole, .programs = {}, .places = {}};
+    SharedWork work{.plan = {}, .programs = planned_programs(whole), .places = {}};
+    work.places = places_of(work.programs, *options.share);
+    work.plan = plan_of_places(whole, work.places);
+    return work;
+}
 
-Talk talk_of(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
-    Talk talk{.style = {.quiet = options.quiet, .verbose = options.verbose}};
-    for (const ReportTarget& target : targets)
-        if (goes_to_standard_output(target) && target.format != "text") talk.stream = stderr;
-    const char* no_colour = std::getenv("NO_COLOR");
-    const bool may_colour = !no_colour || *no_colour == '\0';
-    talk.style.colour = may_colour && ::isatty(::fileno(talk.stream)) == 1;
-    return talk;
+/// The share of an earlier run must not be taken for that of a run that was killed.
+core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
+    for (const ReportTarget& target : targets) {
+        std::error_code failure;
+        if (target.format != "shard" || !std::filesystem::is_regular_file(target.path, failure))
+            continue;
+        if (!std::filesystem::remove(target.path, failure))
+            return tl::unexpected<core::Error>(
+                {core::ErrorCode::io, {}, "cannot be replaced: " + failure.message(), target.path});
+    }
+    return {};
+}
+
+std::string share_text(const CheckOptions& options, const SharedWork& work) {
+    if (!options.share) return {};
+    return fmt::format("share {}: {} of {} programs\n", text_of(*options.share), work.places.size(),
+                       work.programs.size());
+}
+
+Shard shard_of(const ShareName& share, const SharedWork& work, const BatchResult& batch,
+               double seconds) {
+    Shard shard;
+    shard.version = build_version();
+    shard.share = share;
+    shard.programs = work.programs;
+    shard.seconds = seconds;
+    return shard_of(std::move(shard), work.places, batch);
 }
 
 /// Between the passes of --watch.
@@ -101,7 +107,7 @@ struct Watch {
     bool is_again = false;         // not the first pass: what is known already is not said
 };
 
-BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Talk& talk,
+BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchTalk& talk,
                       BatchStore& store, const Watch& watch) {
     stop_on_interrupt();
     ProgressLine line;
@@ -130,20 +136,6 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ta
     return run_batch(plan, limits, hooks);
 }
 
-/// Each report, whole or not at all; whether all could be written.
-bool write_reports(const BatchResult& batch, const std::vector<ReportTarget>& targets,
-                   const BatchStyle& style) {
-    bool all = true;
-    for (const ReportTarget& target : targets) {
-        const bool was_said = goes_to_standard_output(target) && target.format == "text";
-        if (was_said) continue;
-        const auto written = write_output(target.path, report_of(batch, target.format, style));
-        if (!written) print_error(written.error());
-        all = all && written.has_value();
-    }
-    return all;
-}
-
 ExitCode failed(const core::Error& error) {
     print_error(error);
     return ExitCode::failed;
@@ -163,21 +155,20 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     if (!plan) return failed(plan.error());
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
-    const Talk talk = talk_of(options, targets);
-    const BatchResult batch = run_aloud(*plan, limits_of(options), talk, store, watch);
-    talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));
+    const SharedWork work = work_of(options, *plan);
+    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
+    const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
+    const BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch);
+    talk.say("\n" + share_text(options, work) + batch_summary(batch, time.seconds(), talk.style));
     if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
     if (is_interrupted())
         fmt::print(stderr, "feeler: interrupted; {} of {} programs were checked\n",
                    batch.programs.size(), batch.programs.size() + batch.unchecked.size());
-    bool all_written = write_reports(batch, targets, talk.style);
-    if (std::ferror(talk.stream) != 0) {
-        print_error({core::ErrorCode::io, {}, "cannot be written", "standard output"});
-        all_written = false;
-    }
-    return all_written ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;
+    if (!options.share) return end_batch(batch, nullptr, targets, talk);
+    const Shard shard = shard_of(*options.share, work, batch, time.seconds());
+    return end_batch(batch, &shard, targets, talk);
 }
 
 } // namespace

@@ -13,17 +13,18 @@ tl::unexpected<core::Error> refused(const std::string& why) {
 
 } // namespace
 
-core::Result<std::vector<ReportTarget>> targets_of(const CheckOptions& options) {
+core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
+                                                   const std::vector<std::string>& outputs) {
     std::vector<ReportTarget> targets;
-    for (const std::string& format : options.formats) targets.push_back({format, {}});
+    for (const std::string& format : formats) targets.push_back({format, {}});
     if (targets.empty()) targets.push_back({"text", {}});
-    if (options.outputs.size() > targets.size())
+    if (outputs.size() > targets.size())
         return refused("there are more -o than --format: say the format of each file");
-    if (targets.size() > options.outputs.size() + 1)
+    if (targets.size() > outputs.size() + 1)
         return refused("only one report can go to standard output: give -o to the others, in the "
                        "order of --format");
-    for (size_t i = 0; i < options.outputs.size(); ++i) {
-        targets[i].path = options.outputs[i];
+    for (size_t i = 0; i < outputs.size(); ++i) {
+        targets[i].path = outputs[i];
         for (size_t k = 0; k < i; ++k)
             if (targets[k].path == targets[i].path)
                 return refused(fmt::format("two reports would go to {}", targets[i].path));

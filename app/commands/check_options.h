@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/share.h"
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 
@@ -24,7 +25,8 @@ struct CheckOptions {
     bool verbose = false;
     bool watch = false;
     std::optional<unsigned> jobs;
-    std::optional<double> memory; // MB
+    std::optional<double> memory;   // MB
+    std::optional<ShareName> share; // of the programs; empty: all
 };
 
 /// A report that is to be written.
@@ -37,7 +39,8 @@ struct ReportTarget {
 /// output.
 ///
 /// Errors: invalid_value when they do not pair up.
-core::Result<std::vector<ReportTarget>> targets_of(const CheckOptions& options);
+core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
+                                                   const std::vector<std::string>& outputs);
 
 /// Refuses targets that are a file that is read here.
 ///

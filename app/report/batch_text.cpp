@@ -181,7 +181,8 @@ std::string batch_summary(const BatchResult& batch, double seconds, const BatchS
     std::string text = counted(batch.programs.size() + batch.unchecked.size(), "program");
     if (seconds >= 60.0) text += " in " + duration_text(seconds);
     if (seconds >= 0.0 && seconds < 60.0) text += fmt::format(" in {:.1f} s", seconds);
-    text += ": " + verdicts_text(batch) + "\n" + rules_text(batch);
+    const std::string verdicts = verdicts_text(batch);
+    text += (verdicts.empty() ? verdicts : ": " + verdicts) + "\n" + rules_text(batch);
     if (seconds >= 0.0) text += slowest_text(batch);
     return text + missing_text(batch, style);
 }

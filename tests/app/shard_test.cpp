@@ -4,9 +4,10 @@
 #include <random>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
-#include "app/batch/shard.h"
+#include "app/batch/shard_file.h"
+#include "app/batch/shard_merge.h"
 
 namespace {
 
@@ -25,9 +26,9 @@ std::vector<uintmax_t> random_sizes(size_t count) {
 TEST(ShareOf, TakesTheLargestFirstToTheLeastLoaded) {
     const std::vector<uintmax_t> sizes = {1, 7, 5, 5, 4, 0};
     // 7 to share 1, 5 to 2, 5 to 3, 4 to 2 (a tie, the first), 1 to 3, the empty one to 3.
-    EXPECT_EQ(app::share_of(sizes, 1, 3), (std::vector<size_t>{1}));
-    EXPECT_EQ(app::share_of(sizes, 2, 3), (std::vector<size_t>{2, 4}));
-    EXPECT_EQ(app::share_of(sizes, 3, 3), (std::vector<size_t>{0, 3, 5}));
+    EXPECT_EQ(app::share_of(sizes, {1, 3}), (std::vector<size_t>{1}));
+    EXPECT_EQ(app::share_of(sizes, {2, 3}), (std::vector<size_t>{2, 4}));
+    EXPECT_EQ(app::share_of(sizes, {3, 3}), (std::vector<size_t>{0, 3, 5}));
 }
 
 TEST(ShareOf, GivesEveryProgramToOneShare) {
@@ -35,7 +36,7 @@ TEST(ShareOf, GivesEveryProgramToOneShare) {
     for (const size_t n : {1, 2, 7, 64, 501}) {
         std::vector<size_t> all;
         for (size_t i = 1; i <= n; ++i)
-            for (const size_t place : app::share_of(sizes, i, n)) all.push_back(place);
+            for (const size_t place : app::share_of(sizes, {i, n})) all.push_back(place);
         std::sort(all.begin(), all.end());
         std::vector<size_t> wanted(sizes.size());
         std::iota(wanted.begin(), wanted.end(), size_t(0));
@@ -52,7 +53,7 @@ TEST(ShareOf, IsBalanced) {
         const double best = std::max(whole / static_cast<double>(n), largest);
         for (size_t i = 1; i <= n; ++i) {
             double load = 0.0;
-            for (const size_t place : app::share_of(sizes, i, n))
+            for (const size_t place : app::share_of(sizes, {i, n}))
                 load += static_cast<double>(sizes[place]);
             EXPECT_LE(load, 4.0 / 3.0 * best) << i << " of " << n;
         }
@@ -75,13 +76,16 @@ std::vector<Shard> three_shards() {
     for (size_t i = 1; i <= 3; ++i) {
         Shard shard{.file = fmt::format("{}.json", i),
                     .version = "1",
-                    .options = "{}",
                     .share = {i, 3},
-                    .places = app::share_of(sizes, i, 3)};
+                    .places = app::share_of(sizes, {i, 3})};
         for (size_t program = 0; program < 10; ++program)
-            shard.programs.push_back(fmt::format("teil \"{}\" ä.nc", program));
+            shard.programs.push_back(
+                {fmt::format("teil \"{}\" ä.nc", program), sizes[program], "terms"});
+        shard.failures = {{.program = "*.tap", .error = app::KeptError{.message = "no file"}}};
+        shard.skipped = {{"part.stl", "is a mesh"}, {fmt::format("{}.new", i), "is no program"}};
         for (const size_t place : shard.places)
-            shard.results.push_back({.program = shard.programs[place], .cycle_time = 0.1 * place});
+            shard.results.push_back(
+                {.program = shard.programs[place].name, .cycle_time = 0.1 * place});
         shards.push_back(std::move(shard));
     }
     return shards;
@@ -96,13 +100,35 @@ std::string why_not(std::vector<Shard> shards) {
 TEST(Merged, IsWhatOneRunWouldHaveGiven) {
     std::vector<Shard> shards = three_shards();
     std::swap(shards[0], shards[2]);
-    const auto results = app::merged(shards);
-    ASSERT_TRUE(results) << results.error().message;
-    ASSERT_EQ(results->size(), 10u);
+    const auto batch = app::merged(shards);
+    ASSERT_TRUE(batch) << batch.error().message;
+    ASSERT_EQ(batch->programs.size(), 11u);
     for (size_t i = 0; i < 10; ++i) {
-        EXPECT_EQ((*results)[i].program, shards[0].programs[i]);
-        EXPECT_EQ((*results)[i].cycle_time, 0.1 * i);
+        EXPECT_EQ(batch->programs[i].program, shards[0].programs[i].name);
+        EXPECT_EQ(batch->programs[i].cycle_time, 0.1 * i);
     }
+    EXPECT_EQ(batch->programs[10], shards[0].failures[0]);
+    EXPECT_TRUE(batch->unchecked.empty());
+}
+
+TEST(Merged, NamesTheSkippedFilesThatAllHaveSeen) {
+    const auto batch = app::merged(three_shards());
+    ASSERT_TRUE(batch) << batch.error().message;
+    EXPECT_EQ(batch->skipped, (std::vector<app::SkippedFile>{{"part.stl", "is a mesh"}}));
+}
+
+TEST(Merged, LeavesUncheckedWhatAShareWasStoppedBefore) {
+    std::vector<Shard> shards = three_shards();
+    Shard& cut = shards[1];
+    const std::string last = cut.results.back().program;
+    cut.unchecked = {cut.places.back()};
+    cut.places.pop_back();
+    cut.results.pop_back();
+    const auto batch = app::merged(shards);
+    ASSERT_TRUE(batch) << batch.error().message;
+    EXPECT_EQ(batch->programs.size(), 10u);
+    EXPECT_EQ(batch->unchecked, std::vector<std::string>{last});
+    EXPECT_EQ(status_of(*batch), 2);
 }
 
 TEST(Merged, NamesSharesThatAreMissingOrThereTwice) {
@@ -121,14 +147,26 @@ TEST(Merged, RefusesSharesOfDifferentBatches) {
     shards[1].version = "2";
     EXPECT_EQ(why_not(shards),
               "2.json belongs to another batch than 1.json: another version of Feeler made it");
-    shards = three_shards();
-    shards[2].programs.push_back("new.nc");
-    EXPECT_EQ(why_not(shards),
-              "3.json belongs to another batch than 1.json: its list of programs is another");
-    shards = three_shards();
-    shards[2].options = "{1}";
-    EXPECT_EQ(why_not(shards),
-              "3.json belongs to another batch than 1.json: its options are others");
+    const std::string other = "3.json belongs to another batch than 1.json: ";
+    const auto after = [&](auto change) {
+        shards = three_shards();
+        change(shards[2]);
+        return why_not(shards);
+    };
+    EXPECT_EQ(after([](Shard& shard) {
+                  shard.programs.push_back({"new.nc", 1, "terms"});
+              }),
+              other + "it has new.nc, too");
+    EXPECT_EQ(after([](Shard& shard) { shard.programs[3].name = "new.nc"; }),
+              other + "it does not know teil \"3\" ä.nc");
+    EXPECT_EQ(after([](Shard& shard) { std::swap(shard.programs[3], shard.programs[4]); }),
+              other + "its programs are named in another order");
+    EXPECT_EQ(after([](Shard& shard) { shard.programs[4].size = 99; }),
+              other + "teil \"4\" ä.nc has another size there");
+    EXPECT_EQ(after([](Shard& shard) { shard.programs[4].terms = "other"; }),
+              other + "teil \"4\" ä.nc was to be checked with other options or another set-up");
+    EXPECT_EQ(after([](Shard& shard) { shard.failures.clear(); }),
+              other + "what its words do not find, or cannot be read, is other");
     shards = three_shards();
     shards[1].share.n = 4;
     EXPECT_EQ(why_not(shards),
@@ -147,16 +185,47 @@ TEST(Merged, RefusesResultsThatDoNotFitTheirShare) {
     EXPECT_EQ(why_not(shards), "3.json has a result that is not one of its programs'");
 }
 
+TEST(Merged, RefusesAProgramThatTwoSharesHave) {
+    std::vector<Shard> shards = three_shards();
+    shards[2].unchecked = {shards[0].places[0]};
+    EXPECT_EQ(why_not(shards), "3.json has a result that is not one of its programs'");
+}
+
+TEST(Merged, NamesSomeOfManyMissingShares) {
+    Shard one = three_shards()[0];
+    one.share.n = 1'000'000;
+    EXPECT_THAT(why_not({one}), testing::EndsWith("20/1000000, 21/1000000, ..."));
+}
+
 TEST(Shard, ComesBackFromItsText) {
     Shard shard = three_shards()[1];
+    shard.unchecked = {7, 9};
+    shard.seconds = 0.1 + 0.2;
     const auto back = app::shard_from_json(app::json_of(shard));
     ASSERT_TRUE(back) << back.error().message;
     shard.file.clear();
     EXPECT_EQ(*back, shard);
-    EXPECT_FALSE(app::shard_from_json("{}"));
-    EXPECT_FALSE(app::shard_from_json("[1"));
-    EXPECT_EQ(app::shard_from_json("{\"feeler_shard\": 2}").error().message,
-              "was written by a newer version of Feeler");
+    const std::string whole = app::json_of(shard);
+    for (size_t length = 0; length + 1 < whole.size(); ++length)
+        ASSERT_FALSE(app::shard_from_json(whole.substr(0, length))) << length;
+}
+
+TEST(Shard, SaysWhatATextIsThatIsNone) {
+    const auto why = [](const std::string& text) {
+        return app::shard_from_json(text).error().message;
+    };
+    EXPECT_EQ(why("{}"), "is no share of a batch: --format shard writes one");
+    EXPECT_EQ(why(""), why("{}"));
+    EXPECT_EQ(why("[1"), why("{}"));
+    EXPECT_EQ(why("G1 X1\n"), why("{}"));
+    EXPECT_EQ(why("{\"feeler_shard\": 2}"), "was written by a newer version of Feeler");
+    EXPECT_EQ(why("{\"feeler_shard\": 1, \"versi"),
+              "is a share of a batch that was cut off or changed");
+    EXPECT_THAT(why("{\"feeler_shard\": 1, \"version\": 3}"),
+                testing::StartsWith("is no share of a batch: "));
+    std::string other = app::json_of(three_shards()[0]);
+    other.replace(other.find("[1, 3]"), 6, "[5, 3]");
+    EXPECT_THAT(why(other), testing::StartsWith("'5/3' is no share"));
 }
 
 } // namespace

@@ -1,0 +1,48 @@
+#include "app/commands/batch_ending.h"
+
+#include <filesystem>
+
+#include "app/batch/shard_file.h"
+#include "app/commands/output.h"
+#include "app/report/batch_report.h"
+#include "app/report/junit_report.h"
+#include "app/report/sarif_report.h"
+
+namespace app {
+namespace {
+
+std::string report_of(const BatchResult& batch, const std::string& format,
+                      const BatchStyle& style) {
+    std::error_code ignored;
+    if (format == "json") return batch_json_report(batch);
+    if (format == "jsonl") return batch_lines_report(batch);
+    if (format == "csv") return batch_csv_report(batch);
+    if (format == "junit") return junit_report(batch);
+    if (format == "sarif")
+        return sarif_report(batch, std::filesystem::current_path(ignored).string());
+    return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});
+}
+
+} // namespace
+
+ExitCode end_batch(const BatchResult& batch, const Shard* shard,
+                   const std::vector<ReportTarget>& targets, const BatchTalk& talk) {
+    bool all = true;
+    for (const ReportTarget& target : targets) {
+        const bool was_said = target.path.empty() && target.format == "text";
+        if (was_said) continue;
+        const auto written =
+            write_output(target.path, shard && target.format == "shard"
+                                          ? json_of(*shard)
+                                          : report_of(batch, target.format, talk.style));
+        if (!written) print_error(written.error());
+        all = all && written.has_value();
+    }
+    if (std::ferror(talk.stream) != 0) {
+        print_error({core::ErrorCode::io, {}, "cannot be written", "standard output"});
+        all = false;
+    }
+    return all ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;
+}
+
+} // namespace app

@@ -1,0 +1,114 @@
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/batch/result_key.h"
+#include "app/batch/shard_file.h"
+#include "app/batch/shard_merge.h"
+#include "app/commands/batch_ending.h"
+#include "app/commands/output.h"
+#include "core/base/file_reads.h"
+
+namespace app {
+namespace {
+
+struct Options {
+    std::vector<std::string> files, formats, outputs;
+    BatchStyle style;
+};
+
+core::Result<Shard> read_shard(const std::string& file) {
+    const auto refused = [&](core::Error error) {
+        error.file = file;
+        return tl::unexpected(std::move(error));
+    };
+    const auto bytes = core::file_bytes(file);
+    if (!bytes)
+        return refused(
+            {core::ErrorCode::io, {}, std::string("cannot be read: ") + std::strerror(errno), {}});
+    auto shard = shard_from_json(*bytes);
+    if (!shard) return refused(shard.error());
+    if (shard->version != build_version())
+        return refused(
+            {core::ErrorCode::unsupported,
+             {},
+             fmt::format("was made by feeler {}; this is {}, and writes reports as that one does",
+                         shard->version, build_version()),
+             {}});
+    shard->file = file;
+    return shard;
+}
+
+core::Result<std::vector<Shard>> read_shards(const std::vector<std::string>& files) {
+    std::vector<Shard> shards;
+    for (const std::string& file : files) {
+        FEELER_TRY(Shard shard, read_shard(file));
+        shards.push_back(std::move(shard));
+    }
+    return shards;
+}
+
+core::Result<std::vector<ReportTarget>> safe_targets(const Options& options) {
+    FEELER_TRY(std::vector<ReportTarget> targets, targets_of(options.formats, options.outputs));
+    for (const std::string& file : options.files)
+        if (auto safe = check_targets(targets, {file}); !safe) return tl::unexpected(safe.error());
+    return targets;
+}
+
+/// What one run says while it goes on, and at its end.
+void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const BatchTalk& talk) {
+    for (const ProgramResult& program : batch.programs) talk.say(program_text(program, talk.style));
+    double seconds = 0.0;
+    for (const Shard& shard : shards) seconds += shard.seconds;
+    talk.say("\n" + batch_summary(batch, seconds, talk.style));
+    for (const Shard& shard : shards)
+        if (!shard.unchecked.empty())
+            fmt::print(stderr, "feeler: {}: share {} was interrupted: run it again\n", shard.file,
+                       text_of(shard.share));
+}
+
+core::Result<ExitCode> merge(const Options& options) {
+    FEELER_TRY(const std::vector<ReportTarget> targets, safe_targets(options));
+    FEELER_TRY(const std::vector<Shard> shards, read_shards(options.files));
+    FEELER_TRY(const BatchResult batch, merged(shards));
+    const BatchTalk talk = talk_of(options.style, targets);
+    say_all(batch, shards, talk);
+    return end_batch(batch, nullptr, targets, talk);
+}
+
+ExitCode merge_aloud(const Options& options) {
+    const auto done = merge(options);
+    if (done) return *done;
+    print_error(done.error());
+    return ExitCode::failed;
+}
+
+} // namespace
+
+void add_merge(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = *cli.add_subcommand("merge", "Join the shares of check --shard");
+    command
+        .add_option("shares", options->files, "All files that --format shard has written of them")
+        ->required();
+    command
+        .add_option("--format", options->formats,
+                    "text, json, jsonl, csv, sarif or junit; several with an -o each, in their "
+                    "order")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "sarif", "junit"}))
+        ->default_str("text");
+    command.add_option("-o,--output", options->outputs, "Write the report to this file")
+        ->allow_extra_args(false);
+    CLI::Option* quiet = command.add_flag("--quiet", options->style.quiet,
+                                          "Name only programs with errors, and the summary");
+    command
+        .add_flag("--verbose", options->style.verbose,
+                  "Also warnings, notes, assumptions and all skipped files")
+        ->excludes(quiet);
+    command.callback([options, &exit_code] { exit_code = merge_aloud(*options); });
+}
+
+} // namespace app

@@ -1,0 +1,303 @@
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+
+namespace app_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test_support::bytes_of;
+using test_support::program;
+using test_support::Ran;
+using test_support::ScopedFolder;
+using test_support::SetupWriter;
+using testing::HasSubstr;
+using testing::Not;
+using Words = std::vector<std::string>;
+
+const Words formats = {"text", "json", "jsonl", "csv", "junit", "sarif"};
+
+std::string fine(const std::string& y = "50.") {
+    return program({"X-20. Y" + y, "Z-3.", "G1 X120. F500.", "G0 Z60."});
+}
+
+/// So many moves to and fro that nobody waits for their end.
+std::string long_program() {
+    std::string text = fine().substr(0, fine().find("M30"));
+    for (int i = 0; i < 300'000; ++i)
+        text += "G1 X" + std::to_string(i % 2 * 90 + 5) + ". Y" + std::to_string(i % 97) + ".\n";
+    return text + "M30\n";
+}
+
+/// Each number of seconds, of a check or of all, is another in every run.
+std::string without_seconds(std::string text) {
+    text = std::regex_replace(text, std::regex("\"seconds\":[^,]*"), "\"seconds\":0");
+    text = std::regex_replace(text, std::regex("time=\"[^\"]*\""), "time=\"0\"");
+    text = std::regex_replace(text, std::regex(",[0-9.]+(,[^,]*\r\n)"), ",0$1");
+    text = std::regex_replace(text, std::regex(" in ([0-9]+ min )?[0-9.]+ s: "), " in 0 s: ");
+    return std::regex_replace(text, std::regex("  slowest .*\n"), "");
+}
+
+/// A folder with everything that a batch can meet.
+class Merge : public testing::Test {
+protected:
+    void SetUp() override {
+        fs::create_directory(folder / "lib");
+        write("fine.nc", fine());
+        write("near.nc", fine("97.5") + "( a little longer )\n");
+        write("a bad one.nc", program({"G999"}));
+        write("no set-up.nc", fine());
+        write("no set-up.toml", "nonsense = 1\n");
+        write("part.stl", "solid part\nendsolid part\n");
+        // Two names that are the same text, of which one is no UTF-8.
+        write("Geh\xe4use.nc", fine("40."));
+        write("Gehäuse.nc", fine("45.5"));
+        for (int i = 0; i < 6; ++i) write(std::to_string(i) + ".nc", fine(std::to_string(i) + "."));
+        words = {folder / "lib",
+                 folder / "none.nc",
+                 folder / "\xff*.tap",
+                 "--jobs",
+                 "1",
+                 "--setup",
+                 folder.write(
+                     "setup.toml",
+                     SetupWriter().fixture("clamp", "box = [[40, 104, 0], [60, 130, 42]]").text())};
+    }
+
+    void write(const std::string& name, const std::string& bytes) const {
+        folder.write("lib/" + name, bytes);
+    }
+
+    std::string share(int i) const { return folder / (std::to_string(i) + ".share"); }
+
+    Ran check(const Words& more, const std::string& before = "") const {
+        Words all = {"check"};
+        all.insert(all.end(), words.begin(), words.end());
+        all.insert(all.end(), more.begin(), more.end());
+        return feeler(all, before);
+    }
+
+    Ran check_share(int i, int n, Words more = {"--no-cache"},
+                    const std::string& before = "") const {
+        for (const std::string& word :
+             {std::string("--shard"), std::to_string(i) + "/" + std::to_string(n),
+              std::string("--format"), std::string("shard"), std::string("-o"), share(i)})
+            more.push_back(word);
+        return check(more, before);
+    }
+
+    Ran merge(int n, Words more = {}) const {
+        more.insert(more.begin(), "merge");
+        for (int i = 1; i <= n; ++i) more.push_back(share(i));
+        return feeler(more);
+    }
+
+    /// Options that have every format written to a file of its own.
+    Words to_files(const std::string& name) const {
+        Words options;
+        for (const std::string& format : formats)
+            for (const std::string& word : {std::string("--format"), format, std::string("-o"),
+                                            folder / (name + "." + format)})
+                options.push_back(word);
+        return options;
+    }
+
+    void expect_same_files(const std::string& a, const std::string& b) const {
+        for (const std::string& format : formats) {
+            const std::string text = without_seconds(bytes_of(folder / (a + "." + format)));
+            EXPECT_EQ(text, without_seconds(bytes_of(folder / (b + "." + format)))) << format;
+            EXPECT_THAT(text, HasSubstr("near.nc")) << format;
+        }
+    }
+
+    ScopedFolder folder;
+    Words words;
+};
+
+TEST_F(Merge, GivesWhatOneRunGives) {
+    Words all = to_files("one");
+    all.push_back("--no-cache");
+    const Ran one = check(all);
+    EXPECT_EQ(one.status, 2);
+    size_t programs = 0;
+    for (const int n : {1, 3, 20}) {
+        for (int i = 1; i <= n; ++i) EXPECT_NE(check_share(i, n).status, -1);
+        const Ran merged = merge(n, to_files("merged"));
+        EXPECT_EQ(merged.status, one.status);
+        EXPECT_EQ(merged.err, one.err);
+        EXPECT_EQ(without_seconds(merged.out), without_seconds(one.out)) << n;
+        expect_same_files("merged", "one");
+        programs = json::parse(bytes_of(folder / "merged.json"))["programs"].size();
+    }
+    EXPECT_EQ(programs, 14U);
+    EXPECT_THAT(one.out, HasSubstr("skipped: " + folder / "lib/part.stl"));
+}
+
+/// Results that are found again have the seconds of the run that made them.
+TEST_F(Merge, GivesTheSameBytesWhereResultsAreFoundAgain) {
+    const Words kept = {"--cache", folder / "results.db"};
+    for (int i = 1; i <= 3; ++i) check_share(i, 3, kept);
+    Words all = to_files("one");
+    all.insert(all.end(), kept.begin(), kept.end());
+    check(all);
+    merge(3, to_files("merged"));
+    for (const std::string& format : formats)
+        EXPECT_EQ(bytes_of(folder / ("merged." + format)), bytes_of(folder / ("one." + format)));
+}
+
+TEST_F(Merge, SaysLessOrMoreAsOneRunDoes) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (const char* option : {"--quiet", "--verbose"})
+        EXPECT_EQ(without_seconds(merge(2, {option}).out),
+                  without_seconds(check({option, "--no-cache"}).out));
+    const Ran rows = merge(2, {"--format", "csv"});
+    EXPECT_THAT(rows.out, testing::StartsWith("program,setup,"));
+    EXPECT_THAT(rows.err, HasSubstr("14 programs in "));
+}
+
+TEST_F(Merge, HasTheStatusOfAll) {
+    words = {folder / "lib/fine.nc", folder / "lib/near.nc", "--setup", folder / "setup.toml"};
+    EXPECT_EQ(check_share(1, 2).status, 1) << "the larger one, which is near the clamp";
+    EXPECT_EQ(check_share(2, 2).status, 0);
+    EXPECT_EQ(merge(2).status, 1);
+    words.erase(words.begin() + 1);
+    for (int i = 1; i <= 2; ++i) EXPECT_EQ(check_share(i, 2).status, 0) << "the second is empty";
+    EXPECT_EQ(merge(2).status, 0);
+}
+
+TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
+    const Ran ran = check({"--shard", "2/3", "--format", "jsonl", "--no-cache"});
+    EXPECT_THAT(ran.err, HasSubstr("share 2/3: 4 of 13 programs"));
+    EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 5) << "and the word for nothing";
+    const Ran empty = check({"--shard", "20/20", "--no-cache"});
+    EXPECT_THAT(empty.out, HasSubstr("share 20/20: 0 of 13 programs"));
+}
+
+TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
+    write("long.nc", long_program());
+    const Ran cut =
+        check_share(1, 2, {"--no-cache"}, "timeout --foreground --preserve-status -s INT 4");
+    EXPECT_EQ(cut.status, 2);
+    check_share(2, 2);
+    const Ran merged =
+        merge(2, {"--format", "json", "-o", folder / "merged.json", "--format", "text"});
+    EXPECT_EQ(merged.status, 2);
+    EXPECT_THAT(merged.out, HasSubstr("not checked: " + folder / "lib/long.nc"));
+    EXPECT_THAT(merged.err, HasSubstr("1.share: share 1/2 was interrupted: run it again"));
+    const json report = json::parse(bytes_of(folder / "merged.json"));
+    EXPECT_THAT(report["unchecked"], testing::Contains(folder / "lib/long.nc"));
+    EXPECT_EQ(report["programs"].size() + report["unchecked"].size(), 15U);
+}
+
+TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    write("long.nc", long_program());
+    EXPECT_EQ(check_share(1, 2, {"--no-cache"}, "timeout --foreground -s KILL 2").status, 137);
+    EXPECT_FALSE(fs::exists(share(1)));
+    const Ran merged = merge(2);
+    EXPECT_EQ(merged.status, 2);
+    EXPECT_THAT(merged.err, HasSubstr("1.share: cannot be read: No such file"));
+    EXPECT_THAT(feeler({"merge", share(2)}).err, HasSubstr("a share is missing: 1/2"));
+}
+
+TEST_F(Merge, RefusesSharesThatWereAskedForOtherwise) {
+    check_share(1, 2);
+    for (const Words& more : std::vector<Words>{{"--allowance", "2.5"},
+                                                {"--engine", "coprocessor"},
+                                                {"--mesh-size", "0.7"},
+                                                {"--verdict-only"},
+                                                {"--dialect", "haas"},
+                                                {"--start-position", "X=-1"},
+                                                {"--block-delete", "on"},
+                                                {"--max-blocks", "9"},
+                                                {"--no-decimal-point", "steps"},
+                                                {"--machine-unit", "inch"},
+                                                {"--search-path", folder.path()},
+                                                {"--memory-limit", "100"}}) {
+        Words all = more;
+        all.push_back("--no-cache");
+        check_share(2, 2, all);
+        const Ran merged = merge(2);
+        EXPECT_EQ(merged.status, 2) << more[0];
+        EXPECT_EQ(merged.out, "") << more[0];
+        EXPECT_THAT(merged.err, HasSubstr("with other options or another set-up")) << more[0];
+    }
+    check_share(2, 2);
+    EXPECT_THAT(merge(2).err, "");
+}
+
+TEST_F(Merge, RefusesSharesOfOtherStatesOfTheLibrary) {
+    const auto why = [&](auto change) {
+        check_share(1, 2);
+        change();
+        check_share(2, 2);
+        const Ran merged = merge(2, {"--format", "json", "-o", folder / "all.json"});
+        EXPECT_EQ(merged.status, 2);
+        EXPECT_FALSE(fs::exists(folder / "all.json"));
+        return merged.err;
+    };
+    EXPECT_THAT(why([&] { write("0.nc", fine() + "( changed )\n"); }),
+                HasSubstr("lib/0.nc has another size there"));
+    EXPECT_THAT(why([&] { write("new.nc", fine()); }),
+                HasSubstr("it has " + folder / "lib/new.nc"));
+    EXPECT_THAT(why([&] { fs::remove(folder / "lib/1.nc"); }),
+                HasSubstr("it does not know " + folder / "lib/1.nc"));
+    EXPECT_THAT(why([&] { std::ofstream(folder / "setup.toml", std::ios::app) << "# moved\n"; }),
+                HasSubstr("another set-up"));
+    words.insert(words.end(), {"--tool-table", folder.write("tool.tbl", "T1 P1 D10\n")});
+    EXPECT_THAT(why([&] { folder.write("tool.tbl", "T1 P1 D11\n"); }), HasSubstr("another set-up"));
+    EXPECT_THAT(why([&] { words.push_back(folder / "nothing*.nc"); }),
+                HasSubstr("what its words do not find"));
+}
+
+TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    const auto why = [&](Words files) {
+        files.insert(files.begin(), "merge");
+        const Ran ran = feeler(files);
+        EXPECT_EQ(ran.status, 2);
+        EXPECT_EQ(ran.out, "");
+        return ran.err;
+    };
+    const std::string whole = bytes_of(share(2));
+    EXPECT_THAT(why({share(1), share(1), share(2)}), HasSubstr("is share 1/2, and so is"));
+    EXPECT_THAT(why({share(1), folder.write("cut", whole.substr(0, whole.size() / 2))}),
+                HasSubstr("cut: is a share of a batch that was cut off"));
+    EXPECT_THAT(why({share(1), folder / "lib/fine.nc"}), HasSubstr("fine.nc: is no share"));
+    EXPECT_THAT(why({share(1), folder / "lib"}), HasSubstr("lib: cannot be read"));
+    EXPECT_THAT(why({share(1), folder.write("new", "{\"feeler_shard\": 2}")}),
+                HasSubstr("new: was written by a newer version"));
+    std::string foreign = whole;
+    foreign.replace(foreign.find("\"version\": \"") + 12, 1, "9");
+    EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
+                HasSubstr("was made by feeler 9"));
+}
+
+TEST_F(Merge, NeverLosesAShareThatItReads) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    const std::string before = bytes_of(share(2));
+    const Ran ran = merge(2, {"--format", "json", "-o", share(2)});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr("2.share: is read here, and would be lost"));
+    EXPECT_EQ(bytes_of(share(2)), before);
+}
+
+TEST_F(Merge, TakesNoShareThatIsNone) {
+    for (const char* name : {"3/2", "0/2", "2", "1/0", "1/99999999999", "x"}) {
+        const Ran ran = check({"--shard", name, "--no-cache"});
+        EXPECT_EQ(ran.status, 2) << name;
+        EXPECT_THAT(ran.err, HasSubstr("is no share")) << name;
+    }
+    const Ran ran = check({"--format", "shard", "-o", share(1)});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr("--shard I/N"));
+    EXPECT_FALSE(fs::exists(share(1)));
+}
+
+} // namespace
+} // namespace app_test
