@@ -60,7 +60,7 @@ int64_t now() {
 struct ResultStore::State {
     std::string version;
     std::filesystem::path folder; // that the database is for
-    InputAnswers answers;
+    std::shared_ptr<InputAnswers> answers;
     std::mutex mutex; // over all below
     Database database;
     Statement rows_of_key, looks_of_row, rows_of_program, add_program, add_row, add_look, add_link;
@@ -164,9 +164,22 @@ ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
 ResultStore::~ResultStore() = default;
 
 core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version) {
+    return open_as(path, version, Database::Access::read_write, std::make_shared<InputAnswers>());
+}
+
+core::Result<ResultStore> ResultStore::open_to_read(const std::string& path,
+                                                    const std::string& version,
+                                                    std::shared_ptr<InputAnswers> answers) {
+    return open_as(path, version, Database::Access::read_only, std::move(answers));
+}
+
+core::Result<ResultStore> ResultStore::open_as(const std::string& path, const std::string& version,
+                                               Database::Access access,
+                                               std::shared_ptr<InputAnswers> answers) {
     auto state = std::make_unique<State>();
     state->version = version;
-    FEELER_TRY(state->database, open_store_file(path));
+    state->answers = std::move(answers);
+    FEELER_TRY(state->database, open_store_file(path, access));
     std::error_code failure;
     state->folder =
         std::filesystem::weakly_canonical(std::filesystem::absolute(path), failure).parent_path();
@@ -175,18 +188,31 @@ core::Result<ResultStore> ResultStore::open(const std::string& path, const std::
     return ResultStore(std::move(state));
 }
 
-void ResultStore::look_again() { state_->answers.forget(); }
+void ResultStore::look_again() { state_->answers->forget(); }
+
+std::shared_ptr<InputAnswers> ResultStore::answers() const { return state_->answers; }
+
+core::Result<std::vector<std::string>> ResultStore::keys() {
+    const std::lock_guard lock(state_->mutex);
+    FEELER_TRY(Statement all, state_->database.prepare("SELECT DISTINCT key FROM result"));
+    std::vector<std::string> keys;
+    for (bool more = true;;) {
+        FEELER_TRY(more, all.step());
+        if (!more) return keys;
+        keys.push_back(all.text(0));
+    }
+}
 
 core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job) {
     const auto options = options_text(job);
-    const std::string sha256 = state_->answers.content_of(job.program);
+    const std::string sha256 = state_->answers->content_of(job.program);
     if (!options || sha256.empty()) return std::nullopt;
     FEELER_TRY(const std::vector<KeptRow> rows,
                state_->rows(result_key(state_->version, job, sha256, *options)));
     for (const KeptRow& row : rows) {
         const bool is_same =
             std::all_of(row.inputs.begin(), row.inputs.end(),
-                        [&](const InputFile& input) { return state_->answers.is_same(input); });
+                        [&](const InputFile& input) { return state_->answers->is_same(input); });
         if (!is_same || !is_sound(row)) continue;
         if (auto result = result_from_json(row.value)) return *std::move(result);
     }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/database.h"
+#include "app/batch/input_files.h"
 #include "app/batch/program_result.h"
 
 namespace app {
@@ -34,6 +36,20 @@ public:
     /// Errors: io, with the file; unsupported for a database of another program or a newer version.
     static core::Result<ResultStore> open(const std::string& path, const std::string& version);
 
+    /// One that nothing is kept in. Stores that share answers ask the disk once for all of them.
+    ///
+    /// Errors: as open.
+    static core::Result<ResultStore> open_to_read(const std::string& path,
+                                                  const std::string& version,
+                                                  std::shared_ptr<InputAnswers> answers);
+
+    std::shared_ptr<InputAnswers> answers() const;
+
+    /// Under what results are kept: see result_key.
+    ///
+    /// Errors: io, with the database.
+    core::Result<std::vector<std::string>> keys();
+
     /// What the check of this job gave, if it was kept and nothing has changed since; empty if not.
     /// Files are taken to stay as they are while the store is open.
     ///
@@ -57,6 +73,9 @@ public:
 
 private:
     struct State;
+    static core::Result<ResultStore> open_as(const std::string& path, const std::string& version,
+                                             Database::Access access,
+                                             std::shared_ptr<InputAnswers> answers);
     explicit ResultStore(std::unique_ptr<State> state);
 
     std::unique_ptr<State> state_;

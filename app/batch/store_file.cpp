@@ -1,5 +1,6 @@
 #include "app/batch/store_file.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -72,7 +73,7 @@ core::Result<void> make_tables(Database& database) {
     return making.commit();
 }
 
-core::Result<void> settle(Database& database, const std::string& path) {
+core::Result<void> settle(Database& database, const std::string& path, Database::Access access) {
     FEELER_TRY(const int64_t found, database.number("PRAGMA user_version"));
     FEELER_TRY(const int64_t whose, database.number("PRAGMA application_id"));
     FEELER_TRY(const int64_t content, database.number("SELECT count(*) FROM sqlite_schema"));
@@ -83,35 +84,57 @@ core::Result<void> settle(Database& database, const std::string& path) {
             refusal(path, fmt::format("was written by a newer version of Feeler (its format is {}, "
                                       "this version knows {})",
                                       found, format)));
+    if (access == Database::Access::read_only) return {};
     if (auto done = database.run(manners); !done) return tl::unexpected(std::move(done).error());
     return content > 0 ? core::Result<void>{} : make_tables(database);
 }
 
-} // namespace
-
-std::string default_store_path(const std::string& folder) {
-    return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler/results.db").string();
+/// The databases in a folder `.feeler`, sorted.
+std::vector<std::string> stores_in(const std::filesystem::path& folder) {
+    std::vector<std::string> stores;
+    std::error_code failure; // a folder that may not be looked into has none
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("results") && name.ends_with(".db") && entry.is_regular_file(failure))
+            stores.push_back(entry.path().string());
+    }
+    std::sort(stores.begin(), stores.end());
+    return stores;
 }
 
-std::optional<std::string> store_above(const std::string& program) {
+} // namespace
+
+std::string default_store_path(const std::string& folder, const std::optional<ShareName>& share) {
+    const std::string name =
+        share ? fmt::format("results-{}of{}.db", share->i, share->n) : "results.db";
+    return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler" / name).string();
+}
+
+std::vector<std::string> stores_beside(const std::string& path) {
+    std::vector<std::string> stores = stores_in(std::filesystem::path(path).parent_path());
+    std::erase(stores, path);
+    return stores;
+}
+
+std::vector<std::string> stores_above(const std::string& program) {
     std::error_code failure;
     std::filesystem::path folder = std::filesystem::absolute(program, failure).parent_path();
     while (!failure) {
-        const std::string path = default_store_path(folder.string());
-        if (std::filesystem::is_regular_file(path, failure)) return path;
-        failure.clear(); // a folder that may not be looked into has none
-        if (folder == folder.parent_path()) break;
+        std::vector<std::string> stores = stores_in(folder / ".feeler");
+        if (!stores.empty() || folder == folder.parent_path()) return stores;
         folder = folder.parent_path();
     }
-    return std::nullopt;
+    return {};
 }
 
-core::Result<Database> open_store_file(const std::string& path) {
+core::Result<Database> open_store_file(const std::string& path, Database::Access access) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code failure; // which opening the file tells as well
-    if (folder.filename() == ".feeler") std::filesystem::create_directory(folder, failure);
-    FEELER_TRY(Database database, Database::open(path, Database::Access::read_write));
-    if (auto done = settle(database, path); !done) return tl::unexpected(std::move(done).error());
+    if (folder.filename() == ".feeler" && access == Database::Access::read_write)
+        std::filesystem::create_directory(folder, failure);
+    FEELER_TRY(Database database, Database::open(path, access));
+    if (auto done = settle(database, path, access); !done)
+        return tl::unexpected(std::move(done).error());
     return database;
 }
 

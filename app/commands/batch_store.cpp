@@ -15,9 +15,11 @@ std::string place_of_store(const CheckOptions& options) {
     if (!options.cache.empty()) return options.cache;
     std::error_code ignored;
     for (const std::string& word : options.programs) {
-        if (std::filesystem::is_directory(word, ignored)) return default_store_path(word);
+        if (std::filesystem::is_directory(word, ignored))
+            return default_store_path(word, options.share);
         const std::filesystem::path path(word);
-        if (path.extension() == ".toml") return default_store_path(path.parent_path().string());
+        if (path.extension() == ".toml")
+            return default_store_path(path.parent_path().string(), options.share);
     }
     return {};
 }
@@ -29,10 +31,13 @@ BatchStore::BatchStore(const CheckOptions& options) {
     const std::string place = path_.empty() && options.watch ? ":memory:" : path_;
     if (place.empty()) return;
     auto store = ResultStore::open(place, build_version());
-    if (store)
-        store_ = std::make_unique<ResultStore>(*std::move(store));
-    else
+    if (!store) {
         give_up(store.error());
+        return;
+    }
+    store_ = std::make_unique<ResultStore>(*std::move(store));
+    if (options.cache.empty() && !path_.empty())
+        beside_ = std::make_unique<StoresBeside>(place, build_version(), store_->answers());
 }
 
 void BatchStore::give_up(const core::Error& error) {
@@ -47,17 +52,20 @@ void BatchStore::look_again() {
     found_ = 0;
 }
 
+std::optional<ProgramResult> BatchStore::find(const CheckJob& job) {
+    auto found = store_->find(job);
+    if (!found) give_up(found.error());
+    if (found && *found) return *std::move(found);
+    return beside_ ? beside_->find(job) : std::nullopt;
+}
+
 void BatchStore::serve(BatchHooks& hooks) {
     if (!store_) return;
-    hooks.known = [this](const CheckJob& job) -> std::optional<ProgramResult> {
-        auto found = store_->find(job);
-        if (!found) {
-            give_up(found.error());
-            return std::nullopt;
-        }
+    hooks.known = [this](const CheckJob& job) {
+        auto found = find(job);
         const std::scoped_lock lock(guard_);
-        found_ += found->has_value() ? 1 : 0;
-        return *std::move(found);
+        found_ += found ? 1 : 0;
+        return found;
     };
     hooks.keep = [this](const CheckJob& job, const CheckRun& run, const ProgramResult& result) {
         if (auto kept = store_->keep(job, run, result); !kept) give_up(kept.error());

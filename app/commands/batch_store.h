@@ -6,6 +6,7 @@
 
 #include "app/batch/batch_run.h"
 #include "app/batch/result_store.h"
+#include "app/batch/stores_beside.h"
 #include "app/commands/check_options.h"
 
 namespace app {
@@ -15,8 +16,8 @@ namespace app {
 class BatchStore {
 public:
     /// The database that was asked for, else that of the first folder or project file that was
-    /// named; none for files alone. While files are watched there is always one, in memory if
-    /// nowhere else.
+    /// named, with those beside it; none for files alone. While files are watched there is always
+    /// one, in memory if nowhere else.
     explicit BatchStore(const CheckOptions& options);
 
     /// The file of the database; empty if there is none.
@@ -33,8 +34,10 @@ public:
 
 private:
     void give_up(const core::Error& error);
+    std::optional<ProgramResult> find(const CheckJob& job);
 
     std::unique_ptr<ResultStore> store_;
+    std::unique_ptr<StoresBeside> beside_; // null if a database was asked for
     std::mutex guard_;
     bool is_told_ = false;
     size_t found_ = 0;

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -16,28 +18,51 @@ struct Options {
     std::string program, cache, output, format = "text";
 };
 
-core::Result<std::string> place_of_store(const Options& options) {
+core::Result<std::vector<std::string>> places_of_stores(const Options& options) {
     std::error_code failure;
     if (!options.cache.empty()) {
-        if (std::filesystem::exists(options.cache, failure)) return options.cache;
+        if (std::filesystem::exists(options.cache, failure))
+            return std::vector<std::string>{options.cache};
         return tl::unexpected<core::Error>(
             {core::ErrorCode::io, {}, "there is no such file", options.cache});
     }
-    if (auto found = store_above(options.program)) return *found;
+    if (auto found = stores_above(options.program); !found.empty()) return found;
     return core::fail(core::ErrorCode::io,
                       fmt::format("no folder above {} has results (.feeler/results.db): check its "
                                   "folder first, or name a database with --cache",
                                   options.program));
 }
 
+/// All versions, the oldest first. What two databases have, as after another division of a library
+/// among machines, is one version.
+core::Result<std::vector<KeptVersion>> versions_in(const std::vector<std::string>& places,
+                                                   const std::string& program) {
+    std::vector<KeptVersion> all;
+    for (const std::string& place : places) {
+        FEELER_TRY(ResultStore store, ResultStore::open(place, build_version()));
+        FEELER_TRY(std::vector<KeptVersion> versions, store.history(program));
+        std::move(versions.begin(), versions.end(), std::back_inserter(all));
+    }
+    std::stable_sort(all.begin(), all.end(), [](const KeptVersion& a, const KeptVersion& b) {
+        return a.checked_at < b.checked_at;
+    });
+    std::set<std::vector<std::string>> seen;
+    std::erase_if(all, [&](const KeptVersion& version) {
+        return !seen.insert({version.version, version.setup, version.options, version.inputs})
+                    .second;
+    });
+    return all;
+}
+
 core::Result<void> write_history(const Options& options) {
-    FEELER_TRY(const std::string place, place_of_store(options));
-    if (auto safe = check_output(options.output, {options.program, place}); !safe) return safe;
-    FEELER_TRY(ResultStore store, ResultStore::open(place, build_version()));
-    FEELER_TRY(const std::vector<KeptVersion> versions, store.history(options.program));
+    FEELER_TRY(const std::vector<std::string> places, places_of_stores(options));
+    if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
+    for (const std::string& place : places)
+        if (auto safe = check_output(options.output, {place}); !safe) return safe;
+    FEELER_TRY(const std::vector<KeptVersion> versions, versions_in(places, options.program));
     if (versions.empty())
         return core::fail(core::ErrorCode::missing_value,
-                          fmt::format("{} has no results of {}", place, options.program));
+                          fmt::format("{} has no results of {}", places[0], options.program));
     return write_output(options.output, options.format == "json"
                                             ? history_json(options.program, versions)
                                             : history_text(options.program, versions));

@@ -58,5 +58,41 @@ TEST(BatchCache, ThatCannotBeUsedIsToldAndTheCheckGoesOn) {
     EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
 }
 
+TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    const auto check = [&](const std::string& share) {
+        std::vector<std::string> words = {"check", folder.path().string()};
+        if (!share.empty()) words.insert(words.end(), {"--shard", share});
+        return feeler(words);
+    };
+    EXPECT_TRUE(says(check("1/2"), "share 1/2: 2 of 3 programs"));
+    EXPECT_TRUE(says(check("2/2"), "share 2/2: 1 of 3 programs"));
+    EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-1of2.db"));
+    EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-2of2.db"));
+    EXPECT_FALSE(std::filesystem::exists(folder / ".feeler/results.db"));
+    const std::string before = test_support::bytes_of(folder / ".feeler/results-1of2.db");
+    EXPECT_TRUE(says(check("1/2"), "2 of 2 results are those of earlier checks"));
+    EXPECT_TRUE(says(check("2/3"), "1 of 1 results are those of earlier checks"));
+    EXPECT_TRUE(says(check(""), "3 of 3 results are those of earlier checks"));
+    folder.write("b.nc", clear_program + "( changed, and so the largest )\n");
+    EXPECT_TRUE(says(check(""), "2 of 3 results are those of earlier checks"));
+    EXPECT_TRUE(says(check("1/2"), "1 of 1 results are those of earlier checks"));
+    EXPECT_EQ(test_support::bytes_of(folder / ".feeler/results-1of2.db"), before);
+    const auto history = feeler({"history", folder / "b.nc"});
+    EXPECT_TRUE(says(history, "2 versions")) << history.out << history.err;
+}
+
+TEST(BatchCache, BesideThatCannotBeReadIsAsGoodAsNone) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    std::filesystem::create_directory(folder / ".feeler");
+    folder.write(".feeler/results-1of2.db", std::string(5000, 'x'));
+    const auto ran = feeler({"check", folder.path().string()});
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.err, "");
+    EXPECT_TRUE(says(feeler({"check", folder.path().string()}), "3 of 3 results"));
+}
+
 } // namespace
 } // namespace app_test
