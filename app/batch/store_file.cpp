@@ -1,9 +1,10 @@
 #include "app/batch/store_file.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
+
+#include "app/batch/folder_walk.h"
 
 namespace app {
 namespace {
@@ -92,13 +93,13 @@ core::Result<void> settle(Database& database, const std::string& path, Database:
 /// The databases in a folder `.feeler`, sorted.
 std::vector<std::string> stores_in(const std::filesystem::path& folder) {
     std::vector<std::string> stores;
-    std::error_code failure; // a folder that may not be looked into has none
-    for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
-        const std::string name = entry.path().filename().string();
-        if (name.starts_with("results") && name.ends_with(".db") && entry.is_regular_file(failure))
-            stores.push_back(entry.path().string());
+    for (const std::filesystem::path& each : names_in(folder)) {
+        const std::string name = each.string();
+        std::error_code failure;
+        if (name.starts_with("results") && name.ends_with(".db")
+            && std::filesystem::is_regular_file(folder / each, failure))
+            stores.push_back((folder / each).string());
     }
-    std::sort(stores.begin(), stores.end());
     return stores;
 }
 

@@ -64,8 +64,8 @@ struct SharedWork {
     std::vector<size_t> places;           // of the plan's programs among them
 };
 
-SharedWork work_of(const CheckOptions& options, const BatchPlan& whole) {
-    if (!options.share) return {.plan = whole, .programs = {}, .places = {}};
+SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
+    if (!options.share) return {.plan = std::move(whole), .programs = {}, .places = {}};
     SharedWork work{.plan = {}, .programs = planned_programs(whole), .places = {}};
     work.places = places_of(work.programs, *options.share);
     work.plan = plan_of_places(whole, work.places);
@@ -151,11 +151,11 @@ ExitCode failed(const std::vector<core::Error>& errors) {
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
               const std::vector<ReportTarget>& targets, BatchStore& store, const Watch& watch) {
     const Stopwatch time;
-    const auto plan = plan_batch(options.programs, asked);
+    auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
-    const SharedWork work = work_of(options, *plan);
+    const SharedWork work = work_of(options, *std::move(plan));
     if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
     const BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch);

@@ -38,7 +38,8 @@ std::string long_program() {
 std::string without_seconds(std::string text) {
     text = std::regex_replace(text, std::regex("\"seconds\":[^,]*"), "\"seconds\":0");
     text = std::regex_replace(text, std::regex("time=\"[^\"]*\""), "time=\"0\"");
-    text = std::regex_replace(text, std::regex(",[0-9.]+(,[^,]*\r\n)"), ",0$1");
+    text = std::regex_replace(text, std::regex(",[0-9.]+(,(\"([^\"]|\"\")*\"|[^\",\r]*)\r\n)"),
+                              ",0$1");
     text = std::regex_replace(text, std::regex(" in ([0-9]+ min )?[0-9.]+ s: "), " in 0 s: ");
     return std::regex_replace(text, std::regex("  slowest .*\n"), "");
 }

@@ -164,7 +164,7 @@ to_files() { # NAME: options that have every format written
 # Other runs take other times.
 without_seconds() {
     sed -E -e 's/"seconds":[^,]*/"seconds":0/g' -e 's/ time="[^"]*"/ time="0"/g' \
-        -e 's/,[0-9.]+(,[^,]*\r?)$/,0\1/' -e 's/ in ([0-9]+ min )?[0-9.]+ s: / in 0 s: /' -e '/^  slowest /d' "$1"
+        -e 's/,[0-9.]+(,("([^"]|"")*"|[^",]*)\r?)$/,0\1/' -e 's/ in ([0-9]+ min )?[0-9.]+ s: / in 0 s: /' -e '/^  slowest /d' "$1"
 }
 
 start_cluster
