@@ -5,6 +5,7 @@
 #include "app/batch/shard_file.h"
 #include "app/commands/output.h"
 #include "app/report/batch_report.h"
+#include "app/report/html_batch.h"
 #include "app/report/junit_report.h"
 #include "app/report/sarif_report.h"
 
@@ -17,6 +18,7 @@ std::string report_of(const BatchResult& batch, const std::string& format,
     if (format == "json") return batch_json_report(batch);
     if (format == "jsonl") return batch_lines_report(batch);
     if (format == "csv") return batch_csv_report(batch);
+    if (format == "html") return batch_html_report(batch);
     if (format == "junit") return junit_report(batch);
     if (format == "sarif")
         return sarif_report(batch, std::filesystem::current_path(ignored).string());

@@ -178,17 +178,7 @@ ExitCode check(CheckOptions& options) {
     const auto targets = targets_of(options.formats, options.outputs);
     if (!targets) return fail({}, targets.error(), {});
     if (auto fits = check_share(options); !fits) return fail({}, fits.error(), {});
-    if (options.share || !is_one_program(options.programs)) {
-        for (const ReportTarget& target : *targets)
-            if (target.format == "html")
-                return fail({},
-                            {core::ErrorCode::invalid_value,
-                             {},
-                             "--format html tells of one program: name one, or take sarif, "
-                             "junit, json or csv for many"},
-                            {});
-        return check_batch(options, *targets);
-    }
+    if (options.share || !is_one_program(options.programs)) return check_batch(options, *targets);
     options.what.program = options.programs[0];
     std::vector<std::string> told;
     if (!options.watch) return check_one(options, *targets, told);
@@ -201,7 +191,7 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
     command
         .add_option("--format", options.formats,
                     "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
-                    "program of many), html (one program: a page with pictures and a 3D view), "
+                    "program of many), html (a page; of one program with pictures and a 3D view), "
                     "sarif, junit, or shard (for merge); several with an -o each, in their order")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit", "shard"}))

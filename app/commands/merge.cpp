@@ -95,10 +95,10 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
         ->required();
     command
         .add_option("--format", options->formats,
-                    "text, json, jsonl, csv, sarif or junit; several with an -o each, in their "
+                    "text, json, jsonl, csv, html, sarif or junit; several with an -o each, in their "
                     "order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "sarif", "junit"}))
+        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
         ->default_str("text");
     command.add_option("-o,--output", options->outputs, "Write the report to this file")
         ->allow_extra_args(false);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "app/batch/outcome.h"
+#include "app/report/rule_tally.h"
 #include "app/report/text_layout.h"
 
 namespace app {
@@ -12,20 +14,11 @@ namespace {
 
 using core::Severity;
 
-/// What one word says of a program, and the colour of that word.
-struct Outcome {
-    std::string word;
-    int colour; // of ANSI terminals
-};
+constexpr int red = 31, green = 32, yellow = 33; // of ANSI terminals
 
-constexpr int red = 31, green = 32, yellow = 33;
-
-Outcome outcome_of(const ProgramResult& result) {
-    if (result.error) return {result.blocks == 0 ? "not run" : "stopped", red};
-    if (status_of(result) == 0 && result.verdict == core::Verdict::clear) return {"clear", green};
-    if (result.verdict == core::Verdict::clear) return {"errors", red};
-    const bool is_hit = result.verdict == core::Verdict::collision;
-    return {core::name_of(result.verdict), is_hit ? red : yellow};
+int colour_of(Outcome outcome) {
+    if (outcome == Outcome::clear) return green;
+    return outcome == Outcome::undecided || outcome == Outcome::violation ? yellow : red;
 }
 
 std::string coloured(const std::string& text, int colour, const BatchStyle& style) {
@@ -87,37 +80,24 @@ std::string own_error_line(const ProgramResult& result) {
 }
 
 std::string verdicts_text(const BatchResult& batch) {
-    std::map<std::string, size_t> counts;
-    for (const ProgramResult& program : batch.programs) ++counts[outcome_of(program).word];
+    std::array<size_t, all_outcomes.size()> counts{};
+    for (const ProgramResult& program : batch.programs)
+        ++counts[static_cast<size_t>(outcome_of(program))];
+    counts[static_cast<size_t>(Outcome::unchecked)] = batch.unchecked.size();
     std::string text;
-    for (const char* word :
-         {"clear", "collision", "violation", "undecided", "errors", "stopped", "not run"})
-        if (counts[word] > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[word], word);
-    if (!batch.unchecked.empty())
-        text += fmt::format("{}{} not checked", text.empty() ? "" : ", ", batch.unchecked.size());
+    for (const Outcome outcome :
+         {Outcome::clear, Outcome::collision, Outcome::violation, Outcome::undecided,
+          Outcome::errors, Outcome::stopped, Outcome::not_run, Outcome::unchecked})
+        if (const size_t count = counts[static_cast<size_t>(outcome)])
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name_of(outcome));
     return text;
 }
 
 std::string rules_text(const BatchResult& batch) {
-    struct Tally {
-        size_t programs = 0, findings = 0;
-    };
-    std::map<std::pair<int, std::string>, Tally> tallies; // errors first
-    for (const ProgramResult& program : batch.programs) {
-        std::map<std::pair<int, std::string>, size_t> here;
-        for (const KeptFinding& finding : program.findings)
-            ++here[{-static_cast<int>(finding.severity), finding.rule}];
-        for (const auto& [rule, count] : here) {
-            ++tallies[rule].programs;
-            tallies[rule].findings += count;
-        }
-    }
     std::string text;
-    for (const auto& [rule, tally] : tallies)
-        text += fmt::format("  {:<8} {:<26} {:>7} in {}\n",
-                            core::name_of(static_cast<Severity>(-rule.first)), rule.second,
-                            tally.findings, counted(tally.programs, "program"));
+    for (const RuleTally& tally : rule_tallies(batch))
+        text += fmt::format("  {:<8} {:<26} {:>7} in {}\n", core::name_of(tally.severity),
+                            tally.rule, tally.findings, counted(tally.programs, "program"));
     return text;
 }
 
@@ -165,8 +145,8 @@ std::string missing_text(const BatchResult& batch, const BatchStyle& style) {
 std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     if (style.quiet && status_of(result) == 0) return {};
     const Outcome outcome = outcome_of(result);
-    std::string text = coloured(fmt::format("{:<10}", outcome.word), outcome.colour, style) + " "
-                       + trimmed(result.program);
+    const std::string word = fmt::format("{:<10}", name_of(outcome));
+    std::string text = coloured(word, colour_of(outcome), style) + " " + trimmed(result.program);
     const std::string counts = counts_text(result);
     if (!counts.empty()) text += ": " + counts;
     text += "\n";

@@ -1,41 +1,16 @@
 #include "app/report/html_blocks.h"
 
-#include <cmath>
 #include <map>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "app/report/block_rules.h"
+#include "app/report/html_columns.h"
 #include "app/report/html_text.h"
 #include "app/report/text_layout.h"
 
 namespace app {
 namespace {
-
-/// Each different text once, and where it is in the table.
-class TextTable {
-public:
-    int64_t index_of(const std::string& text) {
-        const auto [at, is_new] = known_.try_emplace(text, static_cast<int64_t>(texts_.size()));
-        if (is_new) texts_.push_back(text);
-        return at->second;
-    }
-    std::string json() const { return string_array(texts_); }
-
-private:
-    std::unordered_map<std::string, int64_t> known_;
-    std::vector<std::string> texts_;
-};
-
-/// What is kept, 0 or more, as um that it certainly is.
-int64_t um_below(double mm) {
-    return static_cast<int64_t>(std::floor(1e3 * (mm + core::resolution)));
-}
-
-int64_t um_above(double mm) {
-    return static_cast<int64_t>(std::ceil(1e3 * (mm - core::resolution)));
-}
 
 /// The pairs that decide blocks, with what they must keep.
 class PairTable {
@@ -101,8 +76,6 @@ std::string rules_json(const CheckRun& run) {
     }
     return fmt::format(R"("rules":{},"found":[{}])", names.json(), blocks);
 }
-
-int64_t steps_of(double value, double step) { return std::llround(value / step); }
 
 } // namespace
 

@@ -16,8 +16,7 @@ namespace app {
 namespace {
 
 std::string row(const std::string& name, const std::string& value) {
-    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name),
-                       html_text(value));
+    return fact_row(name, html_text(value));
 }
 
 std::string term(const std::string& name, const std::string& size, const std::string& about) {
@@ -50,6 +49,10 @@ std::optional<double> widest_interval(const CheckRun& run) {
 }
 
 } // namespace
+
+std::string fact_row(const std::string& name, const std::string& html) {
+    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name), html);
+}
 
 std::string html_summary(const CheckRun& run) {
     const auto moving =

@@ -6,6 +6,9 @@
 
 namespace app {
 
+/// A row of a table of facts: a name, and what is HTML already.
+std::string fact_row(const std::string& name, const std::string& html);
+
 /// What is said of a check as a whole, as rows of an HTML table.
 std::string html_summary(const CheckRun& run);
 

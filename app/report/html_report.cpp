@@ -1,7 +1,6 @@
 #include "app/report/html_report.h"
 
 #include <filesystem>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include "app/report/html_blocks.h"
 #include "app/report/html_cards.h"
 #include "app/report/html_facts.h"
+#include "app/report/html_page.h"
 #include "app/report/html_palette.h"
 #include "app/report/html_text.h"
 #include "app/report/text_report.h"
@@ -16,21 +16,6 @@
 
 namespace app {
 namespace {
-
-using Fillings = std::map<std::string, std::string, std::less<>>;
-
-/// The page with each {{name}} replaced. What is filled in is not looked at again.
-std::string filled(std::string_view page, const Fillings& fillings) {
-    std::string text;
-    while (true) {
-        const size_t open = page.find("{{");
-        if (open == page.npos) return text += page;
-        const size_t close = page.find("}}", open);
-        text += page.substr(0, open);
-        text += fillings.at(std::string(page.substr(open + 2, close - open - 2)));
-        page = page.substr(close + 2);
-    }
-}
 
 /// The class by which the page colours the outcome.
 const char* verdict_of(const CheckRun& run) {
@@ -74,22 +59,22 @@ std::string views_json(const ReportViews& views) {
 
 std::string html_report(const CheckRun& run, const ReportViews& views) {
     const PageAssets assets = page_assets();
-    return filled(assets.page, {{"version", version},
-                                {"verdict", verdict_of(run)},
-                                {"outcome", html_text(outcome_text(run))},
-                                {"program", html_text(run.program_file)},
-                                {"name", html_text(name_of_file(run.program_file))},
-                                {"palette", html_palette()},
-                                {"style", std::string(assets.style)},
-                                {"summary", html_summary(run)},
-                                {"notice", notice_of(views)},
-                                {"cards", html_cards(run, views)},
-                                {"terms", html_bound_terms(run)},
-                                {"assumptions", list_of(run.assumptions)},
-                                {"blocks", blocks_json(run)},
-                                {"views", views_json(views)},
-                                {"bundle", std::string(view_bundle())},
-                                {"script", std::string(assets.script)}});
+    return filled_page(assets.page, {{"version", version},
+                                     {"verdict", verdict_of(run)},
+                                     {"outcome", html_text(outcome_text(run))},
+                                     {"program", html_text(run.program_file)},
+                                     {"name", html_text(name_of_file(run.program_file))},
+                                     {"palette", html_palette()},
+                                     {"style", std::string(assets.style)},
+                                     {"summary", html_summary(run)},
+                                     {"notice", notice_of(views)},
+                                     {"cards", html_cards(run, views)},
+                                     {"terms", html_bound_terms(run)},
+                                     {"assumptions", list_of(run.assumptions)},
+                                     {"blocks", blocks_json(run)},
+                                     {"views", views_json(views)},
+                                     {"bundle", std::string(view_bundle())},
+                                     {"script", std::string(assets.script)}});
 }
 
 } // namespace app

@@ -65,31 +65,4 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-void NumberRuns::add(int64_t value) {
-    if (runs_.empty() || runs_.back().value != value) runs_.push_back({value, 0});
-    ++runs_.back().count;
-}
-
-std::string NumberRuns::json() const {
-    std::string text = "[";
-    for (const Run& run : runs_)
-        fmt::format_to(std::back_inserter(text), "{}{},{}", text.size() > 1 ? "," : "", run.value,
-                       run.count);
-    return text += ']';
-}
-
-std::string number_array(std::span<const int64_t> numbers) {
-    std::string text = "[";
-    for (const int64_t number : numbers)
-        fmt::format_to(std::back_inserter(text), "{}{}", text.size() > 1 ? "," : "", number);
-    return text += ']';
-}
-
-std::string string_array(std::span<const std::string> texts) {
-    std::string json = "[";
-    for (const std::string& text : texts)
-        (json += json.size() > 1 ? "," : "") += script_string(text);
-    return json += ']';
-}
-
 } // namespace app

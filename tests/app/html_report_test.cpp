@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/html_blocks.h"
+#include "app/report/html_columns.h"
 #include "app/report/html_report.h"
 #include "app/report/html_text.h"
 

@@ -3,16 +3,14 @@
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { launch, openReport } from "./browser.mjs";
+import { isWide, lightness, runAll, test } from "./harness.mjs";
 
 const folder = process.argv[2];
-const tests = [];
-const test = (name, run) => tests.push({ name, run });
 const report = (name) => `${folder}/${name}.html`;
 
 const eye = (page) => page.locator(".stage").getAttribute("data-view");
 /** Waits until the view has another eye than before. */
 const moved = (page, before) => page.waitForFunction((old) => document.querySelector(".stage").dataset.view !== old, before);
-const isWide = (page) => page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
 const countText = (page) => page.locator("#filter-count").textContent();
 const rowTexts = (page) => page.locator(".grid-row").allTextContents();
 
@@ -24,8 +22,7 @@ for (const colorScheme of ["light", "dark"])
         await page.waitForTimeout(300);
         await page.screenshot({ path: `${folder}/${name}-${colorScheme}-${width}.png`, fullPage: true });
         assert.equal(await isWide(page), false);
-        const lightness = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b));
-        assert.equal(lightness > 384, colorScheme === "light");
+        assert.equal((await lightness(page)) > 384, colorScheme === "light");
         assert.deepEqual(wrong, []);
       });
 
@@ -210,17 +207,4 @@ test("reports are as small as they should be", async () => {
   }
 });
 
-const browser = await launch();
-let failed = 0;
-for (const { name, run } of tests) {
-  try {
-    await run(browser);
-    console.log("ok      " + name);
-  } catch (error) {
-    ++failed;
-    console.log("FAILED  " + name + "\n" + error.message);
-  }
-}
-await browser.close();
-console.log(`${tests.length - failed} passed, ${failed} failed`);
-process.exit(failed > 0 ? 1 : 0);
+await runAll();

@@ -4,26 +4,9 @@
 # skipped.
 set -euo pipefail
 feeler=$1 assets=$2 work=$3
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+# shellcheck source=tests/html/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-skip() {
-    printf 'skipped: %s\n' "$1"
-    exit 77
-}
-for command in chromium node npm; do
-    command -v "$command" >/dev/null || skip "there is no $command"
-done
-mkdir -p "$work"
-cp "$here"/package.json "$here"/package-lock.json "$here"/*.mjs "$work"
-cd "$work"
-timeout 120 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=0 \
-    --fetch-timeout=20000 >npm.log 2>&1 || skip 'npm could not get playwright-core'
-
-make_report() {
-    local status=0
-    "$feeler" check "$@" || status=$?
-    ((status < 2)) || exit 1
-}
 make_report "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/clamped_plate.toml" \
     --format html -o findings.html
 make_report "$assets/programs/PARALLEL.NC" --setup "$assets/setups/parallel.toml" \

@@ -1,9 +1,5 @@
 // The page: joins findings, view, chart and table. A block chosen in one is shown in all.
 
-function dataIn(id) {
-  return JSON.parse(document.getElementById(id).textContent);
-}
-
 function captionOf(blocks, i) {
   const words = ["Block " + i, "line " + lineText(blocks, i), blocks.texts[blocks.text[i]]];
   const clearance = clearanceText(blocks, i);
@@ -55,7 +51,7 @@ function startPage() {
   const chart = new Chart(by("clearance-chart"), blocks, (block) => choose(block), (block) => {
     by("chart-read").textContent = block < 0 ? "" : captionOf(blocks, block);
   });
-  const table = new Table(by("grid"), blocks, (block) => choose(block));
+  const table = new Table(by("grid"), (block) => blockRow(blocks, block), (block) => choose(block));
 
   function choose(block) {
     chart.choose(block);
@@ -92,14 +88,7 @@ function startPage() {
     chart.draw();
     if (view) view.recolor();
   };
-  by("theme").addEventListener("click", () => {
-    const root = document.documentElement, prefersDark = matchMedia("(prefers-color-scheme: dark)").matches;
-    const isDark = root.dataset.theme ? root.dataset.theme === "dark" : prefersDark;
-    root.dataset.theme = isDark ? "light" : "dark";
-    root.style.colorScheme = root.dataset.theme;
-    repaint();
-  });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+  followTheme(by("theme"), repaint);
   addToolTimes(document.querySelector("#tool-times tbody"), blocks);
   filter();
   const first = views.views.find((entry) => view && view.has(entry.block));

@@ -1,0 +1,61 @@
+// Which programs are shown, and in which order.
+
+/** Whether a text has the word, for each text of the batch. */
+function textsWith(programs, word) {
+  programs.lowered ||= programs.texts.map((text) => text.toLowerCase());
+  return programs.lowered.map((text) => text.includes(word));
+}
+
+/** A word as a question about a program: its name, verdict, rules, and all texts of it. */
+function programQuestion(word, programs) {
+  const wanted = word.toLowerCase(), has = (text) => text.toLowerCase().includes(wanted);
+  const texts = textsWith(programs, wanted), rules = programs.findings.rules.map(has);
+  const { starts, message, pair, text, cure } = programs.findings;
+  return (i) => {
+    if (has(programs.path[i]) || has(outcomes[programs.outcome[i]])) return true;
+    if (texts[programs.setup[i]] || texts[programs.dialect[i]] || texts[programs.pair[i]] === true) return true;
+    const failure = programs.failure.get(i);
+    if (failure && texts[failure.message]) return true;
+    if (talliesOf(programs.findings, i).some((tally) => rules[tally.rule])) return true;
+    for (let k = starts[i]; k < starts[i + 1]; ++k)
+      if (texts[message[k]] || texts[pair[k]] || texts[text[k]] || texts[cure[k]]) return true;
+    return false;
+  };
+}
+
+/** The programs that pass: all words; "all", "lost", "bad" or the number of an outcome; a rule, "": any. */
+function passedPrograms(programs, words, outcome, rule) {
+  const questions = words.split(/\s+/).filter(Boolean).map((word) => programQuestion(word, programs));
+  if (outcome === "lost") questions.push((i) => programs.outcome[i] >= firstLost);
+  else if (outcome === "bad") questions.push((i) => programs.errors[i] > 0);
+  else if (outcome !== "all") questions.push((i) => programs.outcome[i] === Number(outcome));
+  if (rule !== "") {
+    const wanted = programs.findings.rules.indexOf(rule);
+    questions.push((i) => talliesOf(programs.findings, i).some((tally) => tally.rule === wanted));
+  }
+  const passed = [];
+  for (let i = 0; i < programs.count; ++i) if (questions.every((question) => question(i))) passed.push(i);
+  return passed;
+}
+
+/** For each program its place among all names, so that 9 comes before 10. */
+function nameRanks(programs) {
+  const { compare } = new Intl.Collator("en", { numeric: true });
+  const ranks = new Int32Array(programs.count);
+  Array.from(programs.path.keys()).sort((a, b) => compare(programs.path[a], programs.path[b]))
+    .forEach((program, rank) => { ranks[program] = rank; });
+  return ranks;
+}
+
+/** What a click on a column asks for first: names from A on, small margins, much of all else. */
+const startsLow = ["program", "margin"];
+
+/** Sorts programs by a column; those of which it says nothing come last. */
+function sortedPrograms(programs, passed, column, isDown) {
+  programs.ranks ||= nameRanks(programs);
+  const keys = column === "program" ? programs.ranks : programs[column], way = isDown ? -1 : 1;
+  return Int32Array.from(passed).sort((a, b) => {
+    const lost = Number(Number.isNaN(keys[a])) - Number(Number.isNaN(keys[b]));
+    return lost || way * (keys[a] - keys[b]) || a - b;
+  });
+}

@@ -1,0 +1,68 @@
+// The programs of a batch and what was found in them, unpacked once.
+
+const outcomes = ["clear", "undecided", "errors", "violation", "collision", "stopped", "not run", "not checked"];
+const firstLost = 5; // from here on a program was not checked to its end
+
+/** For each entry where its part of another column begins, and where the last one ends. */
+function startsOf(counts) {
+  const starts = new Int32Array(counts.length + 1);
+  for (let i = 0; i < counts.length; ++i) starts[i + 1] = starts[i] + counts[i];
+  return starts;
+}
+
+function unpackFindings(data, programs) {
+  const starts = startsOf(unpackRuns(data.count, programs)), count = starts[programs];
+  const runs = (name) => unpackRuns(data[name], count);
+  return {
+    starts,
+    rules: data.rules,
+    kinds: startsOf(unpackRuns(data.kinds, programs)),
+    tally: data.tally,
+    severity: runs("severity"), rule: runs("rule"), file: runs("file"), pair: runs("pair"),
+    message: runs("message"), cure: runs("cure"), shortfall: runs("shortfall"),
+    line: summed(runs("line")), block: summed(runs("block")), text: summed(runs("text")),
+  };
+}
+
+/** What was found in a program, all of it: [{ rule, severity, count }]. */
+function talliesOf(findings, i) {
+  const tallies = [];
+  for (let k = findings.kinds[i]; k < findings.kinds[i + 1]; ++k)
+    tallies.push({ rule: findings.tally[3 * k], severity: findings.tally[3 * k + 1], count: findings.tally[3 * k + 2] });
+  return tallies;
+}
+
+function countsOf(findings, programs, severity) {
+  return Int32Array.from({ length: programs }, (_, i) =>
+    talliesOf(findings, i).reduce((sum, tally) => sum + (tally.severity === severity ? tally.count : 0), 0));
+}
+
+/** Units: um, ms, mm3. `pair` is -1 where nothing came near, `margin` then NaN. */
+function unpackPrograms(data) {
+  const count = data.count, findings = unpackFindings(data.findings, count);
+  const runs = (name) => unpackRuns(data[name], count);
+  const pair = runs("pair");
+  return {
+    ...data,
+    findings,
+    pair,
+    outcome: runs("outcome"), setup: runs("setup"), dialect: runs("dialect"), engine: runs("engine"),
+    margin: Float64Array.from(pair, (index, i) => (index < 0 ? NaN : data.lower[i] - data.keep[i])),
+    errors: countsOf(findings, count, 3),
+    warnings: countsOf(findings, count, 2),
+    notes: countsOf(findings, count, 1),
+    failure: new Map(data.errors.map(([i, file, line, column, message]) => [i, { file, line, column, message }])),
+    assumptions: startsOf(runs("assumptions")),
+  };
+}
+
+/** A path as folder and name, the folder without what all have in common. */
+function partsOf(programs, i) {
+  const path = programs.path[i].slice(programs.folder.length), at = path.lastIndexOf("/") + 1;
+  return { folder: path.slice(0, at), name: path.slice(at) };
+}
+
+/** How an outcome is coloured. */
+function toneOf(outcome) {
+  return outcome >= firstLost ? "lost" : ["clear", "undecided"][outcome] || "";
+}

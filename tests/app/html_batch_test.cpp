@@ -1,0 +1,227 @@
+#include <chrono>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "app/batch/outcome.h"
+#include "app/report/html_batch.h"
+#include "app/report/html_batch_columns.h"
+#include "app/report/html_batch_facts.h"
+#include "app/report/rule_tally.h"
+#include "app/report/skipped_group.h"
+#include "tests/support/large_batch.h"
+
+namespace app {
+namespace {
+
+using core::Severity;
+using nlohmann::json;
+using test_support::large_batch;
+using test_support::one_of_many;
+using testing::HasSubstr;
+using testing::Not;
+
+size_t count_of(const std::string& text, const std::string& part) {
+    size_t count = 0;
+    for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+std::vector<int64_t> unpacked(const json& runs) {
+    std::vector<int64_t> values;
+    for (size_t i = 0; i < runs.size(); i += 2)
+        values.insert(values.end(), runs[i + 1].get<size_t>(), runs[i].get<int64_t>());
+    return values;
+}
+
+std::vector<int64_t> summed(std::vector<int64_t> steps) {
+    for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
+    return steps;
+}
+
+TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
+    ProgramResult program{.verdict = core::Verdict::clear, .blocks = 3};
+    EXPECT_EQ(outcome_of(program), Outcome::clear);
+    program.findings = {{.rule = "no-feed", .severity = Severity::error}};
+    EXPECT_EQ(outcome_of(program), Outcome::errors);
+    program.verdict = core::Verdict::collision;
+    EXPECT_EQ(outcome_of(program), Outcome::collision);
+    program.error = KeptError{.message = "no such code"};
+    EXPECT_EQ(outcome_of(program), Outcome::stopped);
+    program.blocks = 0;
+    EXPECT_EQ(outcome_of(program), Outcome::not_run);
+    for (const Outcome outcome : all_outcomes) EXPECT_STRNE(name_of(outcome), "");
+}
+
+TEST(RuleTally, CountsProgramsAndFindingsErrorsFirst) {
+    BatchResult batch;
+    batch.programs = {{.findings = {{.rule = "b", .severity = Severity::note},
+                                    {.rule = "z", .severity = Severity::error}}},
+                      {.findings = {{.rule = "b", .severity = Severity::note},
+                                    {.rule = "b", .severity = Severity::note},
+                                    {.rule = "b", .severity = Severity::error}}}};
+    EXPECT_EQ(rule_tallies(batch), (std::vector<RuleTally>{{Severity::error, "b", 1, 1},
+                                                           {Severity::error, "z", 1, 1},
+                                                           {Severity::note, "b", 2, 3}}));
+}
+
+TEST(SkippedGroups, HaveTheReasonOfMostFilesFirst) {
+    const auto groups = skipped_groups({{"a", "is empty"}, {"b", "is a mesh"}, {"c", "is a mesh"}});
+    ASSERT_EQ(groups.size(), 2U);
+    EXPECT_EQ(groups[0].why, "is a mesh");
+    EXPECT_EQ(groups[0].files, (std::vector<std::string>{"b", "c"}));
+    EXPECT_EQ(groups[1].files, (std::vector<std::string>{"a"}));
+}
+
+TEST(HtmlBatchColumns, SayWhatTheResultsSay) {
+    BatchResult batch = large_batch(60, 4);
+    batch.unchecked = {"parts/late.nc"};
+    const json data = json::parse(batch_columns_json(batch));
+    ASSERT_EQ(data["count"], 61);
+    EXPECT_EQ(data["folder"], "parts/");
+    const auto outcomes = unpacked(data["outcome"]), setups = unpacked(data["setup"]);
+    const auto pairs = unpacked(data["pair"]);
+    const json& texts = data["texts"];
+    for (size_t i = 0; i < 60; ++i) {
+        const ProgramResult& program = batch.programs[i];
+        EXPECT_EQ(data["path"][i], program.program);
+        EXPECT_EQ(data["sha256"][i], program.sha256);
+        EXPECT_EQ(outcomes[i], static_cast<int64_t>(outcome_of(program)));
+        EXPECT_EQ(texts[static_cast<size_t>(setups[i])], program.setup);
+        EXPECT_EQ(texts[static_cast<size_t>(pairs[i])], "holder / clamp-1");
+        EXPECT_EQ(data["blocks"][i], program.blocks);
+        EXPECT_EQ(data["keep"][i], 2000);
+        EXPECT_EQ(data["width"][i], -1);
+        EXPECT_NEAR(data["lower"][i].get<double>(), 1e3 * program.tightest->lower, 1.0);
+        EXPECT_LE(data["lower"][i].get<double>(), 1e3 * program.tightest->lower + 0.002);
+        EXPECT_NEAR(data["cycle"][i].get<double>(), 1e3 * program.cycle_time, 0.5);
+    }
+    EXPECT_EQ(outcomes[60], static_cast<int64_t>(Outcome::unchecked));
+    EXPECT_EQ(pairs[60], -1);
+    EXPECT_EQ(data["errors"].size(), 2U);
+    EXPECT_EQ(texts[data["errors"][1][4].get<size_t>()], "G999: no such code");
+}
+
+TEST(HtmlBatchColumns, HoldEveryFindingTheWorstFirst) {
+    const BatchResult batch = large_batch(20, 7);
+    const json data = json::parse(batch_columns_json(batch)), &found = data["findings"];
+    const auto counts = unpacked(found["count"]), severities = unpacked(found["severity"]);
+    const auto lines = summed(unpacked(found["line"])), texts = summed(unpacked(found["text"]));
+    const auto messages = unpacked(found["message"]);
+    size_t at = 0;
+    for (size_t i = 0; i < batch.programs.size(); ++i) {
+        auto findings = batch.programs[i].findings;
+        ASSERT_EQ(counts[i], static_cast<int64_t>(findings.size()));
+        std::stable_sort(findings.begin(), findings.end(),
+                         [](const auto& a, const auto& b) { return a.severity > b.severity; });
+        for (const KeptFinding& finding : findings) {
+            EXPECT_EQ(severities[at], static_cast<int64_t>(finding.severity));
+            EXPECT_EQ(lines[at], finding.line);
+            EXPECT_EQ(data["texts"][static_cast<size_t>(texts[at])], finding.text);
+            EXPECT_EQ(data["texts"][static_cast<size_t>(messages[at])], finding.message);
+            ++at;
+        }
+    }
+}
+
+TEST(HtmlBatchColumns, CountAllFindingsWhereThereAreTooMany) {
+    const BatchResult batch = large_batch(3, 2500);
+    const json data = json::parse(batch_columns_json(batch)), &found = data["findings"];
+    EXPECT_EQ(unpacked(found["count"]), (std::vector<int64_t>{1000, 1000, 1000}));
+    EXPECT_EQ(unpacked(found["severity"])[0], 3) << "the worst are those that stay";
+    int64_t all = 0;
+    for (size_t k = 2; k < found["tally"].size(); k += 3) all += found["tally"][k].get<int64_t>();
+    EXPECT_EQ(all, 3 * 2500);
+}
+
+TEST(HtmlBatch, SaysFirstWhatIsMissing) {
+    BatchResult batch = large_batch(3, 1);
+    batch.unchecked = {"parts/order 9/late.nc"};
+    EXPECT_EQ(batch_outcome_text(batch), "2 of 4 programs not checked to the end");
+    const std::string page = batch_html_report(batch);
+    const size_t missing = page.find("class=\"missing\""), tiles = page.find("class=\"tiles\"");
+    ASSERT_NE(missing, page.npos);
+    EXPECT_LT(missing, tiles);
+    EXPECT_THAT(page, HasSubstr("<b>1 of 4 programs not checked:</b>"));
+    EXPECT_THAT(page, HasSubstr("<li>order 9/late.nc</li>"));
+    EXPECT_THAT(page, HasSubstr("order 0/part 0.nc: G999: no such code"));
+}
+
+TEST(HtmlBatch, SaysNothingOfMissingOnesWhereAllAreThere) {
+    BatchResult batch;
+    batch.programs = {one_of_many(4, 0)};
+    EXPECT_EQ(batch_outcome_text(batch), "1 program: all clear");
+    EXPECT_STREQ(batch_outcome_class(batch), "clear");
+    EXPECT_THAT(batch_html_report(batch), Not(HasSubstr("class=\"missing\"")));
+    batch.programs.push_back(one_of_many(5, 0)); // undecided
+    EXPECT_STREQ(batch_outcome_class(batch), "undecided");
+    batch.programs[0].findings = {{.rule = "no-feed", .severity = Severity::error}};
+    EXPECT_EQ(batch_outcome_text(batch), "1 of 2 programs has errors");
+}
+
+TEST(HtmlBatch, NamesTheProgramWithTheLeastMargin) {
+    BatchResult batch = large_batch(9, 0);
+    batch.programs[7].tightest->lower = 0.9;
+    batch.programs[7].tightest->allowance = 5.0; // 4.1 mm too near, more than any other
+    EXPECT_THAT(html_batch_summary(batch),
+                HasSubstr("data-program=\"7\">order 7/part 7.nc, line 5</button>"));
+}
+
+TEST(HtmlBatch, CountsSkippedFilesByTheirReason) {
+    BatchResult batch = large_batch(1, 0);
+    for (size_t i = 0; i < 100'000; ++i)
+        batch.skipped.push_back({fmt::format("notes <{}>.txt", i), "is a document"});
+    const std::string html = html_skipped(batch);
+    EXPECT_THAT(html, HasSubstr("100000 files: is a document"));
+    EXPECT_THAT(html, HasSubstr("notes &lt;7&gt;.txt"));
+    EXPECT_THAT(html, HasSubstr("and 99800 more"));
+    EXPECT_LT(html.size(), 20'000U);
+}
+
+TEST(HtmlBatch, HoldsNamesAndTextsAsTextOnly) {
+    const BatchResult plain = large_batch(2, 2);
+    BatchResult batch = plain;
+    const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a'>\"{{rules}}"
+                             "\xFF\xC3\xA4\x01\xE2\x82";
+    batch.programs[0].program = evil;
+    batch.programs[0].setup = evil;
+    batch.programs[0].dialect = evil;
+    batch.programs[0].error = KeptError{evil, 1, 1, evil};
+    batch.programs[1].findings[0] = {
+        .rule = evil, .text = evil, .message = evil, .cure = evil, .pair = {evil, evil}};
+    batch.programs[1].assumptions = {evil};
+    batch.programs[1].tightest->pair = {evil, evil};
+    batch.unchecked = {evil};
+    batch.skipped = {{evil, evil}};
+    const std::string page = batch_html_report(batch), before = batch_html_report(plain);
+    for (const char* tag : {"<script", "</script", "<img", "<!--"})
+        EXPECT_EQ(count_of(page, tag), count_of(before, tag)) << tag;
+    EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(1)"));
+    const size_t begin = page.find("id=\"batch-data\">") + 16;
+    const json data = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    EXPECT_THAT(data["path"][0].get<std::string>(), HasSubstr("</script><script>alert(1)"));
+}
+
+TEST(HtmlBatch, AsksForNothingFromOutside) {
+    const std::string page = batch_html_report(large_batch(2, 1));
+    EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+    for (const char* way : {"src=\"http", "href=\"http", "@import", "fetch("})
+        EXPECT_THAT(page, Not(HasSubstr(way)));
+}
+
+TEST(HtmlBatch, StaysSmallAndQuickForTenThousandPrograms) {
+    for (const size_t findings : {8, 100}) {
+        const BatchResult batch = large_batch(10'000, findings);
+        const auto begin = std::chrono::steady_clock::now();
+        const std::string page = batch_html_report(batch);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        EXPECT_LT(page.size(), 20'000'000U) << findings;
+        EXPECT_LT(took.count(), 3.0) << findings;
+        RecordProperty(fmt::format("bytes-{}", findings), static_cast<int>(page.size()));
+        RecordProperty(fmt::format("ms-{}", findings), static_cast<int>(1e3 * took.count()));
+    }
+}
+
+} // namespace
+} // namespace app

@@ -1,0 +1,183 @@
+// What a person does with the page of many programs. Argument: the folder with the pages; pictures go
+// there.
+
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { openReport } from "./browser.mjs";
+import { isWide, lightness, runAll, test } from "./harness.mjs";
+
+const folder = process.argv[2];
+const report = (name) => `${folder}/${name}.html`;
+
+const countText = (page) => page.locator("#filter-count").textContent();
+const rowTexts = (page) => page.locator(".grid-row").allTextContents();
+const cells = (page, column) => page.locator(`.grid-row > span:nth-child(${column})`).allTextContents();
+const sortBy = (page, name) => page.locator(".grid-head").getByText(name, { exact: true }).click();
+const openProgram = (page, name) => page.locator(".grid-row", { hasText: name }).first().click();
+
+for (const colorScheme of ["light", "dark"])
+  for (const width of [1400, 400])
+    for (const name of ["shop", "good"])
+      test(`${name}, ${colorScheme}, ${width} px wide: opens without an error or a request, nothing sticks out`, async (browser) => {
+        const { page, wrong } = await openReport(browser, report(name), { width, colorScheme });
+        await page.screenshot({ path: `${folder}/batch-${name}-${colorScheme}-${width}.png`, fullPage: true });
+        assert.equal(await isWide(page), false);
+        await page.locator(".grid-row").first().click();
+        assert.equal(await page.locator("#program").isVisible(), true);
+        assert.equal(await isWide(page), false);
+        await page.screenshot({ path: `${folder}/batch-${name}-${colorScheme}-${width}-open.png`, fullPage: true });
+        assert.equal((await lightness(page)) > 384, colorScheme === "light");
+        assert.deepEqual(wrong, []);
+      });
+
+test("what is missing is said before all else, and a click shows it", async (browser) => {
+  const { page } = await openReport(browser, report("shop"));
+  assert.equal(await page.title(), "1 of 6 programs not checked to the end");
+  assert.match(await page.locator(".missing").textContent(), /1 of 6 programs could not be run to the end.*G999/s);
+  const tops = await page.evaluate(() => [".missing", ".tiles", "#grid"].map((name) => document.querySelector(name).getBoundingClientRect().top));
+  assert.deepEqual(tops, [...tops].sort((a, b) => a - b));
+  await page.locator(".missing button").click();
+  assert.equal(await countText(page), "1 of 6 programs");
+});
+
+test("the worst program stands first, columns sort both ways", async (browser) => {
+  const { page } = await openReport(browser, report("shop"));
+  const names = async () => (await cells(page, 1)).map((text) => text.trim().split(" vise/")[0].split(" air/")[0]);
+  assert.deepEqual((await cells(page, 2)).slice(0, 3), ["stopped", "collision", "collision"]);
+  await sortBy(page, "Program");
+  const up = await names();
+  assert.ok(up.indexOf("part 9.nc") < up.indexOf("part 10.nc"), up.join());
+  await sortBy(page, "Program");
+  assert.deepEqual(await names(), [...up].reverse());
+  await sortBy(page, "Errors");
+  const errors = (await cells(page, 5)).map(Number);
+  assert.deepEqual(errors, [...errors].sort((a, b) => b - a));
+  assert.ok(errors[0] > errors[5]);
+  await sortBy(page, "Margin mm");
+  const margins = (await cells(page, 3)).filter(Boolean).map((text) => Number(text.replace("\u2265 ", "")));
+  assert.deepEqual(margins, [...margins].sort((a, b) => a - b));
+  assert.ok(margins[0] < 0);
+  assert.equal(await page.locator('[aria-sort="ascending"]').textContent(), "Margin mm");
+});
+
+test("words, verdict and rule filter, and a click on a rule or a number does", async (browser) => {
+  const { page, wrong } = await openReport(browser, report("shop"));
+  assert.equal(await countText(page), "6 of 6 programs");
+  for (const [words, count] of [["part 10", 1], ["geh\u00e4use", 1], ["strap-2", 2], ["G999", 1], ["collision strap-1", 2], ["no such words", 0], ["", 6]]) {
+    await page.locator("#filter-text").fill(words);
+    assert.equal(await countText(page), `${count} of 6 programs`, words);
+  }
+  await page.locator("#filter-outcome").selectOption("bad");
+  assert.equal(await countText(page), "2 of 6 programs");
+  await page.locator("#filter-none").click();
+  await page.locator('[data-rule="rapid-near-clamp"], [data-rule="collision"]').first().click();
+  const rule = await page.locator("#filter-rule").inputValue();
+  assert.ok(["rapid-near-clamp", "collision"].includes(rule));
+  assert.equal(await countText(page), "2 of 6 programs");
+  await page.locator(`[data-rule="${rule}"]`).first().click();
+  assert.equal(await countText(page), "6 of 6 programs");
+  const tile = page.locator(".tile", { hasText: "collision" });
+  await tile.click();
+  assert.equal(await countText(page), "2 of 6 programs");
+  assert.equal(await tile.getAttribute("aria-pressed"), "true");
+  assert.deepEqual(wrong, []);
+});
+
+test("a program opens to its findings, facts, assumptions and the command for its own page", async (browser) => {
+  const { page, wrong } = await openReport(browser, report("shop"), { permissions: ["clipboard-read", "clipboard-write"] });
+  await openProgram(page, "it's");
+  const program = page.locator("#program");
+  assert.match(await program.locator("h3").first().textContent(), /^it's "50%" & \$HOME\.nc$/);
+  const text = await program.textContent();
+  for (const part of ["strap-1", "line ", "Cure: ", "clamped_plate.toml", "assumptions", "mm to keep"])
+    assert.ok(text.includes(part), part);
+  assert.ok((await program.locator(".card.error").count()) >= 1);
+  assert.match(await program.locator(".card code").first().textContent(), /[GXYZ]/);
+  const command = await program.locator(".command code").textContent();
+  assert.match(command, /^feeler check 'shop\/vise\/Geh\u00e4use <i>\/it'\\''s "50%" & \$HOME\.nc' --setup \S+clamped_plate\.toml .*--format html -o /);
+  await program.locator(".command button").click();
+  await program.getByText("Copied").waitFor();
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), command);
+  await page.keyboard.press("Escape");
+  assert.equal(await program.isVisible(), false);
+  await openProgram(page, "alert");
+  assert.match(await program.textContent(), /line 4, column 1: G999/);
+  assert.equal(await page.locator(".grid-row.chosen").count(), 1);
+  assert.deepEqual(wrong, []);
+});
+
+test("the keyboard alone opens programs one after the other", async (browser) => {
+  const { page } = await openReport(browser, report("shop"));
+  await page.locator("#grid").focus();
+  await page.keyboard.press("ArrowDown");
+  const first = await page.locator("#program h3").first().textContent();
+  await page.keyboard.press("ArrowDown");
+  assert.notEqual(await page.locator("#program h3").first().textContent(), first);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("#program").isVisible(), false);
+  await page.locator('[data-sort="blocks"]').focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.locator('[aria-sort="descending"]').textContent(), "Blocks");
+});
+
+test("the program with the least margin is a click away, and the theme is", async (browser) => {
+  const { page } = await openReport(browser, report("shop"));
+  await page.locator("#summary .link").click();
+  assert.match(await page.locator("#program").textContent(), /collision/);
+  const before = await lightness(page);
+  await page.locator("#theme").click();
+  assert.ok((await lightness(page)) < before - 300);
+});
+
+test("it prints on white paper, with the table whole and what is wrong with each program", async (browser) => {
+  const { page } = await openReport(browser, report("shop"), { colorScheme: "dark" });
+  await page.pdf({ path: `${folder}/shop.pdf`, format: "A4" });
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print" });
+  assert.equal(await lightness(page), 3 * 255);
+  assert.equal(await page.locator("#printed .program").count(), 3);
+  const grid = await page.locator("#grid").boundingBox(), printed = await page.locator("#printed").boundingBox();
+  const last = await page.locator(".grid-row").last().boundingBox();
+  assert.ok(last.y + last.height <= grid.y + grid.height + 1 && grid.y + grid.height <= printed.y + 1);
+});
+
+test("ten thousand programs open at once, scroll, sort and filter without waiting", async (browser) => {
+  const begin = Date.now();
+  const { page, wrong } = await openReport(browser, report("large"));
+  const opened = Date.now() - begin;
+  assert.ok(statSync(report("large")).size < 20e6);
+  assert.ok(opened < 5000, `opened in ${opened} ms`);
+  assert.equal(await countText(page), "10001 of 10001 programs");
+  assert.ok((await rowTexts(page)).length < 60);
+  assert.match((await rowTexts(page))[0], /never\.nc.*not checked/);
+  const took = await page.evaluate(async () => {
+    const times = {}, grid = document.getElementById("grid"), words = document.getElementById("filter-text");
+    const time = async (name, act) => {
+      const start = performance.now();
+      act();
+      await new Promise((done) => requestAnimationFrame(done));
+      times[name] = performance.now() - start;
+    };
+    for (const name of ["program", "margin", "errors"]) await time(name, () => document.querySelector(`[data-sort="${name}"]`).click());
+    for (const text of ["h", "holder comes", "clamp-3 part 77"]) await time(text, () => {
+      words.value = text;
+      words.dispatchEvent(new Event("input"));
+    });
+    words.value = "";
+    words.dispatchEvent(new Event("input"));
+    for (let i = 0; i <= 40; ++i) await time("scroll " + i, () => { grid.scrollTop = (i / 40) * grid.scrollHeight; });
+    return times;
+  });
+  for (const [name, ms] of Object.entries(took)) assert.ok(ms < (name.startsWith("scroll") ? 250 : 1500), `${name} took ${ms} ms`);
+  await page.locator("#filter-text").fill("part-no-9999");
+  assert.equal(await countText(page), "0 of 10001 programs");
+  await page.locator("#filter-text").fill("9999.nc");
+  assert.equal(await countText(page), "1 of 10001 programs");
+  await page.locator(".grid-row").first().click();
+  assert.equal(await page.locator("#program h3").first().textContent(), "part 9999.nc");
+  await page.screenshot({ path: `${folder}/batch-large.png` });
+  console.log(`    opened in ${opened} ms, slowest sort or filter ${Math.max(...Object.values(took)).toFixed(0)} ms`);
+  assert.deepEqual(wrong, []);
+});
+
+await runAll();

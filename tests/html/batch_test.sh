@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The page of many programs in headless Chromium. Arguments: the program feeler, the one that writes a
+# large page, the folder of assets, a folder to work in (pages and pictures are kept there). Skipped
+# where there is no Chromium, node or npm's packages.
+set -euo pipefail
+feeler=$1 large_page=$2 assets=$3 work=$4
+# shellcheck source=tests/html/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+# A shop with programs of every kind, with names that a browser must not take for more than text.
+rm -rf shop
+mkdir -p "shop/vise/Gehäuse <i>" shop/broken shop/air
+cp "$assets/programs/clamped_plate_low.nc" shop/vise/
+cp "$assets/programs/clamped_plate_low.nc" "shop/vise/Gehäuse <i>/it's \"50%\" & \$HOME.nc"
+cp "$assets/programs/clamped_plate.nc" "shop/vise/part 9.nc"
+cp "$assets/programs/clamped_plate.nc" "shop/vise/part 10.nc"
+printf '%%\nO7\nG21 G90 G54\nG999 X1.\nM30\n%%\n' >"shop/broken/<script>alert(1).nc"
+cp "$assets/programs/PARALLEL.NC" shop/air/
+printf 'notes\nof the shop\n' >'shop/<notes>.md'
+cat >shop/feeler.toml <<END
+[[program]]
+files = "."
+[[program]]
+files = "vise/**/*.nc"
+setup = "$assets/setups/clamped_plate.toml"
+END
+status=0
+"$feeler" check shop --no-cache --format html -o shop.html || status=$?
+((status == 2)) || exit 1 # one of them cannot be run to its end
+"$feeler" check "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
+    --setup "$assets/setups/clamped_plate.toml"
+"$large_page" large.html
+
+exec node batch_test.mjs "$work"
