@@ -4,8 +4,10 @@
 # where there is no Chromium, node or npm's packages.
 set -euo pipefail
 feeler=$1 large_page=$2 assets=$3 work=$4
-# shellcheck source=tests/html/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# shellcheck source=tests/support/npm_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../support/npm_test.sh"
+need chromium node npm
+install_packages
 
 # A shop with programs of every kind, with names that a browser must not take for more than text.
 rm -rf shop
@@ -24,10 +26,8 @@ files = "."
 files = "vise/**/*.nc"
 setup = "$assets/setups/clamped_plate.toml"
 END
-status=0
-"$feeler" check shop --no-cache --format html -o shop.html || status=$?
-((status == 2)) || exit 1 # one of them cannot be run to its end
-"$feeler" check "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
+make_report 2 shop --no-cache --format html -o shop.html # one of them cannot be run to its end
+make_report 0 "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
     --setup "$assets/setups/clamped_plate.toml"
 "$large_page" large.html
 

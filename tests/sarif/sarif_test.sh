@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Real SARIF files against the published schema. Arguments: the program feeler, the one that writes
+# batches no shell could make, the folder of assets, a folder to work in. Skipped where there is no
+# node or npm's packages.
+set -euo pipefail
+feeler=$1 odd_batches=$2 assets=$3 work=$4
+# shellcheck source=tests/support/npm_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../support/npm_test.sh"
+need node npm
+install_packages
+rm -f ./*.sarif
+
+make_report 1 "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/clamped_plate.toml" \
+    --format sarif -o findings.sarif
+make_report 0 "$assets/programs/clamped_plate.nc" --setup "$assets/setups/clamped_plate.toml" \
+    --format sarif -o clear.sarif
+printf '%%\nO7\nG21 G90 G54\nG999 X1.\nM30\n%%\n' >broken.nc
+make_report 2 broken.nc --format sarif -o broken.sarif
+make_report 2 nowhere.nc --format sarif -o nowhere.sarif
+
+# A batch with names that are no URIs as they stand: blanks, UTF-8, bytes that are none, signs.
+rm -rf shop
+mkdir -p "shop/Gehäuse 50%"
+cp "$assets/programs/clamped_plate_low.nc" "shop/Gehäuse 50%/it's [\"a\"] #1?.nc"
+cp "$assets/programs/clamped_plate_low.nc" $'shop/\xe4\xff:<b>.nc'
+cp broken.nc 'shop/C:\broken^`{|}.nc'
+printf 'notes\n' >'shop/more notes.md'
+make_report 2 shop --setup "$assets/setups/clamped_plate.toml" --no-cache --format sarif -o shop.sarif
+"$odd_batches" .
+
+exec node sarif_test.mjs ./*.sarif
