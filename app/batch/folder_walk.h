@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// A file or folder that was passed over, and why: as it ends "skipped: ...".
+/// A file or folder that was passed over, and why: as it ends "skipped: FILE: ...".
 struct SkippedFile {
     std::string path, why;
 

@@ -7,6 +7,7 @@
 
 #include "app/batch/outcome.h"
 #include "app/report/rule_tally.h"
+#include "app/report/skipped_group.h"
 #include "app/report/text_layout.h"
 
 namespace app {
@@ -127,17 +128,31 @@ std::string list_text(const std::vector<std::string>& lines, const BatchStyle& s
     return text;
 }
 
+/// A line for each file that was skipped, or for each reason that many files share.
+std::vector<std::string> skipped_lines(const BatchResult& batch, const BatchStyle& style) {
+    constexpr size_t few = 3;
+    std::vector<std::string> lines;
+    for (const SkippedGroup& group : skipped_groups(batch.skipped)) {
+        const size_t count = group.files.size();
+        const bool each = style.verbose || count <= few;
+        if (!each)
+            lines.push_back(fmt::format("skipped: {} files, such as {}: {}", count,
+                                        trimmed(group.files[0]), group.why));
+        for (size_t i = 0; each && i < count; ++i)
+            lines.push_back(fmt::format("skipped: {}: {}", trimmed(group.files[i]), group.why));
+    }
+    return lines;
+}
+
 /// Programs that were not run to their end, and why; those that were not checked; what was skipped.
 std::string missing_text(const BatchResult& batch, const BatchStyle& style) {
-    std::vector<std::string> stopped, unchecked, skipped;
+    std::vector<std::string> stopped, unchecked;
     for (const ProgramResult& program : batch.programs)
         if (program.error) stopped.push_back("not run to its end: " + error_line(program));
     for (const std::string& program : batch.unchecked)
         unchecked.push_back("not checked: " + trimmed(program));
-    for (const SkippedFile& file : batch.skipped)
-        skipped.push_back(fmt::format("skipped: {} {}", trimmed(file.path), file.why));
     return list_text(stopped, style) + list_text(unchecked, style)
-           + (style.quiet ? std::string() : list_text(skipped, style));
+           + (style.quiet ? std::string() : list_text(skipped_lines(batch, style), style));
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 
 #include "app/batch/block_text.h"
 #include "app/report/rule_help.h"
+#include "app/report/skipped_group.h"
 #include "app/session/digest.h"
 #include "app/version.h"
 #include "core/sim/rule_table.h"
@@ -111,6 +112,23 @@ Json notification_json(const std::string& level, const std::string& text, const 
         {"level", level}, {"message", {{"text", text}}}, {"locations", Json::array({location})}};
 }
 
+/// A note for each file that was skipped; one for all of many that were for the same reason, as
+/// code hosts refuse what is too long.
+void add_skipped(Json& notes, const std::vector<SkippedFile>& skipped) {
+    constexpr size_t few = 100;
+    for (const SkippedGroup& group : skipped_groups(skipped)) {
+        const size_t count = group.files.size();
+        const bool each = count <= few;
+        if (!each)
+            notes.push_back(notification_json(
+                "note", fmt::format("this and {} more were skipped: {}", count - 1, group.why),
+                location_json(group.files[0], 1, 1)));
+        for (size_t i = 0; each && i < count; ++i)
+            notes.push_back(notification_json("note", "was skipped: " + group.why,
+                                              location_json(group.files[i], 1, 1)));
+    }
+}
+
 Json invocation_json(const BatchResult& batch) {
     Json notes = Json::array();
     for (const ProgramResult& program : batch.programs)
@@ -124,9 +142,7 @@ Json invocation_json(const BatchResult& batch) {
     for (const std::string& program : batch.unchecked)
         notes.push_back(
             notification_json("error", "was not checked", location_json(program, 1, 1)));
-    for (const SkippedFile& file : batch.skipped)
-        notes.push_back(notification_json("note", "was skipped: it " + file.why,
-                                          location_json(file.path, 1, 1)));
+    add_skipped(notes, batch.skipped);
     return {{"executionSuccessful", status_of(batch) != 2},
             {"exitCode", status_of(batch)},
             {"toolExecutionNotifications", notes}};

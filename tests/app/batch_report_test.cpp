@@ -233,6 +233,28 @@ TEST(BatchText, TellsOfErrorsAndWithVerboseOfAll) {
     EXPECT_THAT(quiet, HasSubstr("not checked: late.nc"));
 }
 
+TEST(BatchText, CountsFilesThatWereSkippedForOneReason) {
+    BatchResult batch = batch_of_all_kinds();
+    for (const char* name : {"a.png", "b.png", "c.png", "d.png"})
+        batch.skipped.push_back({name, "is a picture or a film"});
+    const std::string brief = batch_text(batch, {}), whole = batch_text(batch, {.verbose = true});
+    EXPECT_THAT(brief, HasSubstr("skipped: 4 files, such as a.png: is a picture or a film"));
+    EXPECT_THAT(brief, HasSubstr("skipped: notes.txt: most of its lines"));
+    EXPECT_THAT(brief, Not(HasSubstr("b.png")));
+    EXPECT_THAT(whole, HasSubstr("skipped: d.png: is a picture or a film"));
+}
+
+TEST(Sarif, CountsSkippedFilesWhereTheyAreMany) {
+    BatchResult batch;
+    for (int i = 0; i < 1000; ++i)
+        batch.skipped.push_back({std::to_string(i) + ".png", "is a picture or a film"});
+    const json notes = json::parse(
+        sarif_report(batch, "/"))["runs"][0]["invocations"][0]["toolExecutionNotifications"];
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(notes[0]["message"]["text"],
+              "this and 999 more were skipped: is a picture or a film");
+}
+
 TEST(BatchText, IsColouredOnlyWhenAsked) {
     const ProgramResult bad = batch_of_all_kinds().programs[1];
     EXPECT_THAT(program_text(bad, {}), Not(HasSubstr("\033")));

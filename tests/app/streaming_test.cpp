@@ -2,17 +2,17 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/app/checked.h"
+#include "tests/support/usage.h"
 
 namespace app_test {
 namespace {
 
 using test_support::Ran;
 using test_support::ScopedFolder;
+using test_support::Usage;
+using test_support::usage_of;
 
 constexpr int many = 300000;
 
@@ -28,29 +28,16 @@ std::string long_program(const ScopedFolder& folder, int count, const std::strin
     return path;
 }
 
-/// The most memory that `feeler trace` had at one time, in KiB, with its status.
-struct Peak {
-    int status = -1;
-    long kib = 0;
-};
-
-Peak peak_of(const std::string& program, const std::string& output) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::execl(FEELER_BINARY, FEELER_BINARY, "trace", program.c_str(), "--dialect", "fanuc",
-                "--format", "jsonl", "-o", output.c_str(), nullptr);
-        ::_exit(127);
-    }
-    int status = 0;
-    struct rusage usage = {};
-    ::wait4(child, &status, 0, &usage);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, usage.ru_maxrss};
+Usage trace(const std::string& program, const std::string& output) {
+    return usage_of(
+        {FEELER_BINARY, "trace", program, "--dialect", "fanuc", "--format", "jsonl", "-o", output},
+        "/dev/null");
 }
 
 TEST(Streaming, NeedsNoMoreMemoryForALongProgram) {
     const ScopedFolder folder;
-    const Peak shorter = peak_of(long_program(folder, 60000), folder / "short.jsonl");
-    const Peak longer = peak_of(long_program(folder, many), folder / "long.jsonl");
+    const Usage shorter = trace(long_program(folder, 60000), folder / "short.jsonl");
+    const Usage longer = trace(long_program(folder, many), folder / "long.jsonl");
     ASSERT_EQ(shorter.status, 0);
     ASSERT_EQ(longer.status, 0);
     EXPECT_LT(longer.kib, shorter.kib + 1024);
