@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 using Words = std::vector<std::string>;
 
-const Words formats = {"text", "json", "jsonl", "csv", "junit", "sarif"};
+const Words formats = {"text", "json", "jsonl", "csv", "html", "junit", "sarif"};
 
 std::string fine(const std::string& y = "50.") {
     return program({"X-20. Y" + y, "Z-3.", "G1 X120. F500.", "G0 Z60."});
