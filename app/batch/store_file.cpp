@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/folder_walk.h"
+#include "gcode/program_folder.h"
 
 namespace app {
 namespace {
@@ -93,12 +93,11 @@ core::Result<void> settle(Database& database, const std::string& path, Database:
 /// The databases in a folder `.feeler`, sorted.
 std::vector<std::string> stores_in(const std::filesystem::path& folder) {
     std::vector<std::string> stores;
-    for (const std::filesystem::path& each : names_in(folder)) {
-        const std::string name = each.string();
+    for (const std::string& name : gcode::names_in(folder.empty() ? "." : folder)) {
         std::error_code failure;
         if (name.starts_with("results") && name.ends_with(".db")
-            && std::filesystem::is_regular_file(folder / each, failure))
-            stores.push_back((folder / each).string());
+            && std::filesystem::is_regular_file(folder / name, failure))
+            stores.push_back((folder / name).string());
     }
     return stores;
 }
