@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "app/tools/line_comments.h"
@@ -99,18 +100,22 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
     for (const Kind& kind : foreign_kinds)
         if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
             return std::optional<std::string>(kind.what);
-    auto text = core::file_bytes(path, looked_at);
-    if (!text)
+    core::presence_of(path); // no check hangs on what is only looked into, but who watches does
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
         return tl::unexpected<core::Error>(
             {core::ErrorCode::io,
              {},
              "cannot be read: " + std::generic_category().message(errno),
              path});
-    text->resize(std::min(text->size(), looked_at));
+    std::string text(looked_at, '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<size_t>(file.gcount()));
     const bool is_named_so =
         std::find(std::begin(program_endings), std::end(program_endings), ending)
         != std::end(program_endings);
-    return is_named_so ? why_unreadable(*text) : why_no_program_text(*text);
+    return is_named_so ? why_unreadable(text) : why_no_program_text(text);
 }
 
 } // namespace app

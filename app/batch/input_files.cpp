@@ -31,33 +31,35 @@ bool InputAnswers::is_same(const InputFile& input) {
 }
 
 std::optional<std::string> InputAnswers::name_in_any_case(const InputFile& input) {
-    auto name = gcode::name_in_any_case(names_of(input.path), input.name);
+    auto name = gcode::name_in_any_case(*names_of(input.path), input.name);
     core::note_look({input.question, input.path, input.name, name});
     return name;
 }
 
-void InputAnswers::forget() {
+template <typename T, typename Read>
+T InputAnswers::ask(std::map<std::string, Known<T>>& known, const std::string& path, Read&& read) {
+    Known<T> now{.stamp = stamp_of(path)};
+    now.was_fresh = is_fresh(now.stamp);
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = known.find(path);
+        if (found != known.end() && !found->second.was_fresh && found->second.stamp == now.stamp)
+            return found->second.answer;
+    }
+    now.answer = read(path);
     const std::lock_guard lock(mutex_);
-    contents_.clear();
-    names_.clear();
+    return (known[path] = std::move(now)).answer;
 }
 
 std::string InputAnswers::content_of(const std::string& path) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (const auto known = contents_.find(path); known != contents_.end()) return known->second;
-    }
-    const std::optional<std::string> bytes = core::file_bytes(path);
-    std::string content = bytes ? sha256_of(*bytes) : std::string();
-    const std::lock_guard lock(mutex_);
-    return contents_.emplace(path, std::move(content)).first->second;
+    core::note_look({core::FileQuestion::content, path, {}, {}});
+    return ask(contents_, path, sha256_of_file);
 }
 
-const std::vector<std::string>& InputAnswers::names_of(const std::string& folder) {
-    const std::lock_guard lock(mutex_);
-    const auto [found, is_new] = names_.try_emplace(folder);
-    if (is_new) found->second = gcode::names_in(folder);
-    return found->second;
+InputAnswers::Names InputAnswers::names_of(const std::string& folder) {
+    return ask(names_, folder, [](const std::string& path) {
+        return std::make_shared<const std::vector<std::string>>(gcode::names_in(path));
+    });
 }
 
 } // namespace app

@@ -1,17 +1,19 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/batch/file_stamp.h"
 #include "app/session/input_file.h"
 
 namespace app {
 
-/// Asks the disk again what a check asked it. Every file is read once, so what it says is as old as
-/// its first question. Several threads may ask.
+/// Asks the disk again what a check asked it. A file is read once while it is not written again.
+/// Several threads may ask.
 class InputAnswers {
 public:
     /// Whether the disk would answer a check as it did then. What could not be read is never the
@@ -21,16 +23,27 @@ public:
     /// The SHA-256 of a file; empty when it cannot be read.
     std::string content_of(const std::string& path);
 
-    /// From here on all is asked anew. Nobody may be asking.
-    void forget();
-
 private:
+    using Names = std::shared_ptr<const std::vector<std::string>>;
+
+    /// What was read, and of which state of the file or folder.
+    template <typename T>
+    struct Known {
+        FileStamp stamp;
+        bool was_fresh = true; // it may have been written again in the same moment
+        T answer{};
+    };
+
     std::optional<std::string> name_in_any_case(const InputFile& input);
-    const std::vector<std::string>& names_of(const std::string& folder);
+    Names names_of(const std::string& folder);
+
+    /// What is known of a path, if it has not been written since; else what is read.
+    template <typename T, typename Read>
+    T ask(std::map<std::string, Known<T>>& known, const std::string& path, Read&& read);
 
     std::mutex mutex_;
-    std::map<std::string, std::string> contents_;
-    std::map<std::string, std::vector<std::string>> names_; // of folders
+    std::map<std::string, Known<std::string>> contents_;
+    std::map<std::string, Known<Names>> names_; // of folders
 };
 
 } // namespace app

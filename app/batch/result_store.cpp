@@ -188,8 +188,6 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path, const st
     return ResultStore(std::move(state));
 }
 
-void ResultStore::look_again() { state_->answers->forget(); }
-
 std::shared_ptr<InputAnswers> ResultStore::answers() const { return state_->answers; }
 
 core::Result<std::vector<std::string>> ResultStore::keys() {

@@ -51,13 +51,9 @@ public:
     core::Result<std::vector<std::string>> keys();
 
     /// What the check of this job gave, if it was kept and nothing has changed since; empty if not.
-    /// Files are taken to stay as they are while the store is open.
     ///
     /// Errors: io, with the database.
     core::Result<std::optional<ProgramResult>> find(const CheckJob& job);
-
-    /// From here on files are taken to stay as they are now.
-    void look_again();
 
     /// Keeps what the check of a job gave, wholly or not at all. What hangs on more than files and
     /// options is not kept: a run that somebody stopped or that could not read a file, and a job

@@ -1,10 +1,7 @@
 #include "app/batch/watched_files.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-
-#include <sys/stat.h>
 
 #include "gcode/program_folder.h"
 
@@ -12,18 +9,6 @@ namespace app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Between reading a file and looking at its time; the clock of files has ticks of some ms.
-constexpr int64_t fresh = 50'000'000; // ns
-
-int64_t nanoseconds(const timespec& time) {
-    return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
-}
-
-int64_t now() {
-    using namespace std::chrono;
-    return duration_cast<std::chrono::nanoseconds>(system_clock::now().time_since_epoch()).count();
-}
 
 std::string whole_path(const std::string& path) {
     std::error_code failure;
@@ -54,23 +39,17 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
     return names;
 }
 
-WatchedFiles::Stamp WatchedFiles::stamp_of(const std::string& path, const Place& place) const {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return {};
-    Stamp stamp{.is_there = true,
-                .device = static_cast<uint64_t>(status.st_dev),
-                .number = static_cast<uint64_t>(status.st_ino),
-                .size = static_cast<uint64_t>(status.st_size),
-                .modified = nanoseconds(status.st_mtim),
-                .changed = nanoseconds(status.st_ctim)};
-    if (!S_ISDIR(status.st_mode)) return stamp;
+WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Place& place) const {
+    Look look{stamp_of(path)};
+    if (!look.stamp.is_folder) return look;
     // Of a folder only the names count: also what does not concern anybody changes its times.
-    const bool is_untouched = place.latest.is_there && stamp.modified == place.latest.modified
-                              && stamp.number == place.latest.number;
-    if (place.is_folder) stamp.names = is_untouched ? place.latest.names : names_of(path);
-    stamp.size = 0;
-    stamp.changed = 0;
-    return stamp;
+    const FileStamp& before = place.latest.stamp;
+    const bool is_untouched = before.is_there && look.stamp.modified == before.modified
+                              && look.stamp.number == before.number;
+    if (place.is_folder) look.names = is_untouched ? place.latest.names : names_of(path);
+    look.stamp.size = 0;
+    look.stamp.changed = 0;
+    return look;
 }
 
 void WatchedFiles::note(const core::FileLook& look) {
@@ -85,20 +64,20 @@ void WatchedFiles::note(const core::FileLook& look) {
     if (!is_new && (place.is_folder || !is_listed)) return;
     place.is_folder = is_listed;
     place.first = place.latest = {};
-    place.first = place.latest = stamp_of(path, place);
-    place.was_fresh = !is_listed && place.first.is_there && place.first.modified > now() - fresh;
+    place.first = place.latest = look_at(path, place);
+    place.was_fresh = !is_listed && is_fresh(place.first.stamp);
 }
 
 WatchedFiles::Change WatchedFiles::look_again() {
-    const auto differ = [](Stamp a, Stamp b, bool is_folder) {
-        if (is_folder) a.modified = b.modified = 0;
+    const auto differ = [](Look a, Look b, bool is_folder) {
+        if (is_folder) a.stamp.modified = b.stamp.modified = 0;
         return a != b;
     };
     Change change;
     for (auto& [path, place] : places_) {
-        Stamp stamp = stamp_of(path, place);
-        if (differ(stamp, place.latest, place.is_folder)) change.is_settled = false;
-        place.latest = std::move(stamp);
+        Look look = look_at(path, place);
+        if (differ(look, place.latest, place.is_folder)) change.is_settled = false;
+        place.latest = std::move(look);
         if (place.was_fresh || differ(place.latest, place.first, place.is_folder))
             change.paths.push_back(path);
     }

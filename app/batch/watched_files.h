@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "app/batch/file_stamp.h"
 #include "core/base/file_reads.h"
 
 namespace app {
@@ -33,21 +33,19 @@ public:
     Change look_again();
 
 private:
-    struct Stamp {
-        bool is_there = false;
-        uint64_t device = 0, number = 0, size = 0;
-        int64_t modified = 0, changed = 0; // nanoseconds
-        std::string names = {};            // of a folder that was listed
+    struct Look {
+        FileStamp stamp;
+        std::string names = {}; // of a folder that was listed
 
-        bool operator==(const Stamp&) const = default;
+        bool operator==(const Look&) const = default;
     };
     struct Place {
-        Stamp first, latest;
+        Look first, latest;
         bool is_folder = false; // whose names were asked for
         bool was_fresh = false; // it was written just when it was looked at
     };
 
-    Stamp stamp_of(const std::string& path, const Place& place) const;
+    Look look_at(const std::string& path, const Place& place) const;
     bool is_own(const std::string& path) const;
     std::string names_of(const std::string& folder) const;
 

@@ -47,11 +47,6 @@ void BatchStore::give_up(const core::Error& error) {
     std::fputs("feeler: results are not kept; the check goes on\n", stderr);
 }
 
-void BatchStore::look_again() {
-    if (store_) store_->look_again();
-    found_ = 0;
-}
-
 std::optional<ProgramResult> BatchStore::find(const CheckJob& job) {
     auto found = store_->find(job);
     if (!found) give_up(found.error());

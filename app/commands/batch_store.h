@@ -23,8 +23,8 @@ public:
     /// The file of the database; empty if there is none.
     const std::string& path() const { return path_; }
 
-    /// From here on files are taken to stay as they are now.
-    void look_again();
+    /// Counts from nothing again.
+    void forget_found() { found_ = 0; }
 
     /// Lets a batch ask it, and keep in it what it finds out.
     void serve(BatchHooks& hooks);

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <regex>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -185,6 +187,27 @@ TEST(InputFiles, WhatCannotBeReadIsNeverTheSame) {
     EXPECT_FALSE(all_same({input}));
     input.answer = "";
     EXPECT_FALSE(all_same({input}));
+}
+
+TEST(InputAnswers, ReadAFileAgainThatWasWrittenSince) {
+    const ScopedFolder folder;
+    const std::string path = folder.write("a.nc", "G0 X1\n");
+    app::InputAnswers answers;
+    const InputFile input{FileQuestion::content, path, {}, app::sha256_of_file(path)};
+    const InputFile in_any_case{FileQuestion::any_case, folder.path(), "O1", std::nullopt};
+    for (const int pause : {0, 80, 0}) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+        EXPECT_TRUE(answers.is_same(input));
+        EXPECT_TRUE(answers.is_same(in_any_case));
+    }
+    folder.write("a.nc", "G0 X2\n"); // as long as before
+    EXPECT_FALSE(answers.is_same(input));
+    folder.write("o1", "");
+    EXPECT_FALSE(answers.is_same(in_any_case));
+    folder.write("a.nc", "G0 X1\n");
+    std::filesystem::remove(folder / "o1");
+    EXPECT_TRUE(answers.is_same(input));
+    EXPECT_TRUE(answers.is_same(in_any_case));
 }
 
 } // namespace

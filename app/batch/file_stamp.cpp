@@ -1,0 +1,38 @@
+#include "app/batch/file_stamp.h"
+
+#include <chrono>
+
+#include <sys/stat.h>
+
+namespace app {
+namespace {
+
+/// Between reading a file and looking at its time; the clock of files has ticks of some ms.
+constexpr int64_t fresh = 50'000'000; // ns
+
+int64_t nanoseconds(const timespec& time) {
+    return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
+}
+
+int64_t now() {
+    using namespace std::chrono;
+    return duration_cast<std::chrono::nanoseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+FileStamp stamp_of(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return {};
+    return {.is_there = true,
+            .is_folder = S_ISDIR(status.st_mode),
+            .device = static_cast<uint64_t>(status.st_dev),
+            .number = static_cast<uint64_t>(status.st_ino),
+            .size = static_cast<uint64_t>(status.st_size),
+            .modified = nanoseconds(status.st_mtim),
+            .changed = nanoseconds(status.st_ctim)};
+}
+
+bool is_fresh(const FileStamp& stamp) { return stamp.is_there && stamp.modified > now() - fresh; }
+
+} // namespace app
