@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -54,9 +55,11 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "feeler: there is not enough memory; a larger mesh size needs less\n");
+        std::fputs("feeler: there is not enough memory; a larger mesh size needs less\n", stderr);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "feeler: a mistake of the program itself: {}\n", error.what());
+        std::fputs(
+            fmt::format("feeler: a mistake of the program itself: {}\n", error.what()).c_str(),
+            stderr);
     }
     return static_cast<int>(app::ExitCode::failed);
 }

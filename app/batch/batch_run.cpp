@@ -5,16 +5,21 @@
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <numeric>
 #include <thread>
+
+#include <malloc.h>
 
 #include "app/batch/memory_budget.h"
 #include "app/setup/utf8_text.h"
 
 namespace app {
 namespace {
+
+constexpr double much = 100e6; // bytes
 
 core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
     try {
@@ -55,18 +60,52 @@ public:
             std::stable_sort(order_.begin(), order_.end(),
                              [&](size_t a, size_t b) { return sizes_[a] > sizes_[b]; });
         shares_ = std::vector<std::atomic<double>>(most);
-        working_ = most;
     }
 
     std::vector<std::optional<ProgramResult>> run() {
         std::vector<std::thread> threads;
-        for (size_t i = 0; i < shares_.size(); ++i) threads.emplace_back([this, i] { work(i); });
+        begin(threads);
         tell_what_ends();
         for (std::thread& thread : threads) thread.join();
         return std::move(results_);
     }
 
 private:
+    /// Where there is no room for all, as many as there are cores: the others are gone before the
+    /// first begins. Without any, the caller's thread does it all.
+    void begin(std::vector<std::thread>& threads) {
+        size_t most = shares_.size();
+        try {
+            threads.reserve(most);
+            while (threads.size() < shares_.size())
+                threads.emplace_back([this, i = threads.size()] { work_in_turn(i); });
+        } catch (const std::exception&) { // of the system, which is out of threads or memory
+            const size_t cores = std::max(1U, std::thread::hardware_concurrency());
+            most = std::min(threads.size(), cores);
+        }
+        let_begin(most, false);
+        for (; threads.size() > most; threads.pop_back()) threads.back().join();
+        working_ = std::max<size_t>(most, shares_.empty() ? 0 : 1);
+        let_begin(most, true);
+        if (most == 0 && !shares_.empty()) work(0);
+    }
+
+    void let_begin(size_t most, bool now) {
+        const std::lock_guard lock(mutex_);
+        most_ = most;
+        is_begun_ = now;
+        may_begin_.notify_all();
+    }
+
+    void work_in_turn(size_t thread) {
+        {
+            std::unique_lock lock(mutex_);
+            may_begin_.wait(lock, [&] { return is_begun_ || thread >= most_; });
+            if (thread >= most_) return;
+        }
+        work(thread);
+    }
+
     bool is_stopped() const { return hooks_.is_stopped && hooks_.is_stopped(); }
 
     void work(size_t thread) {
@@ -75,11 +114,20 @@ private:
         while (!is_stopped()) {
             const size_t place = next_++;
             if (place >= order_.size()) break;
-            check(order_[place], thread);
+            check_whatever_comes(order_[place], thread);
         }
         const std::lock_guard lock(mutex_);
         --working_;
         something_ended_.notify_one();
+    }
+
+    void check_whatever_comes(size_t i, size_t thread) {
+        try {
+            check(i, thread);
+        } catch (const std::exception&) {
+            // There was no memory around the check itself, and may be none for words: the program
+            // is among those that were not checked.
+        }
     }
 
     void check(size_t i, size_t thread) {
@@ -104,6 +152,8 @@ private:
             const auto run = run_whatever_comes(watched);
             if (!is_cut) end(i, thread, result(job, run));
         }
+        // What a large model has taken stays with the thread that took it unless it is asked for.
+        if (taken > much) ::malloc_trim(0);
         budget_.give_back(taken);
     }
 
@@ -162,10 +212,12 @@ private:
     std::atomic<size_t> next_{0};             // of the order
     std::vector<std::atomic<double>> shares_; // of each thread's program, bytes
     std::vector<std::optional<ProgramResult>> results_;
-    std::deque<size_t> ended_; // that nobody was told of
-    size_t working_ = 0;       // threads
+    std::deque<size_t> ended_;                         // that nobody was told of
+    size_t working_ = 0;                               // threads
+    size_t most_ = std::numeric_limits<size_t>::max(); // threads that are to work
+    bool is_begun_ = false;
     std::mutex mutex_, keeping_;
-    std::condition_variable something_ended_;
+    std::condition_variable something_ended_, may_begin_;
 };
 
 } // namespace

@@ -7,14 +7,28 @@
 
 #include "app/session/digest.h"
 #include "app/setup/utf8_text.h"
+#include "core/base/file_reads.h"
+#include "gcode/program_text.h"
 
 namespace app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// In characters, as editors count them and SARIF says; bytes where the line cannot be read.
+uint32_t column_of(const core::Error& error) {
+    const auto [line, column, length] = error.where;
+    if (column <= 1 || line == 0 || !core::is_file(error.file)) return column;
+    const std::string bytes = core::file_bytes(error.file).value_or("");
+    std::string_view text = bytes;
+    if (text.starts_with(gcode::byte_order_mark)) text.remove_prefix(gcode::byte_order_mark.size());
+    const std::vector<uint32_t> starts = gcode::starts_of_lines(text);
+    if (line > starts.size() || starts[line - 1] + column - 1 > text.size()) return column;
+    return static_cast<uint32_t>(characters_in(text.substr(starts[line - 1], column - 1))) + 1;
+}
+
 KeptError kept(const core::Error& error) {
-    return {utf8_text(error.file), error.where.line, error.where.column, utf8_text(error.message)};
+    return {utf8_text(error.file), error.where.line, column_of(error), utf8_text(error.message)};
 }
 
 KeptFinding kept(const core::Finding& finding, const CheckRun& run) {

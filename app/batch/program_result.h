@@ -37,8 +37,8 @@ struct Tightest {
 
 /// Why a program could not be run, or not to its end.
 struct KeptError {
-    std::string file; // empty if it is about none
-    uint32_t line = 0, column = 0;
+    std::string file;              // empty if it is about none
+    uint32_t line = 0, column = 0; // in characters
     std::string message;
 
     bool operator==(const KeptError&) const = default;

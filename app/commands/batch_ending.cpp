@@ -28,20 +28,23 @@ std::string report_of(const BatchResult& batch, const std::string& format,
 } // namespace
 
 ExitCode end_batch(const BatchResult& batch, const Shard* shard,
-                   const std::vector<ReportTarget>& targets, const BatchTalk& talk) {
+                   const std::vector<ReportTarget>& targets, const BatchTalk& talk,
+                   const ReadFiles& read) {
     bool all = true;
     for (const ReportTarget& target : targets) {
         const bool was_said = target.path.empty() && target.format == "text";
         if (was_said) continue;
-        const auto written =
-            write_output(target.path, shard && target.format == "shard"
-                                          ? json_of(*shard)
-                                          : report_of(batch, target.format, talk.style));
+        const auto written = write_output(target.path,
+                                          shard && target.format == "shard"
+                                              ? json_of(*shard)
+                                              : report_of(batch, target.format, talk.style),
+                                          read);
         if (!written) print_error(written.error());
         all = all && written.has_value();
     }
     if (std::ferror(talk.stream) != 0) {
-        print_error({core::ErrorCode::io, {}, "cannot be written", "standard output"});
+        const char* const name = talk.stream == stdout ? "standard output" : "standard error";
+        print_error({core::ErrorCode::io, {}, "cannot be written", name});
         all = false;
     }
     return all ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;

@@ -9,6 +9,7 @@
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/read_files.h"
 #include "app/commands/watch.h"
 #include "app/report/csv_report.h"
 #include "app/report/html_report.h"
@@ -38,12 +39,13 @@ struct Checked {
     const CheckJob& job;
     const CheckRun& run;
     const ReportViews& views;
+    const ReadFiles& read;
     const std::vector<std::string>& told; // assumptions that are on the screen already
 };
 
 std::string report(const CheckOptions& options, const ReportTarget& target,
                    const Checked& checked) {
-    const auto& [job, run, views, told] = checked;
+    const auto& [job, run, views, read, told] = checked;
     const std::string& format = target.format;
     if (is_of_results(format)) return results_report(format, result_of(run, job.setup));
     if (format == "csv") return csv_report(run);
@@ -71,7 +73,7 @@ core::Result<void> check_files(const CheckOptions& options, const CheckJob& job,
 }
 
 /// Writes what was asked for beside the report.
-core::Result<void> save_results(const CheckOptions& options, CheckRun& run) {
+core::Result<void> save_results(const CheckOptions& options, CheckRun& run, const ReadFiles& read) {
     for (const std::string& name : {options.stock, options.comparison})
         if (!name.empty() && run.stopped)
             return tl::unexpected<core::Error>(
@@ -85,12 +87,12 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run) {
                    form == MeshForm::record
                        ? stock_record_file(*run.stock, options.stock)
                        : stock_file(*run.surface, run.setup.mesh_size, options.stock));
-        if (auto written = write_output(options.stock, file.bytes); !written) return written;
+        if (auto written = write_output(options.stock, file.bytes, read); !written) return written;
         run.saved_stock = file.facts;
     }
     if (options.comparison.empty()) return {};
     FEELER_TRY(const std::string bytes, comparison_file(run, options.comparison));
-    return write_output(options.comparison, bytes);
+    return write_output(options.comparison, bytes, read);
 }
 
 /// Before much memory is taken it is said how much.
@@ -110,22 +112,27 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
     for (const ReportTarget& target : targets) {
         const bool is_lost = checked.run.stopped && !is_of_results(target.format);
         if (is_lost && std::exchange(is_said, true)) continue;
-        const auto written =
-            write_output(is_lost ? std::string() : target.path, report(options, target, checked));
+        const auto written = write_output(is_lost ? std::string() : target.path,
+                                          report(options, target, checked), checked.read);
         if (!written) print_error(written.error());
         all = all && written.has_value();
     }
     return all;
 }
 
+ExitCode failed(const core::Error& error) {
+    print_error(error);
+    return ExitCode::failed;
+}
+
 /// Tells those who read SARIF or JUnit that a check could not begin.
 ExitCode fail(const CheckJob& job, const core::Error& error,
-              const std::vector<ReportTarget>& targets) {
+              const std::vector<ReportTarget>& targets, const ReadFiles& read) {
     print_error(error);
     for (const ReportTarget& target : targets) {
         if (!is_of_results(target.format)) continue;
-        const auto written =
-            write_output(target.path, results_report(target.format, failed_result(job, error)));
+        const auto written = write_output(
+            target.path, results_report(target.format, failed_result(job, error)), read);
         if (!written) print_error(written.error());
     }
     return ExitCode::failed;
@@ -134,10 +141,10 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
 /// `told`: the assumptions that are on the screen; those of this check come in their place.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& told) {
+    const ReadFiles read;
     auto job = job_of(options.what);
-    if (!job) return fail({}, job.error(), {});
-    if (const auto safe = check_files(options, *job, targets); !safe)
-        return fail(*job, safe.error(), {});
+    if (!job) return failed(job.error());
+    if (const auto safe = check_files(options, *job, targets); !safe) return failed(safe.error());
     stop_on_interrupt();
     ProgressLine line;
     job->detail = detail_of(options);
@@ -156,11 +163,11 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
                                 });
     auto run = is_pictured ? run_pictured_check(*job, views) : run_check(*job);
     line.clear();
-    if (!run) return fail(*job, run.error(), targets);
+    if (!run) return fail(*job, run.error(), targets, read);
     if (run->stopped) print_error(*run->stopped);
-    const auto saved = save_results(options, *run);
+    const auto saved = save_results(options, *run, read);
     if (!saved) print_error(saved.error());
-    const bool all_written = write_reports(options, {*job, *run, views, told}, targets);
+    const bool all_written = write_reports(options, {*job, *run, views, read, told}, targets);
     told = run->assumptions;
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
@@ -176,8 +183,8 @@ core::Result<void> check_share(const CheckOptions& options) {
 
 ExitCode check(CheckOptions& options) {
     const auto targets = targets_of(options.formats, options.outputs);
-    if (!targets) return fail({}, targets.error(), {});
-    if (auto fits = check_share(options); !fits) return fail({}, fits.error(), {});
+    if (!targets) return failed(targets.error());
+    if (auto fits = check_share(options); !fits) return failed(fits.error());
     if (options.share || !is_one_program(options.programs)) return check_batch(options, *targets);
     options.what.program = options.programs[0];
     std::vector<std::string> told;

@@ -108,7 +108,7 @@ struct Watch {
 };
 
 BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchTalk& talk,
-                      BatchStore& store, const Watch& watch) {
+                      BatchStore& store, const Watch& watch, ReadFiles& read) {
     stop_on_interrupt();
     ProgressLine line;
     BatchHooks hooks;
@@ -122,7 +122,10 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
             if (found) known.insert(found->program);
             return found;
         };
-    if (watch.files) hooks.looked = [&](const core::FileLook& look) { watch.files->note(look); };
+    hooks.looked = [&](const core::FileLook& look) {
+        read.note(look);
+        if (watch.files) watch.files->note(look);
+    };
     hooks.is_stopped = is_interrupted;
     hooks.waiting = [&line](const BatchProgress& progress) { line.show(progress); };
     hooks.ended = [&](const ProgramResult& result) {
@@ -151,6 +154,8 @@ ExitCode failed(const std::vector<core::Error>& errors) {
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
               const std::vector<ReportTarget>& targets, BatchStore& store, const Watch& watch) {
     const Stopwatch time;
+    ReadFiles read;
+    if (!store.path().empty()) read.add(store.path());
     auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
@@ -158,17 +163,18 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     const SharedWork work = work_of(options, *std::move(plan));
     if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
-    const BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch);
+    const BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);
     talk.say("\n" + share_text(options, work) + batch_summary(batch, time.seconds(), talk.style));
     if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
     if (is_interrupted())
-        fmt::print(stderr, "feeler: interrupted; {} of {} programs were checked\n",
-                   batch.programs.size(), batch.programs.size() + batch.unchecked.size());
-    if (!options.share) return end_batch(batch, nullptr, targets, talk);
+        print_note(fmt::format("feeler: interrupted; {} of {} programs were checked\n",
+                               batch.programs.size(),
+                               batch.programs.size() + batch.unchecked.size()));
+    if (!options.share) return end_batch(batch, nullptr, targets, talk, read);
     const Shard shard = shard_of(*options.share, work, batch, time.seconds());
-    return end_batch(batch, &shard, targets, talk);
+    return end_batch(batch, &shard, targets, talk, read);
 }
 
 } // namespace
@@ -186,7 +192,7 @@ ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget
     own.push_back(store.path());
     bool is_again = false;
     return watch(own, [&](WatchedFiles& files) {
-        store.look_again();
+        store.forget_found();
         return pass(options, *asked, targets, store, {&files, std::exchange(is_again, true)});
     });
 }

@@ -5,6 +5,7 @@
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
+#include "app/commands/read_files.h"
 #include "app/report/coprocessor_report.h"
 #include "hwsim/vcd_trace.h"
 
@@ -57,6 +58,7 @@ core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
 }
 
 core::Result<ExitCode> coproc(const Options& options) {
+    const ReadFiles read;
     for (const std::string& output : {options.output, options.vcd})
         if (auto safe =
                 check_output(output, {options.what.program, options.what.setup, options.config});
@@ -71,10 +73,10 @@ core::Result<ExitCode> coproc(const Options& options) {
                           fmt::format("--from {}: the program has {} blocks, numbered from 0",
                                       trace.from, result.run.blocks.size()));
     FEELER_TRY(const std::string report, report_of(options, result));
-    if (auto written = write_output(options.output, report); !written)
+    if (auto written = write_output(options.output, report, read); !written)
         return tl::unexpected(std::move(written).error());
     if (trace.vcd)
-        if (auto written = write_output(options.vcd, trace.vcd->text()); !written)
+        if (auto written = write_output(options.vcd, trace.vcd->text(), read); !written)
             return tl::unexpected(std::move(written).error());
     if (result.run.check.stopped) {
         print_error(*result.run.check.stopped);

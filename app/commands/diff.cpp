@@ -5,6 +5,7 @@
 #include "app/commands/interrupt.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/read_files.h"
 #include "app/report/diff_report.h"
 
 namespace app {
@@ -29,6 +30,7 @@ core::Result<CheckRun> checked(CheckJob job) {
 }
 
 core::Result<ExitCode> compare(const Options& options) {
+    const ReadFiles read;
     FEELER_TRY(CheckJob job, job_of(options.what));
     CheckJob later = job;
     if (!options.later.empty()) later.program = options.later;
@@ -48,7 +50,7 @@ core::Result<ExitCode> compare(const Options& options) {
     const ProgramDiff diff = diff_of(before, after, job.setup, later.setup);
     const std::string report =
         options.format == "json" ? diff_json(diff) : diff_text(diff, options.blocks);
-    if (auto written = write_output(options.output, report); !written)
+    if (auto written = write_output(options.output, report, read); !written)
         return tl::unexpected(written.error());
     if (before.stopped || after.stopped) return ExitCode::failed;
     return diff.is_worse() ? ExitCode::findings : ExitCode::clear;

@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
+#include "app/commands/read_files.h"
 #include "app/report/distance_report.h"
 #include "app/session/body_pair.h"
 
@@ -33,18 +34,19 @@ core::Result<std::string> answer(const Options& options) {
                measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine));
     for (const NamedBody* body : {&a, &b})
         for (const std::string& repair : body->repairs)
-            fmt::print(stderr, "{}: {}\n", body->name, repair);
+            print_note(fmt::format("{}: {}\n", body->name, repair));
     if (options.format == "json") return json_distance(found);
     return text_distance(found, a.name, b.name, sweep != core::Vec3(0.0));
 }
 
 ExitCode distance(const Options& options) {
+    const ReadFiles read;
     const auto text = answer(options);
     if (!text) {
         print_error(text.error());
         return ExitCode::failed;
     }
-    const auto written = write_output(options.output, *text);
+    const auto written = write_output(options.output, *text, read);
     if (written) return ExitCode::clear;
     print_error(written.error());
     return ExitCode::failed;

@@ -65,17 +65,18 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
     talk.say("\n" + batch_summary(batch, seconds, talk.style));
     for (const Shard& shard : shards)
         if (!shard.unchecked.empty())
-            fmt::print(stderr, "feeler: {}: share {} was interrupted: run it again\n", shard.file,
-                       text_of(shard.share));
+            print_note(fmt::format("feeler: {}: share {} was interrupted: run it again\n",
+                                   shard.file, text_of(shard.share)));
 }
 
 core::Result<ExitCode> merge(const Options& options) {
+    const ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets, safe_targets(options));
     FEELER_TRY(const std::vector<Shard> shards, read_shards(options.files));
     FEELER_TRY(const BatchResult batch, merged(shards));
     const BatchTalk talk = talk_of(options.style, targets);
     say_all(batch, shards, talk);
-    return end_batch(batch, nullptr, targets, talk);
+    return end_batch(batch, nullptr, targets, talk, read);
 }
 
 ExitCode merge_aloud(const Options& options) {
@@ -94,9 +95,10 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
         .add_option("shares", options->files, "All files that --format shard has written of them")
         ->required();
     command
-        .add_option("--format", options->formats,
-                    "text, json, jsonl, csv, html, sarif or junit; several with an -o each, in their "
-                    "order")
+        .add_option(
+            "--format", options->formats,
+            "text, json, jsonl, csv, html, sarif or junit; several with an -o each, in their "
+            "order")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
         ->default_str("text");

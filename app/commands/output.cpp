@@ -127,7 +127,12 @@ core::Result<void> write_output(const std::string& path, const std::string& text
 }
 
 void print_error(const core::Error& error) {
-    fmt::print(stderr, "feeler: {}\n", error_text(error));
+    print_note(fmt::format("feeler: {}\n", error_text(error)));
+}
+
+void print_note(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
 }
 
 } // namespace app

@@ -47,7 +47,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Prints an error to standard error.
+/// Prints to standard error; what cannot be written there is lost.
 void print_error(const core::Error& error);
+void print_note(const std::string& text);
 
 } // namespace app

@@ -15,9 +15,9 @@ namespace {
 
 std::atomic<int> interrupted = 0; // lock-free: set by a signal, read by any thread
 
-extern "C" void note_interrupt(int) {
+extern "C" void note_interrupt(int signal) {
     interrupted = 1;
-    std::signal(SIGINT, SIG_DFL);
+    std::signal(signal, SIG_DFL);
 }
 
 std::string time_text(double seconds) {
@@ -41,7 +41,10 @@ std::string bar_text(double share, const std::string& what, double seconds) {
 
 } // namespace
 
-void stop_on_interrupt() { std::signal(SIGINT, note_interrupt); }
+void stop_on_interrupt() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, note_interrupt);
+    std::signal(SIGPIPE, SIG_IGN);
+}
 
 bool is_interrupted() { return interrupted != 0; }
 

@@ -6,10 +6,12 @@
 
 namespace app {
 
-/// From now on Ctrl-C asks a check to stop, once; the next one ends the process.
+/// From now on Ctrl-C, and what a scheduler or a closed terminal sends, asks a check to stop, once;
+/// the next one ends the process. A reader of our output that goes away ends nothing: writing
+/// fails, and reports that go elsewhere are written all the same.
 void stop_on_interrupt();
 
-/// Whether it was pressed.
+/// Whether something did.
 bool is_interrupted();
 
 /// A line on standard error that says how far a check has come; nothing unless that is a terminal.

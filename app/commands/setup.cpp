@@ -3,6 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/commands/read_files.h"
 #include "app/report/setup_text.h"
 #include "app/session/inferred_setup.h"
 
@@ -15,11 +16,12 @@ struct Options {
 };
 
 core::Result<void> write_setup(const Options& options) {
+    const ReadFiles read;
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
     FEELER_TRY(const SetupFile setup, infer_setup(program, settings));
-    return write_output(options.output, setup_text(setup, options.program));
+    return write_output(options.output, setup_text(setup, options.program), read);
 }
 
 ExitCode setup(const Options& options) {

@@ -121,8 +121,8 @@ core::Result<void> shoot_sheet(const Options& options, Studio& studio) {
         prints.push_back({std::move(image), caption_of(studio.model, block, findings)});
     }
     if (blocks.size() > prints.size())
-        fmt::print(stderr, "feeler: the sheet has the first {} of {} blocks with findings\n",
-                   prints.size(), blocks.size());
+        print_note(fmt::format("feeler: the sheet has the first {} of {} blocks with findings\n",
+                               prints.size(), blocks.size()));
     if (prints.empty())
         return core::fail(core::ErrorCode::missing_value, "--sheet: no finding is about a block");
     const size_t columns = prints.size() < 4 ? prints.size() : prints.size() < 9 ? 2 : 3;
@@ -156,8 +156,8 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
     }
     FEELER_TRY(const std::string pictures, film->finish());
     if (!pictures.empty() && std::filesystem::path(options.output).extension() != ".png")
-        fmt::print(stderr, "feeler: there is no film without ffmpeg; the pictures are {}\n",
-                   pictures);
+        print_note(fmt::format("feeler: there is no film without ffmpeg; the pictures are {}\n",
+                               pictures));
     return {};
 }
 

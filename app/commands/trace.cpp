@@ -5,6 +5,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/commands/read_files.h"
 #include "app/report/trace_report.h"
 #include "app/report/warning_log.h"
 #include "app/setup/setup_file.h"
@@ -32,7 +33,7 @@ core::Result<gcode::Environment> environment_of(const Options& options,
     }
     gcode::Environment environment;
     FEELER_TRY(const std::vector<std::string> notes, apply(settings, environment));
-    for (const std::string& note : notes) fmt::print(stderr, "feeler: {}\n", note);
+    for (const std::string& note : notes) print_note(fmt::format("feeler: {}\n", note));
     dialect = settings.dialect;
     return environment;
 }
@@ -43,8 +44,8 @@ core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> st
     if (!stated) {
         const gcode::Recognition seen = gcode::recognise(program);
         stated = seen.dialect;
-        fmt::print(stderr, "feeler: dialect {}, because {}\n", gcode::dialect(*stated).name,
-                   seen.reason);
+        print_note(fmt::format("feeler: dialect {}, because {}\n", gcode::dialect(*stated).name,
+                               seen.reason));
     }
     if (gcode::dialect(*stated).supported) return *stated;
     return core::fail(core::ErrorCode::unsupported,
@@ -57,11 +58,12 @@ struct Tracing {
     const Options& options;
     const gcode::Environment& environment;
     OutputStream out;
+    const ReadFiles& read;
     std::string text{};
     WarningLog log{};
 
     void warn(const gcode::Warning& warning, std::string_view file) {
-        fmt::print(stderr, "{}", log.line_for(warning, file.empty() ? options.program : file));
+        print_note(log.line_for(warning, file.empty() ? options.program : file));
     }
 
     core::Result<void> add(const gcode::BlockResult& block) {
@@ -93,6 +95,7 @@ struct Tracing {
         }
         if (const auto warning = gcode::ending_warning(environment, state)) warn(*warning, {});
         if (auto written = flush(); !written) return written;
+        if (auto safe = read.check(options.output); !safe) return safe; // it may be a subprogram
         return out.finish();
     }
 
@@ -104,6 +107,7 @@ struct Tracing {
 };
 
 core::Result<void> run_trace(const Options& options) {
+    const ReadFiles read;
     FEELER_TRY(gcode::Program program, gcode::open_program(options.program));
     const auto safe = check_output(options.output, {options.program, options.setup});
     if (!safe) return safe;
@@ -116,9 +120,9 @@ core::Result<void> run_trace(const Options& options) {
         FEELER_TRY(program, gcode::read_program(options.program));
     }
     FEELER_TRY(OutputStream out, OutputStream::open(options.output));
-    Tracing tracing{options, environment, std::move(out)};
+    Tracing tracing{options, environment, std::move(out), read};
     auto traced = tracing.run(program);
-    fmt::print(stderr, "{}", tracing.log.rest());
+    print_note(tracing.log.rest());
     return traced;
 }
 

@@ -52,8 +52,9 @@ ExitCode view(const Options& options) {
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);
     if (shown) return ExitCode::clear;
-    fmt::print(stderr, "feeler: {}; feeler shot {} --worst -o picture.png needs none\n",
-               shown.error().message, arguments.program.empty() ? "PROGRAM" : arguments.program);
+    print_note(fmt::format("feeler: {}; feeler shot {} --worst -o picture.png needs none\n",
+                           shown.error().message,
+                           arguments.program.empty() ? "PROGRAM" : arguments.program));
     return ExitCode::failed;
 }
 

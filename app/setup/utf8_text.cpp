@@ -37,6 +37,12 @@ size_t character_length(std::string_view text) {
 
 } // namespace
 
+size_t characters_in(std::string_view text) {
+    size_t count = 0;
+    for (; !text.empty(); ++count) text.remove_prefix(std::max<size_t>(character_length(text), 1));
+    return count;
+}
+
 std::string utf8_text(std::string_view text) {
     std::string whole;
     while (!text.empty()) {

@@ -78,6 +78,13 @@ TEST_F(BatchRun, GoesOnAfterABadProgram) {
     EXPECT_EQ(status_of(batch), 2);
 }
 
+TEST_F(BatchRun, SaysTheColumnInCharacters) {
+    folder.write("umlaut.nc", "\xef\xbb\xbfG21\n(\xc3\xa9\xc3\xa9\xe6\x97\xa5) G999\n");
+    const BatchResult batch = run_batch(*plan_batch({folder / "umlaut.nc"}, asked), {}, {});
+    EXPECT_EQ(batch.programs[0].error->line, 2U);
+    EXPECT_EQ(batch.programs[0].error->column, 7U);
+}
+
 TEST_F(BatchRun, SaysWhichProgramRanIntoTheLimitOfBlocks) {
     const ProgramResult endless = of(run_batch(plan(), {}, {}), "endless.nc");
     ASSERT_TRUE(endless.error);

@@ -22,6 +22,12 @@ TEST(Utf8Text, TakesOtherBytesForLatin1) {
     EXPECT_EQ(utf8_text("\xF5\x80\x80\x80"), "\xC3\xB5\xC2\x80\xC2\x80\xC2\x80");
 }
 
+TEST(Utf8Text, CountsCharacters) {
+    EXPECT_EQ(app::characters_in(""), 0U);
+    EXPECT_EQ(app::characters_in("(\xc3\xa9\xe6\x97\xa5) "), 5U);
+    EXPECT_EQ(app::characters_in("\xe9\xff"), 2U);
+}
+
 TEST(Utf8Text, GivesTheSameWhenItIsTakenAgain) {
     std::string all;
     for (int byte = 1; byte < 256; ++byte) all += static_cast<char>(byte);

@@ -1,0 +1,112 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/checked.h"
+#include "tests/support/program_writer.h"
+
+namespace app_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test_support::bytes_of;
+using test_support::program;
+using test_support::Ran;
+using test_support::ScopedFolder;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Programs of which one calls another, with a project, on a bad day.
+class BatchSurvival : public testing::Test {
+protected:
+    void SetUp() override {
+        fs::create_directory(folder / "lib");
+        folder.write("lib/feeler.toml", "[[program]]\nfiles = \"[a-z]*.nc\"\n");
+        folder.write("lib/call.nc", program({"G0 Z5. X1.", "M98 P2000", "G0 Z5."}));
+        folder.write("lib/O2000.nc", "O2000\nG1 Z-1. F100.\nX30.\nM99\n");
+        folder.write("lib/other.nc", program({"G0 Z5. X1.", "G1 Z-1. F100.", "X30.", "G0 Z5."}));
+    }
+
+    std::string lib() const { return folder / "lib"; }
+
+    ScopedFolder folder;
+};
+
+TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
+    ASSERT_EQ(feeler({"check", lib()}).status, 0);
+    for (const char* name : {"lib/feeler.toml", "lib/O2000.nc", "lib/.feeler/results.db"}) {
+        const std::string before = bytes_of(folder / name);
+        const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / name});
+        EXPECT_EQ(ran.status, 2) << name;
+        EXPECT_THAT(ran.err, HasSubstr("is read here, and would be lost")) << name;
+        EXPECT_EQ(bytes_of(folder / name), before) << name;
+    }
+    const std::string called = folder / "lib/O2000.nc", before = bytes_of(called);
+    fs::create_symlink(called, folder / "link");
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"check", folder / "lib/call.nc", "-o", folder / "link"},
+             {"diff", folder / "lib/other.nc", folder / "lib/call.nc", "-o", called},
+             {"trace", folder / "lib/call.nc", "-o", called},
+             {"coproc", folder / "lib/call.nc", "--no-fit", "-o", called}}) {
+        const Ran ran = feeler(words);
+        EXPECT_EQ(ran.status, 2) << words[0];
+        EXPECT_THAT(ran.err, HasSubstr("is read here, and would be lost")) << words[0];
+        EXPECT_EQ(bytes_of(called), before) << words[0];
+    }
+}
+
+TEST_F(BatchSurvival, RefusesTwoReportsInOneFile) {
+    const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / "report", "--format",
+                            "csv", "-o", folder / "lib/../report"});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr("two reports would go to"));
+    EXPECT_FALSE(fs::exists(folder / "report"));
+}
+
+TEST_F(BatchSurvival, ReplacesItsOwnOldReportBesideThePrograms) {
+    for (int i = 0; i < 2; ++i) {
+        const Ran ran = feeler({"check", folder.path(), "-o", folder / "lib/report.txt"});
+        EXPECT_EQ(ran.status, 0) << ran.err;
+    }
+}
+
+TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
+    folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
+    for (const char* signal : {"TERM", "HUP"}) {
+        const Ran ran =
+            feeler({"check", folder / "lib/other.nc", folder / "long.nc", "--jobs", "2", "--format",
+                    "json", "-o", folder / "report.json"},
+                   std::string("timeout --foreground --preserve-status -s ") + signal + " 1");
+        EXPECT_EQ(ran.status, 2) << signal;
+        EXPECT_EQ(json::parse(bytes_of(folder / "report.json"))["unchecked"],
+                  json({folder / "long.nc"}));
+    }
+}
+
+TEST_F(BatchSurvival, WritesItsReportsWhenNobodyReadsItsLines) {
+    const std::string report = folder / "report.json";
+    for (const char* redirection : {"exec >/dev/full;", "exec 2>/dev/full;"}) {
+        fs::remove(report);
+        const std::string words = std::string(FEELER_BINARY) + " check " + lib()
+                                  + " --cache /dev/null --format json -o " + report;
+        const Ran ran = test_support::run({"sh", "-c", redirection + words});
+        EXPECT_LE(ran.status, 2) << redirection;
+        EXPECT_TRUE(fs::exists(report)) << redirection;
+    }
+    fs::remove(report);
+    test_support::run({"sh", "-c",
+                       std::string(FEELER_BINARY) + " check " + lib() + " "
+                           + folder / "lib/other.nc" + " --format json -o " + report + " | true"});
+    EXPECT_TRUE(fs::exists(report));
+}
+
+TEST_F(BatchSurvival, GoesOnWithFewerThreadsThanWereAskedFor) {
+    for (int i = 0; i < 400; ++i)
+        folder.write("lib/p" + std::to_string(i) + ".nc", bytes_of(folder / "lib/other.nc"));
+    const Ran ran = feeler({"check", lib(), "--no-cache", "--jobs", "300"}, "ulimit -v 700000;");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_THAT(ran.out, HasSubstr("402 programs in"));
+}
+
+} // namespace
+} // namespace app_test
