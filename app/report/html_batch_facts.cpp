@@ -120,6 +120,7 @@ std::string batch_title(const BatchResult& batch) {
 }
 
 std::string batch_outcome_text(const BatchResult& batch) {
+    if (all_programs(batch) == 0) return "no program was checked";
     const size_t lost = programs_of_status(batch, 2) + batch.unchecked.size();
     if (lost > 0) return share(batch, lost) + " not checked to the end";
     const size_t bad = programs_of_status(batch, 1);
@@ -131,6 +132,7 @@ std::string batch_outcome_text(const BatchResult& batch) {
 
 const char* batch_outcome_class(const BatchResult& batch) {
     if (status_of(batch) > 0) return "error";
+    if (all_programs(batch) == 0) return "undecided";
     return programs_with(batch, Outcome::clear) == all_programs(batch) ? "clear" : "undecided";
 }
 

@@ -160,6 +160,12 @@ TEST(HtmlBatch, SaysNothingOfMissingOnesWhereAllAreThere) {
     EXPECT_EQ(batch_outcome_text(batch), "1 of 2 programs has errors");
 }
 
+TEST(HtmlBatch, DoesNotCallNothingClear) {
+    EXPECT_EQ(batch_outcome_text({}), "no program was checked");
+    EXPECT_STREQ(batch_outcome_class({}), "undecided");
+    EXPECT_THAT(batch_html_report({}), HasSubstr("0 programs"));
+}
+
 TEST(HtmlBatch, NamesTheProgramWithTheLeastMargin) {
     BatchResult batch = large_batch(9, 0);
     batch.programs[7].tightest->lower = 0.9;

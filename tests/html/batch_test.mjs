@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { openReport } from "./browser.mjs";
-import { isWide, lightness, runAll, test } from "./harness.mjs";
+import { isWide, keepPicture, lightness, runAll, test } from "./harness.mjs";
 
 const folder = process.argv[2];
 const report = (name) => `${folder}/${name}.html`;
@@ -20,12 +20,12 @@ for (const colorScheme of ["light", "dark"])
     for (const name of ["shop", "good"])
       test(`${name}, ${colorScheme}, ${width} px wide: opens without an error or a request, nothing sticks out`, async (browser) => {
         const { page, wrong } = await openReport(browser, report(name), { width, colorScheme });
-        await page.screenshot({ path: `${folder}/batch-${name}-${colorScheme}-${width}.png`, fullPage: true });
+        await keepPicture(page, `${folder}/batch-${name}-${colorScheme}-${width}.png`, { fullPage: true });
         assert.equal(await isWide(page), false);
         await page.locator(".grid-row").first().click();
         assert.equal(await page.locator("#program").isVisible(), true);
         assert.equal(await isWide(page), false);
-        await page.screenshot({ path: `${folder}/batch-${name}-${colorScheme}-${width}-open.png`, fullPage: true });
+        await keepPicture(page, `${folder}/batch-${name}-${colorScheme}-${width}-open.png`, { fullPage: true });
         assert.equal((await lightness(page)) > 384, colorScheme === "light");
         assert.deepEqual(wrong, []);
       });
@@ -120,6 +120,27 @@ test("the keyboard alone opens programs one after the other", async (browser) =>
   assert.equal(await page.locator('[aria-sort="descending"]').textContent(), "Blocks");
 });
 
+test("a page of no program says so, and nothing breaks", async (browser) => {
+  const { page, wrong } = await openReport(browser, report("empty"));
+  assert.equal(await countText(page), "0 of 0 programs");
+  assert.equal(await page.title(), "no program was checked");
+  await sortBy(page, "Blocks");
+  await page.locator("#grid").press("ArrowDown");
+  await page.locator("#filter-text").fill("part");
+  assert.equal(await page.locator("#program").isVisible(), false);
+  assert.deepEqual(wrong, []);
+});
+
+test("between phone and desk nothing sticks out either", async (browser) => {
+  for (const width of [560, 720, 1000, 1149, 1150, 1900]) {
+    const { page } = await openReport(browser, report("shop"), { width });
+    await page.locator(".grid-row").nth(1).click();
+    assert.equal(await isWide(page), false, `${width} px`);
+    await keepPicture(page, `${folder}/batch-shop-${width}.png`, { fullPage: true });
+    await page.close();
+  }
+});
+
 test("the program with the least margin is a click away, and the theme is", async (browser) => {
   const { page } = await openReport(browser, report("shop"));
   await page.locator("#summary .link").click();
@@ -175,7 +196,7 @@ test("ten thousand programs open at once, scroll, sort and filter without waitin
   assert.equal(await countText(page), "1 of 10001 programs");
   await page.locator(".grid-row").first().click();
   assert.equal(await page.locator("#program h3").first().textContent(), "part 9999.nc");
-  await page.screenshot({ path: `${folder}/batch-large.png` });
+  await keepPicture(page, `${folder}/batch-large.png`);
   console.log(`    opened in ${opened} ms, slowest sort or filter ${Math.max(...Object.values(took)).toFixed(0)} ms`);
   assert.deepEqual(wrong, []);
 });

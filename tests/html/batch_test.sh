@@ -29,6 +29,6 @@ END
 make_report 2 shop --no-cache --format html -o shop.html # one of them cannot be run to its end
 make_report 0 "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
     --setup "$assets/setups/clamped_plate.toml"
-"$large_page" large.html
+"$large_page" large.html empty.html
 
 exec node batch_test.mjs "$work"

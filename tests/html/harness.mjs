@@ -20,6 +20,7 @@ export async function runAll() {
       ++failed;
       console.log("FAILED  " + name + "\n" + error.message);
     }
+    for (const context of browser.contexts()) await context.close();
   }
   await browser.close();
   console.log(`${tests.length - failed} passed, ${failed} failed`);
@@ -29,3 +30,14 @@ export async function runAll() {
 export const isWide = (page) => page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
 export const lightness = (page) =>
   page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b));
+
+/** Keeps a picture of a page. A browser on a busy machine now and then has none at the first time. */
+export async function keepPicture(page, path, more = {}) {
+  for (let left = 2; ; --left) {
+    try {
+      return await page.screenshot({ path, ...more });
+    } catch (error) {
+      if (left === 0) throw error;
+    }
+  }
+}

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { launch, openReport } from "./browser.mjs";
-import { isWide, lightness, runAll, test } from "./harness.mjs";
+import { isWide, keepPicture, lightness, runAll, test } from "./harness.mjs";
 
 const folder = process.argv[2];
 const report = (name) => `${folder}/${name}.html`;
@@ -20,7 +20,7 @@ for (const colorScheme of ["light", "dark"])
       test(`${name}, ${colorScheme}, ${width} px wide: opens without an error or a request, nothing sticks out`, async (browser) => {
         const { page, wrong } = await openReport(browser, report(name), { width, colorScheme });
         await page.waitForTimeout(300);
-        await page.screenshot({ path: `${folder}/${name}-${colorScheme}-${width}.png`, fullPage: true });
+        await keepPicture(page, `${folder}/${name}-${colorScheme}-${width}.png`, { fullPage: true });
         assert.equal(await isWide(page), false);
         assert.equal((await lightness(page)) > 384, colorScheme === "light");
         assert.deepEqual(wrong, []);
@@ -176,7 +176,7 @@ test("light and dark can be changed by hand", async (browser) => {
   const before = await background();
   await page.locator("#theme").click();
   assert.notEqual(await background(), before);
-  await page.screenshot({ path: `${folder}/turned-dark.png` });
+  await keepPicture(page, `${folder}/turned-dark.png`);
   await page.locator("#theme").click();
   assert.equal(await background(), before);
 });
