@@ -3,6 +3,7 @@
 
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
+#include "tests/support/usage.h"
 
 namespace app_test {
 namespace {
@@ -106,6 +107,24 @@ TEST_F(BatchSurvival, GoesOnWithFewerThreadsThanWereAskedFor) {
     const Ran ran = feeler({"check", lib(), "--no-cache", "--jobs", "300"}, "ulimit -v 700000;");
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_THAT(ran.out, HasSubstr("402 programs in"));
+}
+
+TEST_F(BatchSurvival, KeepsTheModelsOfAllJobsWithinTheMemory) {
+    const std::string setup = "mesh_size = 0.25\n[stock]\nbox = [[0, 0, -100], [500, 400, 0]]\n";
+    for (const char* name : {"a", "b", "c", "d"}) {
+        folder.write(std::string("lib/big ") + name + ".nc", bytes_of(folder / "lib/other.nc"));
+        folder.write(std::string("lib/big ") + name + ".toml", setup);
+    }
+    const auto peak = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {FEELER_BINARY, "check"});
+        const test_support::Usage usage = test_support::usage_of(words, folder / "out");
+        EXPECT_LE(usage.status, 1);
+        return usage.kib;
+    };
+    const long one = peak({lib() + "/big a.nc"});
+    const long all = peak({lib() + "/big *.nc", "--jobs", "4", "--memory", "1"});
+    EXPECT_GT(one, 100'000) << "else nothing is shown";
+    EXPECT_LT(all, one + one / 3);
 }
 
 } // namespace
