@@ -51,8 +51,9 @@ core::Error stopped_before(const CheckJob& job) {
     return {core::ErrorCode::io, {}, "the check was stopped before its first block", job.program};
 }
 
-/// What a check takes beside the model of its stock, bytes: measured of programs of 1,000 to 400,000
-/// blocks, their text, results and findings among it. A loop makes more of a line than that.
+/// What a check takes beside the model of its stock, bytes: measured of programs of 1,000 to
+/// 400,000 blocks, their text, results and findings among it. A loop makes more of a line than
+/// that.
 double memory_beside_model(const gcode::Program& program) {
     constexpr double of_any = 16e6, of_line = 600.0;
     return of_any + of_line * static_cast<double>(program.line_starts.size());

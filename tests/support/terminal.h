@@ -64,7 +64,8 @@ public:
     /// What has come up to now and was not asked for.
     std::string seen_so_far() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
-        while (::poll(&ready, 1, 0) > 0 && more());
+        while (::poll(&ready, 1, 0) > 0 && more())
+            ;
         return screen_;
     }
 
