@@ -11,34 +11,20 @@
 #include "app/report/rule_tally.h"
 #include "app/report/skipped_group.h"
 #include "tests/support/large_batch.h"
+#include "tests/support/page_data.h"
 
 namespace app {
 namespace {
 
 using core::Severity;
 using nlohmann::json;
+using test_support::count_of;
 using test_support::large_batch;
 using test_support::one_of_many;
+using test_support::summed;
+using test_support::unpacked;
 using testing::HasSubstr;
 using testing::Not;
-
-size_t count_of(const std::string& text, const std::string& part) {
-    size_t count = 0;
-    for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
-    return count;
-}
-
-std::vector<int64_t> unpacked(const json& runs) {
-    std::vector<int64_t> values;
-    for (size_t i = 0; i < runs.size(); i += 2)
-        values.insert(values.end(), runs[i + 1].get<size_t>(), runs[i].get<int64_t>());
-    return values;
-}
-
-std::vector<int64_t> summed(std::vector<int64_t> steps) {
-    for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
-    return steps;
-}
 
 TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
     ProgramResult program{.verdict = core::Verdict::clear, .blocks = 3};

@@ -8,11 +8,15 @@
 #include "app/report/html_columns.h"
 #include "app/report/html_report.h"
 #include "app/report/html_text.h"
+#include "tests/support/page_data.h"
 
 namespace app {
 namespace {
 
 using nlohmann::json;
+using test_support::count_of;
+using test_support::summed;
+using test_support::unpacked;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -28,24 +32,6 @@ std::string every_byte() {
     std::string text;
     for (int byte = 0; byte < 256; ++byte) text += static_cast<char>(byte);
     return text;
-}
-
-size_t count_of(const std::string& text, const std::string& part) {
-    size_t count = 0;
-    for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
-    return count;
-}
-
-std::vector<int64_t> unpacked(const json& runs) {
-    std::vector<int64_t> values;
-    for (size_t i = 0; i < runs.size(); i += 2)
-        values.insert(values.end(), runs[i + 1].get<size_t>(), runs[i].get<int64_t>());
-    return values;
-}
-
-std::vector<int64_t> summed(std::vector<int64_t> steps) {
-    for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
-    return steps;
 }
 
 TEST(HtmlText, LeavesNothingThatABrowserReadsAsMoreThanText) {
