@@ -42,7 +42,9 @@ std::string bar_text(double share, const std::string& what, double seconds) {
 } // namespace
 
 void stop_on_interrupt() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, note_interrupt);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
+    // nohup has said that the check is to outlive its terminal.
+    if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
 }
 

@@ -73,15 +73,27 @@ TEST_F(BatchSurvival, ReplacesItsOwnOldReportBesideThePrograms) {
 
 TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
     folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
-    for (const char* signal : {"TERM", "HUP"}) {
-        const Ran ran =
-            feeler({"check", folder / "lib/other.nc", folder / "long.nc", "--jobs", "2", "--format",
-                    "json", "-o", folder / "report.json"},
-                   std::string("timeout --foreground --preserve-status -s ") + signal + " 1");
+    for (const std::string signal : {"TERM", "HUP"}) {
+        const Ran ran = feeler({"check", folder / "lib/other.nc", folder / "long.nc", "--jobs", "2",
+                                "--format", "json", "-o", folder / "report.json"},
+                               "timeout --foreground --preserve-status -s " + signal
+                                   + " 1 env --default-signal=" + signal);
         EXPECT_EQ(ran.status, 2) << signal;
         EXPECT_EQ(json::parse(bytes_of(folder / "report.json"))["unchecked"],
                   json({folder / "long.nc"}));
     }
+}
+
+TEST_F(BatchSurvival, OutlivesItsTerminalUnderNohup) {
+    for (int i = 0; i < 12; ++i)
+        folder.write("lib/p" + std::to_string(i) + ".nc",
+                     program({"F500.", "N10 G1 X#1", "#1=#1+0.01", "IF[#1LT50.]GOTO 10"}));
+    const Ran ran =
+        feeler({"check", lib(), "--no-cache", "--format", "json", "-o", folder / "report.json"},
+               "timeout --foreground --preserve-status -s HUP 0.2 "
+               "env --ignore-signal=HUP");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(json::parse(bytes_of(folder / "report.json"))["programs"].size(), 14U);
 }
 
 TEST_F(BatchSurvival, WritesItsReportsWhenNobodyReadsItsLines) {
