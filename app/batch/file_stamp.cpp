@@ -1,5 +1,6 @@
 #include "app/batch/file_stamp.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include <sys/stat.h>
@@ -33,6 +34,9 @@ FileStamp stamp_of(const std::string& path) {
             .changed = nanoseconds(status.st_ctim)};
 }
 
-bool is_fresh(const FileStamp& stamp) { return stamp.is_there && stamp.modified > now() - fresh; }
+bool is_fresh(const FileStamp& stamp) {
+    // An older file that was put in the place of another keeps the time of its bytes.
+    return stamp.is_there && std::max(stamp.modified, stamp.changed) > now() - fresh;
+}
 
 } // namespace app

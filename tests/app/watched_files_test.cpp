@@ -101,6 +101,14 @@ TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
     EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
 }
 
+TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
+    folder.write("old.nc", "G0 X2\n");
+    let_it_rest();
+    fs::rename(folder / "old.nc", folder / "a.nc");
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
+}
+
 TEST_F(WatchedFilesTest, AreSettledOnceNothingMovesAnyMore) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
     EXPECT_TRUE(files.look_again().is_settled);
