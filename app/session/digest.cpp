@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include "core/base/file_reads.h"
+
 namespace app {
 namespace {
 
@@ -46,6 +48,7 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::string& path) {
+    if (!core::is_file(path)) return {};
     std::ifstream file(path, std::ios::binary);
     if (!file) return {};
     Digest digest;

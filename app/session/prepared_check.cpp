@@ -9,6 +9,7 @@
 #include "app/session/inferred_setup.h"
 #include "app/session/stopwatch.h"
 #include "app/session/timing_notes.h"
+#include "core/base/file_reads.h"
 #include "core/sim/allowance.h"
 
 namespace app {
@@ -80,6 +81,15 @@ void take_tool_at_start(PreparedCheck& check) {
                     core::value_of(*setup.tool_at_start)));
 }
 
+/// A program, and the digest of the very bytes that it was read from: a pipe gives them only once.
+core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
+    const core::FileListening listening([&](const core::FileLook& look) {
+        if (look.question == core::FileQuestion::content && look.answer)
+            sha256 = sha256_of(*look.answer);
+    });
+    return gcode::read_program(path);
+}
+
 } // namespace
 
 core::Result<PreparedCheck> read_check(const CheckJob& job) {
@@ -87,10 +97,9 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     PreparedCheck check;
     CheckRun& run = check.run;
     run.program_file = job.program;
-    auto program = gcode::read_program(job.program);
+    auto program = read_once(job.program, run.sha256);
     if (!program) return tl::unexpected(named(program.error(), job.program));
     check.program = std::make_unique<const gcode::Program>(*std::move(program));
-    run.sha256 = sha256_of_file(job.program);
     FEELER_TRY(check.file,
                job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
     SetupFile& file = check.file;

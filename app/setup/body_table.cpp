@@ -210,9 +210,10 @@ std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup,
 }
 
 core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
+    if (const std::string why = core::why_no_file(path); !why.empty())
+        return core::fail(core::ErrorCode::io, why);
     const std::optional<std::string> bytes = core::file_bytes(path);
-    if (!bytes)
-        return core::fail(core::ErrorCode::io, "there is no such file, or it cannot be read");
+    if (!bytes) return core::fail(core::ErrorCode::io, "it cannot be read");
     return core::stock_record(*bytes);
 }
 

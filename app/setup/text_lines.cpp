@@ -18,9 +18,10 @@ core::Error io_error(const std::string& path, const std::string& why) {
 } // namespace
 
 core::Result<std::vector<std::string>> lines_of_file(const std::string& path) {
-    if (core::is_folder(path)) return tl::unexpected(io_error(path, "is a folder, not a file"));
+    if (const std::string why = core::why_no_file(path); !why.empty())
+        return tl::unexpected(io_error(path, why));
     std::optional<std::string> bytes = core::file_bytes(path, largest_file);
-    if (!bytes) return tl::unexpected(io_error(path, "there is no such file, or no permission"));
+    if (!bytes) return tl::unexpected(io_error(path, "cannot be read"));
     if (bytes->size() > largest_file)
         return tl::unexpected(io_error(path, "is larger than 16 MiB: it is no such table"));
     std::istringstream stream(*std::move(bytes));

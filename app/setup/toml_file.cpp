@@ -23,10 +23,8 @@ core::Result<toml::table> parsed_toml(std::string_view text) {
 
 core::Result<toml::table> read_toml(const std::string& path) {
     using core::ErrorCode;
-    if (core::is_folder(path))
-        return tl::unexpected<core::Error>({ErrorCode::io, {}, "is a folder, not a file", path});
-    if (!core::is_there(path))
-        return tl::unexpected<core::Error>({ErrorCode::io, {}, "there is no such file", path});
+    if (std::string why = core::why_no_file(path); !why.empty())
+        return tl::unexpected<core::Error>({ErrorCode::io, {}, std::move(why), path});
     const std::optional<std::string> bytes = core::file_bytes(path);
     if (!bytes) return tl::unexpected<core::Error>({ErrorCode::io, {}, "cannot be read", path});
     try {

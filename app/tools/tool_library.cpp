@@ -81,11 +81,11 @@ core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit 
 } // namespace
 
 core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
-    const std::optional<std::string> bytes =
-        core::is_file(path) ? core::file_bytes(path) : std::nullopt;
+    if (std::string why = core::why_no_file(path); !why.empty())
+        return tl::unexpected(core::Error{ErrorCode::io, {}, std::move(why), path.string()});
+    const std::optional<std::string> bytes = core::file_bytes(path);
     if (!bytes)
-        return tl::unexpected(
-            core::Error{ErrorCode::io, {}, "there is no such file", path.string()});
+        return tl::unexpected(core::Error{ErrorCode::io, {}, "cannot be read", path.string()});
     nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
     if (json.is_discarded())
         return tl::unexpected(core::Error{ErrorCode::syntax, {}, "is no JSON", path.string()});

@@ -12,6 +12,12 @@ namespace {
 thread_local const FileListening* youngest = nullptr;
 
 std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t limit) {
+    std::error_code failure;
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        errno = std::filesystem::is_directory(status) ? EISDIR : ENOTSUP;
+        return std::nullopt;
+    }
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return std::nullopt;
@@ -24,6 +30,17 @@ std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t 
     }
     if (stream.bad()) return std::nullopt;
     return bytes;
+}
+
+/// What there is of a name that leads to nothing.
+std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
+                                            const std::error_code& failure) {
+    std::error_code ignored;
+    if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, ignored))) return "link";
+    const bool is_absent = failure == std::errc::no_such_file_or_directory
+                           || failure == std::errc::not_a_directory
+                           || failure == std::errc::filename_too_long;
+    return is_absent ? std::nullopt : std::optional<std::string_view>("unknown");
 }
 
 } // namespace
@@ -61,8 +78,19 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
         answer = "folder";
     else if (std::filesystem::exists(status))
         answer = "other";
+    else
+        answer = leftover_of(path, failure);
     note_look({FileQuestion::presence, path.string(), {}, answer});
     return answer;
+}
+
+std::string why_no_file(const std::filesystem::path& path) {
+    const auto found = presence_of(path);
+    if (!found) return "there is no such file";
+    if (*found == "folder") return "is a folder, not a file";
+    if (*found == "link") return "is a link that leads nowhere";
+    if (*found == "other") return "is a pipe or a device, not a file";
+    return *found == "file" ? "" : "cannot be looked at";
 }
 
 bool is_there(const std::filesystem::path& path) { return presence_of(path).has_value(); }

@@ -13,7 +13,7 @@ namespace core {
 /// What a reader asks the disk.
 enum class FileQuestion : uint8_t {
     content,   // of the file: its bytes; no answer when it cannot be read, or not to its end
-    presence,  // "file", "folder", or "other" for a device; no answer when there is none
+    presence,  // as presence_of says it; no answer when there is nothing
     in_folder, // where a file of that name leads to; no answer when there is none in the folder
     any_case,  // the name of a file that is called so in any case; no answer when there is none
     listing,   // of a folder, all names in it; the answer is not told
@@ -49,14 +49,19 @@ private:
 void note_look(const FileLook& look);
 
 /// The bytes of a file; empty when it cannot be read, with the reason in errno. Of a file that is
-/// longer than `limit` one byte more than that is read.
+/// longer than `limit` one byte more than that is read. Pipes and devices, which may never end, are
+/// not read.
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       size_t limit = std::numeric_limits<size_t>::max() - 1);
 
-/// What there is of this name: "file" that has bytes to be read, "folder", "other", or nothing.
+/// What there is of this name: "file" that has bytes to be read, "folder", "link" that leads
+/// nowhere, "other" for a pipe or a device, "unknown" when the disk does not say, or nothing.
 std::optional<std::string_view> presence_of(const std::filesystem::path& path);
 
-/// Whether there is anything of this name.
+/// Why no bytes can be read by this name: "is a folder, not a file"; empty for a file.
+std::string why_no_file(const std::filesystem::path& path);
+
+/// Whether there is anything of this name, be it a link that leads nowhere.
 bool is_there(const std::filesystem::path& path);
 
 /// Whether there is a folder of this name.

@@ -19,10 +19,7 @@ namespace {
 constexpr uintmax_t largest_file = uintmax_t{2} << 30U; // bytes
 
 Result<std::string> read_bytes(const std::filesystem::path& path) {
-    const auto found = presence_of(path);
-    if (!found) return fail(ErrorCode::io, "there is no such file");
-    if (*found == "folder") return fail(ErrorCode::io, "this is a folder");
-    if (*found != "file") return fail(ErrorCode::io, "this is no file");
+    if (const std::string why = why_no_file(path); !why.empty()) return fail(ErrorCode::io, why);
     std::error_code error;
     const uintmax_t size = std::filesystem::file_size(path, error);
     if (error) return fail(ErrorCode::io, error.message());

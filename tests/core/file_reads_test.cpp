@@ -1,6 +1,8 @@
+#include <cerrno>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
@@ -35,6 +37,37 @@ TEST(FileReads, TellOfWhatWasReadAndOfWhatIsNotThere) {
     EXPECT_EQ(looks.seen,
               (std::vector<std::string>{"content a: hello", "content b: -", "presence a: file",
                                         "presence b: -", "presence " + own + ": folder"}));
+}
+
+TEST(FileReads, SayWhatANameLeadsTo) {
+    const ScopedFolder folder;
+    folder.write("a", "hello");
+    std::filesystem::create_symlink("nowhere", folder / "gone");
+    std::filesystem::create_symlink("loop", folder / "loop");
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(core::presence_of(folder / "gone"), "link");
+    EXPECT_EQ(core::presence_of(folder / "loop"), "link");
+    EXPECT_EQ(core::presence_of(folder / "loop/b"), "unknown");
+    EXPECT_EQ(core::presence_of(folder / "a/b"), std::nullopt);
+    EXPECT_EQ(core::presence_of(folder / std::string(300, 'x')), std::nullopt);
+    EXPECT_TRUE(core::is_there(folder / "gone"));
+    EXPECT_FALSE(core::is_file(folder / "gone"));
+    EXPECT_EQ(core::why_no_file(folder / "a"), "");
+    EXPECT_EQ(core::why_no_file(folder / "b"), "there is no such file");
+    EXPECT_EQ(core::why_no_file(folder / "gone"), "is a link that leads nowhere");
+    EXPECT_EQ(core::why_no_file(folder / "loop/b"), "cannot be looked at");
+    EXPECT_EQ(core::why_no_file(folder / "pipe"), "is a pipe or a device, not a file");
+    EXPECT_EQ(core::why_no_file(folder.path()), "is a folder, not a file");
+}
+
+TEST(FileReads, WaitForNoPipeAndReadNoDevice) {
+    const ScopedFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(core::file_bytes(folder / "pipe"), std::nullopt);
+    EXPECT_EQ(errno, ENOTSUP);
+    EXPECT_EQ(core::file_bytes("/dev/zero"), std::nullopt);
+    EXPECT_EQ(core::file_bytes(folder.path()), std::nullopt);
+    EXPECT_EQ(errno, EISDIR);
 }
 
 TEST(FileReads, OfAFileBeyondTheLimitIsNoContent) {
