@@ -34,10 +34,14 @@ std::optional<fs::path> file_in(const fs::path& folder, const std::string& name)
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {
+    std::error_code ignored;
+    return names_in(folder, ignored);
+}
+
+std::vector<std::string> names_in(const fs::path& folder, std::error_code& failure) {
     std::vector<std::string> names;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error))
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure))
         names.push_back(entry->path().filename().string());
     std::sort(names.begin(), names.end());
     return names;

@@ -27,11 +27,10 @@ public:
             enter(entered);
         }
         std::sort(found.files.begin(), found.files.end());
-        std::sort(folders.begin(), folders.end());
+        std::sort(found.folders.begin(), found.folders.end());
     }
 
     FolderWalk found;
-    std::vector<fs::path> folders; // all that were entered
 
 private:
     bool is_new(const fs::path& folder) {
@@ -41,35 +40,23 @@ private:
     }
 
     void enter(const fs::path& folder) {
-        folders.push_back(folder);
+        found.folders.push_back(folder);
         core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
         std::error_code failure;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
              at.increment(failure))
             if (at->path().filename().string().front() != '.') sort_in(*at);
-        if (failure)
-            found.unreadable.push_back({core::ErrorCode::io,
-                                        {},
-                                        "this folder cannot be read: " + failure.message(),
-                                        folder.string()});
+        if (failure) found.unreadable.push_back(unreadable_folder(folder, failure));
     }
 
     void sort_in(const fs::directory_entry& entry) {
         std::error_code failure;
-        const fs::file_status status = entry.status(failure);
-        if (fs::is_directory(status)) {
-            if (entry.is_symlink(failure))
-                linked_.push_back(entry.path());
-            else if (is_new(entry.path()))
-                real_.push_back(entry.path());
-        } else if (fs::is_regular_file(status)) {
-            found.files.push_back(entry.path().string());
-        } else {
-            const bool is_there = fs::exists(status);
-            found.skipped.push_back({entry.path().string(), is_there
-                                                                ? "is neither a file nor a folder"
-                                                                : "is a link that leads nowhere"});
-        }
+        if (!fs::is_directory(entry.status(failure)))
+            found.sort_in(entry.path());
+        else if (entry.is_symlink(failure))
+            linked_.push_back(entry.path());
+        else if (is_new(entry.path()))
+            real_.push_back(entry.path());
     }
 
     std::deque<fs::path> real_, linked_;
@@ -78,19 +65,32 @@ private:
 
 } // namespace
 
+void FolderWalk::sort_in(const fs::path& path) {
+    std::error_code failure, ignored;
+    const fs::file_status status = fs::status(path, failure);
+    if (fs::is_regular_file(status))
+        files.push_back(path.string());
+    else if (fs::exists(status))
+        skipped.push_back({path.string(), "is neither a file nor a folder"});
+    else if (fs::is_symlink(fs::symlink_status(path, ignored)))
+        skipped.push_back({path.string(), "is a link that leads nowhere"});
+    else if (failure != std::errc::no_such_file_or_directory) // that went while it was listed
+        unreadable.push_back(
+            {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});
+}
+
+core::Error unreadable_folder(const fs::path& folder, const std::error_code& failure) {
+    return {core::ErrorCode::io,
+            {},
+            "this folder cannot be read: " + failure.message(),
+            folder.string()};
+}
+
 FolderWalk walk_folder(const std::string& folder) {
     FolderWalk found = Walk(folder).found;
     std::sort(found.skipped.begin(), found.skipped.end(),
               [](const SkippedFile& a, const SkippedFile& b) { return a.path < b.path; });
     return found;
-}
-
-std::vector<fs::path> folders_below(const fs::path& folder) {
-    const fs::path here = folder.empty() ? fs::path(".") : folder;
-    std::vector<fs::path> below;
-    for (const fs::path& found : Walk(here).folders)
-        if (found != here) below.push_back(folder.empty() ? found.lexically_normal() : found);
-    return below;
 }
 
 } // namespace app

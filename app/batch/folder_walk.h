@@ -15,18 +15,23 @@ struct SkippedFile {
     bool operator==(const SkippedFile&) const = default;
 };
 
-/// What is in a folder and in those below it, without what begins with a dot.
+/// What a search in folders found.
 struct FolderWalk {
-    std::vector<std::string> files;      // sorted; regular ones, also by links
-    std::vector<SkippedFile> skipped;    // that are no files, as broken links and pipes
-    std::vector<core::Error> unreadable; // folders
+    std::vector<std::string> files;             // sorted; regular ones, also by links
+    std::vector<SkippedFile> skipped;           // that are no files, as broken links and pipes
+    std::vector<core::Error> unreadable;        // folders, and what cannot be looked at
+    std::vector<std::filesystem::path> folders; // that were entered, sorted
+
+    /// Takes in what has a name: a file, or why it is none; folders are left to the caller.
+    void sort_in(const std::filesystem::path& path);
 };
 
-/// Links to folders are followed once: a folder that was seen, by device and number, is not entered
-/// again. Real folders come before links to them.
-FolderWalk walk_folder(const std::string& folder);
+/// That a folder could not be searched.
+core::Error unreadable_folder(const std::filesystem::path& folder, const std::error_code& failure);
 
-/// The folders below one, each once, as walk_folder enters them.
-std::vector<std::filesystem::path> folders_below(const std::filesystem::path& folder);
+/// What is in a folder and in those below it, without what begins with a dot. Links to folders are
+/// followed once: a folder that was seen, by device and number, is not entered again. Real folders
+/// come before links to them.
+FolderWalk walk_folder(const std::string& folder);
 
 } // namespace app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -7,16 +8,26 @@
 
 namespace app {
 
-/// What words of a command line, or of a project, stand for.
-struct FoundPrograms {
-    std::vector<std::string> programs; // in the order of the words, each once
-    std::vector<SkippedFile> skipped;  // found, but no NC programs
-    std::vector<core::Error> failures; // words that stand for nothing, files that cannot be read
+/// A program that a word stands for.
+struct FoundProgram {
+    std::string path;
+    std::string project;   // the project file that has a say in its folder; empty: nobody's
+    bool is_named = false; // by its own name, and not only found
 };
 
-/// The programs that words stand for: a file is taken as it is; a folder is searched with all
-/// folders in it; a pattern names files. What was searched for is looked into, and skipped when it
-/// is no NC program.
-FoundPrograms find_programs(const std::vector<std::string>& words);
+/// What words of a command line, or of a project, stand for.
+struct FoundPrograms {
+    std::vector<FoundProgram> programs; // in the order of the words, each once
+    std::vector<std::string> projects;  // project files in folders that were searched as a whole
+    std::vector<SkippedFile> skipped;   // found, but no NC programs
+    std::vector<core::Error> failures;  // words that stand for nothing, files that cannot be read
+};
+
+/// The programs that words stand for, relative to a folder (empty: the working folder): a file is
+/// taken as it is; a folder is searched with all folders in it; a pattern names files. What was
+/// searched for is looked into, and skipped when it is no NC program. It belongs to the nearest
+/// project file above it, as far up as the search began; a file that is named belongs to nobody.
+FoundPrograms find_programs(const std::vector<std::string>& words,
+                            const std::filesystem::path& folder = {});
 
 } // namespace app

@@ -1,5 +1,6 @@
 #include "app/batch/project_file.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/batch/plain_path.h"
@@ -11,14 +12,13 @@ namespace {
 
 constexpr double largest_allowance = 1000.0; // mm; as in a set-up
 
-std::string path_in(const std::filesystem::path& folder, const std::string& name) {
-    return plain_path(folder / name);
-}
-
 /// The keys that stand both under `[[program]]` and before all of them.
 ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder) {
     ProgramTerms terms;
-    if (const auto setup = table.string("setup")) terms.setup = path_in(folder, *setup);
+    if (const auto setup = table.string("setup")) {
+        if (setup->empty()) table.refuse("setup", "names no file");
+        terms.setup = plain_path(folder / *setup);
+    }
     if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
                                                  "siemens-iso", "heidenhain"}))
         terms.dialect = gcode::dialect_named(*name);
@@ -32,21 +32,22 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
     return terms;
 }
 
-std::vector<std::string> read_files(TableReader& table, const std::filesystem::path& folder) {
+std::vector<std::string> read_files(TableReader& table) {
     std::vector<std::string> names;
     if (table.is_list("files"))
         names = table.strings("files", 0).value_or(std::vector<std::string>{});
     else if (const auto name = table.string("files"))
         names = {*name};
-    if (names.empty() && table.has("files")) table.refuse("files", "names no file");
-    for (std::string& name : names) name = path_in(folder, name);
+    const bool has_blank = std::find(names.begin(), names.end(), "") != names.end();
+    if (has_blank || (names.empty() && table.has("files")))
+        table.refuse("files", "names no file; \".\" is the project's folder");
     return names;
 }
 
 void read_root(TableReader& root, const std::filesystem::path& folder, Project& project) {
     project.terms = read_terms(root, folder);
     for (TableReader& table : root.tables("program", "[[program]]")) {
-        ProjectEntry entry{read_files(table, folder), read_terms(table, folder), table.line()};
+        ProjectEntry entry{read_files(table), read_terms(table, folder), table.line()};
         table.finish(); // first: `file` for `files` is better called unknown than missing
         if (entry.files.empty()) table.need("files");
         project.entries.push_back(std::move(entry));

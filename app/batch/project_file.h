@@ -25,7 +25,7 @@ ProgramTerms overlaid(ProgramTerms terms, const ProgramTerms& over);
 
 /// One `[[program]]`: files, folders and patterns, and what counts for them.
 struct ProjectEntry {
-    std::vector<std::string> files;
+    std::vector<std::string> files; // as the project has them, relative to its folder
     ProgramTerms terms;
     uint32_t line = 0;
 };
@@ -37,7 +37,7 @@ struct Project {
     std::vector<ProjectEntry> entries;
 };
 
-/// Reads a project file (TOML). Its paths are relative to its folder.
+/// Reads a project file (TOML). The paths of set-ups come out relative to the working folder.
 ///
 /// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value.
 core::Result<Project> read_project(const std::string& path);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "tests/app/checked.h"
@@ -100,6 +101,26 @@ TEST_F(Batch, TellsOfAFileThatCannotBeRead) {
     EXPECT_EQ(ran.status, 2);
     EXPECT_THAT(ran.out, HasSubstr("ermission"));
     EXPECT_THAT(ran.out, HasSubstr("violation  " + folder / "near.nc"));
+}
+
+TEST_F(Batch, ReadsOneProgramFromAPipeAndNothingElse) {
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string piped =
+        "timeout 20 dd status=none if='" + folder / "near.nc" + "' of='" + pipe + "' & timeout 20";
+    const Ran alone = check({pipe, "--setup", folder / "near.toml", "--format", "json"}, piped);
+    EXPECT_EQ(alone.status, 1) << alone.err;
+    const Ran by_name = check({folder / "near.nc", "--format", "json"});
+    EXPECT_EQ(json::parse(alone.out)["sha256"], json::parse(by_name.out)["sha256"]);
+    const Ran beside = check({folder / "fine.nc", "/dev/zero"}, "timeout 20");
+    EXPECT_EQ(beside.status, 2);
+    EXPECT_THAT(beside.out, HasSubstr("is a pipe or a device"));
+    EXPECT_THAT(beside.out, HasSubstr("clear      " + folder / "fine.nc"));
+    for (const char* option : {"--setup", "--tool-table", "--parameters"}) {
+        const Ran ran = check({folder / "fine.nc", option, "/dev/zero"}, "timeout 20");
+        EXPECT_EQ(ran.status, 2) << option;
+        EXPECT_THAT(ran.err, HasSubstr("/dev/zero: is a pipe or a device, not a file")) << option;
+    }
 }
 
 TEST_F(Batch, ReadsAProjectInAFolder) {

@@ -27,11 +27,27 @@ protected:
         folder.write(name, bytes);
     }
 
-    FoundPrograms find(const std::vector<std::string>& names) const {
+    /// What find_programs says, but for projects.
+    struct Found {
+        std::vector<std::string> programs;
+        std::vector<SkippedFile> skipped;
+        std::vector<core::Error> failures;
+
+        /// As they are told: name and reason.
+        std::vector<std::string> skips() const {
+            std::vector<std::string> all;
+            for (const SkippedFile& file : skipped) all.push_back(file.path + " " + file.why);
+            return all;
+        }
+    };
+
+    Found find(const std::vector<std::string>& names) const {
         std::vector<std::string> words;
         for (const std::string& name : names) words.push_back(folder / name);
-        FoundPrograms found = find_programs(words);
-        for (std::string& program : found.programs) program = short_name(program);
+        const FoundPrograms programs = find_programs(words);
+        Found found{{}, programs.skipped, programs.failures};
+        for (const FoundProgram& program : programs.programs)
+            found.programs.push_back(short_name(program.path));
         for (SkippedFile& file : found.skipped) file.path = short_name(file.path);
         for (core::Error& error : found.failures) error.file = short_name(error.file);
         return found;
@@ -48,7 +64,7 @@ TEST_F(ProgramFinder, SearchesAFolderWithAllBelowItInOrder) {
     for (const char* name :
          {"b.nc", "a.NC", "deep/er/c.ngc", "deep/d.tap", ".hidden/e.nc", ".f.nc"})
         write(name);
-    const FoundPrograms found = find({"."});
+    const Found found = find({"."});
     EXPECT_THAT(found.programs, ElementsAre("a.NC", "b.nc", "deep/d.tap", "deep/er/c.ngc"));
     EXPECT_THAT(found.failures, IsEmpty());
 }
@@ -61,15 +77,13 @@ TEST_F(ProgramFinder, NamesWhatItSkipsInAFolder) {
     write("image.nc", std::string("\x89PNG\0\0\0", 7));
     fs::create_symlink("nowhere", folder / "gone.nc");
     ASSERT_EQ(::mkfifo((folder / "pipe.nc").c_str(), 0600), 0);
-    const FoundPrograms found = find({"."});
+    const Found found = find({"."});
     EXPECT_THAT(found.programs, ElementsAre("a.nc"));
-    std::vector<std::string> names;
-    for (const SkippedFile& file : found.skipped) names.push_back(file.path + " " + file.why);
-    EXPECT_THAT(names, testing::UnorderedElementsAre("part.stl is a mesh or a drawing",
-                                                     HasSubstr("notes.txt most of its lines"),
-                                                     "empty.nc is empty", HasSubstr("image.nc"),
-                                                     "gone.nc is a link that leads nowhere",
-                                                     "pipe.nc is neither a file nor a folder"));
+    EXPECT_THAT(found.skips(), testing::UnorderedElementsAre(
+                                   "part.stl is a mesh or a drawing",
+                                   HasSubstr("notes.txt most of its lines"), "empty.nc is empty",
+                                   HasSubstr("image.nc"), "gone.nc is a link that leads nowhere",
+                                   "pipe.nc is neither a file nor a folder"));
 }
 
 TEST_F(ProgramFinder, TakesWhatIsNamedAsItIs) {
@@ -81,7 +95,7 @@ TEST_F(ProgramFinder, TakesWhatIsNamedAsItIs) {
 TEST_F(ProgramFinder, FailsWhereNothingIsFound) {
     fs::create_directory(folder / "empty");
     write("texts/notes.md", "# no program\n");
-    const FoundPrograms found = find({"empty", "texts", "*.tap"});
+    const Found found = find({"empty", "texts", "*.tap"});
     EXPECT_THAT(found.programs, IsEmpty());
     ASSERT_EQ(found.failures.size(), 3U);
     EXPECT_EQ(found.failures[0].file + " " + found.failures[0].message,
@@ -96,7 +110,7 @@ TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
     fs::create_directory_symlink("..", folder / "a/up");
     fs::create_directory_symlink(".", folder / "a/self");
     fs::create_directory_symlink("a", folder / "Link before its target");
-    const FoundPrograms found = find({"."});
+    const Found found = find({"."});
     EXPECT_THAT(found.programs, ElementsAre("a/one.nc"));
     EXPECT_THAT(find({"**/*.nc"}).programs, ElementsAre("a/one.nc"));
 }
@@ -116,16 +130,105 @@ TEST_F(ProgramFinder, TakesAProgramOnceHoweverOftenItIsNamed) {
     EXPECT_THAT(find({"b.nc", ".", "./b.nc", "*.nc"}).programs, ElementsAre("b.nc", "a.nc"));
 }
 
+TEST_F(ProgramFinder, TakesAProgramOnceHoweverItsFolderIsSpelled) {
+    write("u/a.nc");
+    write("u/notes.md");
+    write("v/b.nc");
+    fs::create_directory_symlink("u", folder / "link");
+    const Found found = find({"u", "u/../u", "link", "v/../u/*", "u/../v/b.nc", "v"});
+    EXPECT_THAT(found.programs, ElementsAre("u/a.nc", "u/../v/b.nc"));
+    EXPECT_THAT(found.skips(), ElementsAre("u/notes.md is a document"));
+    EXPECT_THAT(found.failures, IsEmpty());
+}
+
+TEST_F(ProgramFinder, KeepsALinkToAProgramBesideIt) {
+    write("a.nc");
+    fs::create_symlink("a.nc", folder / "b.nc");
+    EXPECT_THAT(find({"."}).programs, ElementsAre("a.nc", "b.nc"));
+}
+
+/// Root may read everything: nobody, for a while.
+class Unprivileged {
+public:
+    explicit Unprivileged(const ScopedFolder& folder) : is_root_(::geteuid() == 0) {
+        fs::permissions(folder.path(), fs::perms::all);
+        if (is_root_ && ::seteuid(65534) != 0) ADD_FAILURE() << "cannot become nobody";
+    }
+    ~Unprivileged() {
+        if (is_root_ && ::seteuid(0) != 0) ADD_FAILURE() << "cannot become root again";
+    }
+    Unprivileged(const Unprivileged&) = delete;
+    Unprivileged& operator=(const Unprivileged&) = delete;
+
+private:
+    bool is_root_;
+};
+
 TEST_F(ProgramFinder, TellsOfAFolderThatCannotBeRead) {
-    if (::geteuid() == 0) GTEST_SKIP() << "root can read every folder";
     write("a.nc");
     write("locked/b.nc");
+    write("listed/c.nc");
     fs::permissions(folder / "locked", fs::perms::none);
-    const FoundPrograms found = find({"."});
+    fs::permissions(folder / "listed", fs::perms(0444));
+    for (const char* word : {".", "**/*.nc", "*/*.nc", "?????d/[bc].nc"}) {
+        SCOPED_TRACE(word);
+        Found found;
+        {
+            const Unprivileged nobody(folder);
+            found = find({word, "a.nc"});
+        }
+        EXPECT_THAT(found.programs, ElementsAre("a.nc"));
+        ASSERT_EQ(found.failures.size(), 2U);
+        std::vector<std::string> texts;
+        for (const core::Error& error : found.failures)
+            texts.push_back(error.file + " " + error.message);
+        EXPECT_THAT(texts, testing::UnorderedElementsAre(
+                               HasSubstr("locked this folder cannot be read: Permission"),
+                               HasSubstr("listed/c.nc cannot be looked at: Permission")));
+    }
     fs::permissions(folder / "locked", fs::perms::owner_all);
+    fs::permissions(folder / "listed", fs::perms::owner_all);
+}
+
+TEST_F(ProgramFinder, NamesWhatAPatternPassesOver) {
+    write("ok/a.nc");
+    fs::create_symlink("nowhere", folder / "ok/gone.nc");
+    fs::create_symlink("not mounted", folder / "share");
+    fs::create_symlink("loop", folder / "loop");
+    ASSERT_EQ(::mkfifo((folder / "ok/pipe.nc").c_str(), 0600), 0);
+    const std::vector<std::string> expected = {
+        "loop is a link that leads nowhere", "ok/gone.nc is a link that leads nowhere",
+        "ok/pipe.nc is neither a file nor a folder", "share is a link that leads nowhere"};
+    for (const char* word : {"**/*.nc", "*/*.nc"}) {
+        const Found found = find({word});
+        EXPECT_THAT(found.programs, ElementsAre("ok/a.nc")) << word;
+        EXPECT_THAT(found.skips(), testing::ElementsAreArray(expected)) << word;
+        EXPECT_THAT(found.failures, IsEmpty()) << word;
+    }
+    EXPECT_THAT(find({"*/a.nc", "no*/a.nc"}).failures, testing::SizeIs(1));
+}
+
+TEST_F(ProgramFinder, ReadsNoPipeAndNoDevice) {
+    write("a.nc");
+    ASSERT_EQ(::mkfifo((folder / "pipe.nc").c_str(), 0600), 0);
+    fs::create_symlink("/dev/zero", folder / "zeros.nc");
+    const Found found = find({"a.nc", "pipe.nc", "zeros.nc", "*.nc"});
     EXPECT_THAT(found.programs, ElementsAre("a.nc"));
-    ASSERT_EQ(found.failures.size(), 1U);
-    EXPECT_THAT(found.failures[0].message, HasSubstr("ermission"));
+    ASSERT_EQ(found.failures.size(), 2U);
+    EXPECT_THAT(found.failures[0].message, HasSubstr("pipe or a device"));
+    EXPECT_EQ(found.failures[1].file, "zeros.nc");
+}
+
+TEST_F(ProgramFinder, TakesAFolderAsItIsCalledAndOnlyWordsForPatterns) {
+    write("jobs[1]/a.nc");
+    write("jobs[1]/deep/b.nc");
+    write("jobs1/wrong.nc");
+    for (const std::string word : {"**/*.nc", ".", "*"}) {
+        const FoundPrograms found = find_programs({word}, folder / "jobs[1]");
+        ASSERT_FALSE(found.programs.empty()) << word;
+        EXPECT_EQ(short_name(found.programs[0].path), "jobs[1]/a.nc") << word;
+        EXPECT_EQ(found.programs.size(), word == "*" ? 1U : 2U) << word;
+    }
 }
 
 TEST_F(ProgramFinder, KnowsPatterns) {

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "app/batch/batch_job.h"
@@ -9,7 +10,10 @@ namespace {
 
 using core::Severity;
 using test_support::ScopedFolder;
+using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 const std::string good = "G21 G90\nG0 X1.\nM30\n";
 
@@ -97,6 +101,136 @@ TEST_F(ProjectFile, NamesTheLineOfAPatternThatNamesNothing) {
     EXPECT_THAT(plan->failures[0].message, HasSubstr("*.tap names no file"));
 }
 
+/// Projects in folders below each other; names are told relative to the uppermost.
+class NestedProject : public testing::Test {
+protected:
+    void SetUp() override {
+        for (const char* name : {"top.nc", "job/a.nc", "job/b.nc", "job/sub/c.nc", "other/d.nc"})
+            write(name, good);
+        write("job/feeler.toml", "allowance = 4\n[[program]]\nfiles = [\"a.nc\", "
+                                 "\"../other/d.nc\"]\nsetup = \"vise.toml\"\n");
+    }
+
+    void write(const std::string& name, const std::string& bytes) const {
+        std::filesystem::create_directories(std::filesystem::path(folder / name).parent_path());
+        folder.write(name, bytes);
+    }
+
+    std::string short_name(const std::string& path) const {
+        const std::string whole = std::filesystem::path(path).lexically_normal();
+        return whole.substr(std::min(whole.size(), folder.path().string().size() + 1));
+    }
+
+    BatchPlan plan(const std::vector<std::string>& names) const {
+        std::vector<std::string> words;
+        for (const std::string& name : names) words.push_back(folder / name);
+        const auto made = plan_batch(words, {});
+        if (!made) ADD_FAILURE() << made.error().file << ": " << made.error().message;
+        return made ? *made : BatchPlan{};
+    }
+
+    /// Each program with its set-up and allowance.
+    std::vector<std::string> jobs(const BatchPlan& plan) const {
+        std::vector<std::string> all;
+        for (const CheckJob& job : plan.jobs)
+            all.push_back(fmt::format("{} {} {}", short_name(job.program), short_name(job.setup),
+                                      job.allowance.value_or(0.0)));
+        return all;
+    }
+
+    std::vector<std::string> skips(const BatchPlan& plan) const {
+        std::vector<std::string> all;
+        for (const SkippedFile& file : plan.skipped)
+            if (file.why.starts_with("is named by no")) all.push_back(short_name(file.path));
+        return all;
+    }
+
+    ScopedFolder folder;
+};
+
+TEST_F(NestedProject, CountsForItsFolderWhenAFolderAboveIsSearched) {
+    const BatchPlan found = plan({"."});
+    EXPECT_THAT(jobs(found),
+                ElementsAre("job/a.nc job/vise.toml 4", "other/d.nc job/vise.toml 4", "top.nc  0"));
+    EXPECT_THAT(skips(found), ElementsAre("job/b.nc", "job/sub/c.nc"));
+    EXPECT_THAT(found.failures, IsEmpty());
+}
+
+TEST_F(NestedProject, CountsForWhatAPatternFinds) {
+    for (const char* word : {"**/*.nc", "j*/**/*.nc", "job/**"}) {
+        const BatchPlan found = plan({word});
+        EXPECT_THAT(jobs(found), Contains("job/a.nc job/vise.toml 4")) << word;
+        EXPECT_THAT(skips(found), ElementsAre("job/b.nc", "job/sub/c.nc")) << word;
+    }
+    EXPECT_THAT(jobs(plan({"*/a.nc"})), ElementsAre("job/a.nc job/vise.toml 4"));
+}
+
+TEST_F(NestedProject, CountsBeforeTheProjectThatReachesIntoItsFolder) {
+    write("feeler.toml", "allowance = 1\n[[program]]\nfiles = [\"**/*.nc\"]\nsetup = "
+                         "\"all.toml\"\n[[program]]\nfiles = \"job/b.nc\"\n");
+    const BatchPlan found = plan({"."});
+    EXPECT_THAT(jobs(found), ElementsAre("job/a.nc job/vise.toml 4", "other/d.nc all.toml 1",
+                                         "top.nc all.toml 1", "job/b.nc  1"));
+    EXPECT_THAT(skips(found), ElementsAre("job/sub/c.nc"));
+}
+
+TEST_F(NestedProject, CountsInWhateverOrderItsProgramsAreNamed) {
+    const std::string as_it_says = "job/a.nc job/vise.toml 4";
+    EXPECT_THAT(jobs(plan({"job/a.nc", "."})), Contains(as_it_says));
+    EXPECT_THAT(jobs(plan({"job/a.nc", "**/a.nc"})), ElementsAre(as_it_says));
+    EXPECT_THAT(jobs(plan({"job/a.nc", "job"})), Contains(as_it_says));
+    EXPECT_THAT(jobs(plan({".", "job/b.nc"})), Contains("job/b.nc  0")) << "named, not found";
+}
+
+TEST_F(NestedProject, IsReadOnceThoughProjectsLeadToEachOther) {
+    write("feeler.toml", "[[program]]\nfiles = \"**/*.nc\"\nsetup = \"all.toml\"\n");
+    write("job/feeler.toml", "[[program]]\nfiles = \"../**/*.nc\"\nsetup = \"vise.toml\"\n");
+    EXPECT_THAT(jobs(plan({"."})),
+                ElementsAre("job/a.nc job/vise.toml 0", "job/b.nc job/vise.toml 0",
+                            "job/sub/c.nc job/vise.toml 0", "other/d.nc all.toml 0",
+                            "top.nc all.toml 0"));
+}
+
+TEST_F(NestedProject, FailsWhereItCannotBeRead) {
+    write("job/feeler.toml", "[[program]]\nfile = \"a.nc\"\n");
+    const BatchPlan wrong = plan({"."});
+    EXPECT_THAT(jobs(wrong), ElementsAre("other/d.nc  0", "top.nc  0"));
+    ASSERT_EQ(wrong.failures.size(), 1U);
+    EXPECT_EQ(short_name(wrong.failures[0].file), "job/feeler.toml");
+    EXPECT_EQ(wrong.failures[0].where.line, 2U);
+    std::filesystem::remove(folder / "job/feeler.toml");
+    std::filesystem::create_symlink("not mounted", folder / "job/feeler.toml");
+    const BatchPlan gone = plan({"."});
+    ASSERT_EQ(gone.failures.size(), 1U);
+    EXPECT_THAT(gone.failures[0].message, HasSubstr("is a link that leads nowhere"));
+    const auto named = plan_batch({folder / "job"}, {});
+    ASSERT_FALSE(named) << "not searched as if it were no project";
+    EXPECT_THAT(named.error().message, HasSubstr("is a link that leads nowhere"));
+}
+
+TEST_F(ProjectFile, SearchesItsFolderWhateverThatIsCalled) {
+    const std::string name = folder / "jobs[1]";
+    std::filesystem::create_directory(name);
+    folder.write("jobs[1]/a.nc", good);
+    folder.write("jobs[1]/feeler.toml", "[[program]]\nfiles = \"*.nc\"\n");
+    const auto plan = plan_batch({name}, {});
+    ASSERT_TRUE(plan);
+    EXPECT_TRUE(plan->failures.empty());
+    ASSERT_EQ(plan->jobs.size(), 1U);
+    EXPECT_EQ(plan->jobs[0].program, name + "/a.nc");
+}
+
+TEST_F(ProjectFile, TakesASetupBesideThatLeadsNowhereForOne) {
+    folder.write("a.nc", good);
+    std::filesystem::create_symlink("not mounted", folder / "a.toml");
+    const CheckJob found = job("[[program]]\nfiles = \"a.nc\"\n", "a.nc");
+    EXPECT_EQ(found.setup, folder / "a.toml");
+    const auto run = run_check(found);
+    ASSERT_FALSE(run);
+    EXPECT_EQ(run.error().file, folder / "a.toml");
+    EXPECT_THAT(run.error().message, HasSubstr("is a link that leads nowhere"));
+}
+
 TEST_F(ProjectFile, RefusesAKeyThatIsNotKnownWithItsPlaceAndTheNearest) {
     const core::Error error = refusal("[[program]]\nfiles = \"a.nc\"\n  setpu = \"b.toml\"\n");
     EXPECT_EQ(error.file, folder / "feeler.toml");
@@ -112,6 +246,14 @@ TEST_F(ProjectFile, RefusesWrongValues) {
     EXPECT_THAT(refusal("").message, HasSubstr("[[program]]"));
     EXPECT_THAT(refusal("[[program]]\nsetup = \"b.toml\"\n").message, HasSubstr("files"));
     EXPECT_THAT(refusal("[[program]]\nfiles = []\n").message, HasSubstr("files"));
+    for (const char* blank : {"files = \"\"", "files = [\"a.nc\", \"\"]"}) {
+        const core::Error error = refusal("[[program]]\n" + std::string(blank) + "\n");
+        EXPECT_THAT(error.message, HasSubstr("files names no file"));
+        EXPECT_EQ(error.where.line, 2U);
+        EXPECT_EQ(error.where.column, 9U);
+    }
+    EXPECT_THAT(refusal(program + "setup = \"\"\n").message, HasSubstr("setup names no file"));
+    EXPECT_EQ(refusal(program + "setup = \"\"\n").where.line, 3U);
     EXPECT_THAT(refusal("[[program]]\nfiles = [1]\n").message, HasSubstr("files"));
     EXPECT_THAT(refusal(program + "dialect = \"basic\"\n").message, HasSubstr("fanuc"));
     EXPECT_THAT(refusal("allowance = -1\n" + program).message, HasSubstr("allowance"));
