@@ -51,7 +51,7 @@ private:
 
     void sort_in(const fs::directory_entry& entry) {
         std::error_code failure;
-        if (!fs::is_directory(entry.status(failure)))
+        if (!entry.is_directory(failure))
             found.sort_in(entry.path());
         else if (entry.is_symlink(failure))
             linked_.push_back(entry.path());

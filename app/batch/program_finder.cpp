@@ -80,7 +80,7 @@ private:
         if (!why)
             found.failures.push_back(why.error());
         else if (*why)
-            skip(file, **why);
+            found.skipped.push_back({file, **why});
         else
             look.place = put(file, project);
         return look.may_be_program;
