@@ -1,16 +1,9 @@
 #include "app/batch/result_key.h"
 
-#include <algorithm>
-#include <span>
-
-#include <elf.h>
-#include <fmt/format.h>
-#include <link.h>
 #include <nlohmann/json.hpp>
 
 #include "app/session/digest.h"
 #include "app/setup/utf8_text.h"
-#include "app/version.h"
 
 namespace app {
 namespace {
@@ -59,37 +52,6 @@ Json settings_json(const ProgramSettings& settings) {
             {"speed_by_hand", optional_json(speed_by_hand)}};
 }
 
-/// The build-id that the linker puts into a program: a digest of what it linked.
-std::string build_id_in(std::span<const char> notes) {
-    while (notes.size() >= sizeof(ElfW(Nhdr))) {
-        ElfW(Nhdr) note;
-        std::copy_n(notes.data(), sizeof note, reinterpret_cast<char*>(&note));
-        const size_t name = sizeof note;
-        const size_t description = name + (note.n_namesz + 3) / 4 * 4;
-        const size_t next = description + (note.n_descsz + 3) / 4 * 4;
-        if (next > notes.size()) return {};
-        if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4) {
-            std::string id;
-            for (const char byte : notes.subspan(description, note.n_descsz))
-                id += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-            return id;
-        }
-        notes = notes.subspan(next);
-    }
-    return {};
-}
-
-/// Called for each loaded file; the first is the program itself.
-int take_build_id(dl_phdr_info* info, size_t, void* taken) {
-    for (const ElfW(Phdr) & part : std::span(info->dlpi_phdr, info->dlpi_phnum)) {
-        if (part.p_type != PT_NOTE) continue;
-        const auto* notes = reinterpret_cast<const char*>(info->dlpi_addr + part.p_vaddr);
-        std::string& id = *static_cast<std::string*>(taken);
-        if (id.empty()) id = build_id_in({notes, part.p_memsz});
-    }
-    return 1; // no further file
-}
-
 } // namespace
 
 std::optional<std::string> options_text(const CheckJob& job) {
@@ -117,12 +79,6 @@ std::string result_key(const std::string& build, const CheckJob& job, const std:
     const Json parts =
         Json::array({build, path_json(job.program), sha256, path_json(job.setup), options});
     return sha256_of(parts.dump());
-}
-
-std::string build_version() {
-    std::string id;
-    dl_iterate_phdr(&take_build_id, &id);
-    return fmt::format("{} {}", version, id);
 }
 
 } // namespace app

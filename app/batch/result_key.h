@@ -16,8 +16,4 @@ std::optional<std::string> options_text(const CheckJob& job);
 std::string result_key(const std::string& build, const CheckJob& job, const std::string& sha256,
                        const std::string& options);
 
-/// The version of this program, and which build of it: programs that were built from other sources
-/// have another.
-std::string build_version();
-
 } // namespace app

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "app/batch/result_key.h"
+#include "app/batch/build_version.h"
 #include "app/batch/store_file.h"
 #include "app/commands/output.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/batch/result_key.h"
+#include "app/batch/build_version.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"

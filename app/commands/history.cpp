@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/result_key.h"
+#include "app/batch/build_version.h"
 #include "app/batch/store_file.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/result_key.h"
+#include "app/batch/build_version.h"
 #include "app/batch/shard_file.h"
 #include "app/batch/shard_merge.h"
 #include "app/commands/batch_ending.h"

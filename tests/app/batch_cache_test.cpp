@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "tests/app/checked.h"
@@ -34,6 +36,23 @@ TEST(BatchCache, ChecksNothingTwice) {
     EXPECT_FALSE(says(other, "nothing has changed")) << "another mesh size is another check";
     const auto history = feeler({"history", folder / "b.nc"});
     EXPECT_TRUE(says(history, "3 versions")) << history.out;
+}
+
+/// Two programs that were linked without a build-id and differ in a byte at their ends.
+TEST(BatchCache, IsThatOfOneBuildAlsoWithoutABuildId) {
+    const test_support::ScopedFolder folder;
+    std::filesystem::create_directory(folder / "parts");
+    folder.write("parts/a.nc", clear_program);
+    const std::string one = folder / "one", other = folder / "other";
+    const auto made = test_support::run(
+        {"objcopy", "--remove-section", ".note.gnu.build-id", FEELER_BINARY, one});
+    ASSERT_EQ(made.status, 0) << made.err;
+    std::filesystem::copy_file(one, other);
+    std::ofstream(other, std::ios::app) << '\0';
+    for (const std::string& build : {one, other}) {
+        EXPECT_FALSE(says(test_support::run({build, "check", folder / "parts"}), "earlier"));
+        EXPECT_TRUE(says(test_support::run({build, "check", folder / "parts"}), "1 of 1 results"));
+    }
 }
 
 TEST(BatchCache, IsNotThereWhereNobodyWantsIt) {

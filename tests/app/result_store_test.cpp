@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "app/batch/build_version.h"
 #include "app/batch/database.h"
 #include "app/batch/result_key.h"
 #include "app/batch/result_store.h"
