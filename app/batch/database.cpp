@@ -7,11 +7,14 @@
 namespace app {
 namespace {
 
-constexpr int patience_ms = 60'000; // while others write
-
 core::Error error_of(sqlite3* database, const std::string& path) {
     const char* message = database ? sqlite3_errmsg(database) : "there is not enough memory";
     return {core::ErrorCode::io, {}, message, path};
+}
+
+/// Asked by SQLite while others write.
+int wait_for_others(void* patience, int attempt) {
+    return static_cast<Patience*>(patience)->wait(attempt) ? 1 : 0;
 }
 
 } // namespace
@@ -67,18 +70,23 @@ void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(dat
 
 core::Error Database::error() const { return error_of(database_.get(), path_); }
 
-core::Result<Database> Database::open(const std::string& path, Access access) {
+core::Result<Database> Database::open(const std::string& path, Access access,
+                                      std::shared_ptr<Patience> patience) {
     const int flags = access == Access::read_only ? SQLITE_OPEN_READONLY
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* opened = nullptr;
     // With a "./" no name can be taken for an address or a name of SQLite's own.
-    const std::string name = path.starts_with('/') ? path : "./" + path;
-    const int code = sqlite3_open_v2(name.c_str(), &opened, flags, nullptr);
+    const std::string name = path == in_memory       ? "file:/feeler?vfs=memdb"
+                             : path.starts_with('/') ? path
+                                                     : "./" + path;
+    const int code = sqlite3_open_v2(name.c_str(), &opened,
+                                     path == in_memory ? flags | SQLITE_OPEN_URI : flags, nullptr);
     Database database;
     database.path_ = path;
     database.database_.reset(opened);
     if (code != SQLITE_OK) return tl::unexpected(database.error());
-    sqlite3_busy_timeout(opened, patience_ms);
+    database.patience_ = patience ? std::move(patience) : std::make_shared<Patience>();
+    sqlite3_busy_handler(opened, wait_for_others, database.patience_.get());
     return database;
 }
 
@@ -104,8 +112,6 @@ core::Result<int64_t> Database::number(const std::string& sql) {
     FEELER_TRY(const bool found, statement.step());
     return found ? statement.number(0) : 0;
 }
-
-int64_t Database::last_row() const { return sqlite3_last_insert_rowid(database_.get()); }
 
 core::Result<Transaction> Transaction::begin(Database& database) {
     if (auto begun = database.run("BEGIN IMMEDIATE"); !begun)

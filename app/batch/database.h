@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/batch/patience.h"
 #include "core/base/result.h"
 
 struct sqlite3;
@@ -51,12 +52,15 @@ private:
 class Database {
 public:
     enum class Access : uint8_t { read_only, read_write };
+    static constexpr const char* in_memory = ":memory:";
 
-    /// Opens the file; with read_write it is made when it is not there. Whoever finds it in use
-    /// waits up to a minute.
+    /// Opens the file; with read_write it is made when it is not there. Of `in_memory` there is one
+    /// for the whole process, as long as somebody has it open. Whoever finds it in use
+    /// waits as long as there is patience: that of a run of its own if none is given.
     ///
     /// Errors: io, with the file.
-    static core::Result<Database> open(const std::string& path, Access access);
+    static core::Result<Database> open(const std::string& path, Access access,
+                                       std::shared_ptr<Patience> patience = nullptr);
 
     /// Runs statements that give no rows.
     ///
@@ -71,8 +75,6 @@ public:
     /// Errors: io, with the file.
     core::Result<int64_t> number(const std::string& sql);
 
-    int64_t last_row() const;
-
 private:
     struct Close {
         void operator()(sqlite3* database) const;
@@ -80,6 +82,7 @@ private:
 
     core::Error error() const;
 
+    std::shared_ptr<Patience> patience_; // outlives the database
     std::unique_ptr<sqlite3, Close> database_;
     std::string path_;
 };

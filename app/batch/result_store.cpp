@@ -9,21 +9,13 @@
 
 #include "app/batch/database.h"
 #include "app/batch/input_files.h"
+#include "app/batch/kept_row.h"
 #include "app/batch/result_key.h"
+#include "app/batch/result_writer.h"
 #include "app/batch/store_file.h"
-#include "app/session/digest.h"
 
 namespace app {
 namespace {
-
-/// A result as it lies in the database, with what its check read.
-struct KeptRow {
-    int64_t id = 0;
-    std::string key, looks, value, seal;
-    std::vector<InputFile> inputs;
-};
-
-std::string answer_text(const InputFile& input) { return input.answer ? "=" + *input.answer : ""; }
 
 InputFile input_of(const Statement& row) {
     InputFile input{static_cast<core::FileQuestion>(row.number(0)), row.text(1), row.text(2), {}};
@@ -31,28 +23,10 @@ InputFile input_of(const Statement& row) {
     return input;
 }
 
-/// The same for the same inputs, whatever their order.
-std::string digest_of(std::vector<InputFile> inputs) {
-    std::sort(inputs.begin(), inputs.end());
-    std::string text;
-    for (const InputFile& input : inputs) {
-        text += fmt::format("{}", static_cast<int>(input.question));
-        for (const std::string& part : {input.path, input.name, answer_text(input)})
-            text += fmt::format(" {}:{}", part.size(), part);
-    }
-    return sha256_of(text);
-}
-
-/// A file that was damaged where SQLite does not see it does not become another result.
-std::string seal_of(const KeptRow& row) { return sha256_of(row.key + row.looks + row.value); }
-
-bool is_sound(const KeptRow& row) {
-    return row.seal == seal_of(row) && row.looks == digest_of(row.inputs);
-}
-
+/// Microseconds since 1970.
 int64_t now() {
     using namespace std::chrono;
-    return duration_cast<seconds>(system_clock::now().time_since_epoch()).count();
+    return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
 } // namespace
@@ -61,15 +35,16 @@ struct ResultStore::State {
     std::string version;
     std::filesystem::path folder; // that the database is for
     std::shared_ptr<InputAnswers> answers;
+    std::shared_ptr<Patience> patience;
+    std::shared_ptr<ResultWriter> writer; // of the own store if nothing is kept in this one
+    bool is_kept_in = true;
     std::mutex mutex; // over all below
     Database database;
-    Statement rows_of_key, looks_of_row, rows_of_program, add_program, add_row, add_look, add_link;
+    Statement rows_of_key, looks_of_row, rows_of_program, sighting;
 
     core::Result<void> prepare();
     std::string place_of(const std::string& program) const;
     core::Result<std::vector<KeptRow>> rows(const std::string& key);
-    core::Result<void> add(const std::string& place, const std::string& setup,
-                           const std::string& options, const KeptRow& row);
 };
 
 core::Result<void> ResultStore::State::prepare() {
@@ -79,22 +54,13 @@ core::Result<void> ResultStore::State::prepare() {
     FEELER_TRY(looks_of_row,
                database.prepare("SELECT question, path, name, answer FROM result_look "
                                 "JOIN look ON look.id = look WHERE result = ?1"));
-    FEELER_TRY(rows_of_program,
-               database.prepare("SELECT checked_at, version, setup, options, looks, value, key, "
-                                "seal FROM result JOIN program ON program.id = program "
-                                "WHERE path = ?1 ORDER BY result.id"));
-    FEELER_TRY(add_program, database.prepare("INSERT OR IGNORE INTO program(path) VALUES(?1)"));
     FEELER_TRY(
-        add_row,
-        database.prepare("INSERT OR IGNORE INTO result(program, key, looks, setup, options, "
-                         "version, checked_at, value, seal) VALUES((SELECT id FROM program WHERE "
-                         "path = ?1), ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9) RETURNING id"));
-    FEELER_TRY(add_look,
-               database.prepare("INSERT OR IGNORE INTO look(question, path, name, answer) "
-                                "VALUES(?1, ?2, ?3, ?4)"));
-    FEELER_TRY(add_link, database.prepare(
-                             "INSERT INTO result_look SELECT ?1, id FROM look WHERE question = ?2 "
-                             "AND path = ?3 AND name = ?4 AND answer = ?5"));
+        rows_of_program,
+        database.prepare("SELECT checked_at, version, setup, options, looks, value, key, seal, "
+                         "coalesce(at, 1000000 * checked_at) AS last FROM result "
+                         "JOIN program ON program.id = program LEFT JOIN seen USING(key, looks) "
+                         "WHERE path = ?1 ORDER BY last, result.id"));
+    FEELER_TRY(sighting, database.prepare("SELECT at FROM seen WHERE key = ?1 AND looks = ?2"));
     return {};
 }
 
@@ -113,12 +79,11 @@ core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& k
     for (bool more = true;;) {
         FEELER_TRY(more, rows_of_key.step());
         if (!more) break;
-        found.push_back({rows_of_key.number(0),
-                         rows_of_key.text(1),
-                         rows_of_key.text(2),
-                         rows_of_key.text(3),
-                         rows_of_key.text(4),
-                         {}});
+        found.push_back({.id = rows_of_key.number(0),
+                         .key = rows_of_key.text(1),
+                         .looks = rows_of_key.text(2),
+                         .value = rows_of_key.text(3),
+                         .seal = rows_of_key.text(4)});
     }
     rows_of_key.reset();
     for (KeptRow& row : found) {
@@ -134,52 +99,35 @@ core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& k
     return found;
 }
 
-core::Result<void> ResultStore::State::add(const std::string& place, const std::string& setup,
-                                           const std::string& options, const KeptRow& row) {
-    const std::lock_guard lock(mutex);
-    FEELER_TRY(Transaction adding, Transaction::begin(database));
-    if (auto done = add_program.bind(1, place).finish(); !done)
-        return tl::unexpected(std::move(done).error());
-    add_row.bind(1, place).bind(2, row.key).bind(3, row.looks).bind(4, setup).bind(5, options);
-    add_row.bind(6, version).bind(7, now()).bind(8, row.value).bind(9, row.seal);
-    FEELER_TRY(const bool is_new, add_row.step());
-    const int64_t id = is_new ? add_row.number(0) : 0;
-    if (auto done = add_row.finish(); !done) return tl::unexpected(std::move(done).error());
-    if (!is_new) return {}; // somebody else has kept the same meanwhile
-    for (const InputFile& input : row.inputs) {
-        const auto question = static_cast<int64_t>(input.question);
-        const std::string answer = answer_text(input);
-        add_look.bind(1, question).bind(2, input.path).bind(3, input.name).bind(4, answer);
-        if (auto done = add_look.finish(); !done) return tl::unexpected(std::move(done).error());
-        add_link.bind(1, id).bind(2, question).bind(3, input.path).bind(4, input.name);
-        if (auto done = add_link.bind(5, answer).finish(); !done)
-            return tl::unexpected(std::move(done).error());
-    }
-    return adding.commit();
-}
-
 ResultStore::ResultStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
 ResultStore::ResultStore(ResultStore&&) noexcept = default;
 ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
 ResultStore::~ResultStore() = default;
 
-core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version) {
-    return open_as(path, version, Database::Access::read_write, std::make_shared<InputAnswers>());
-}
-
-core::Result<ResultStore> ResultStore::open_to_read(const std::string& path,
-                                                    const std::string& version,
-                                                    std::shared_ptr<InputAnswers> answers) {
-    return open_as(path, version, Database::Access::read_only, std::move(answers));
-}
-
-core::Result<ResultStore> ResultStore::open_as(const std::string& path, const std::string& version,
-                                               Database::Access access,
-                                               std::shared_ptr<InputAnswers> answers) {
+core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version,
+                                            std::shared_ptr<Patience> patience) {
     auto state = std::make_unique<State>();
     state->version = version;
-    state->answers = std::move(answers);
-    FEELER_TRY(state->database, open_store_file(path, access));
+    state->answers = std::make_shared<InputAnswers>();
+    state->patience = patience ? std::move(patience) : std::make_shared<Patience>();
+    state->writer = std::make_shared<ResultWriter>(path, state->patience);
+    return open_as(path, Database::Access::read_write, std::move(state));
+}
+
+core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
+                                                   const ResultStore& own) {
+    auto state = std::make_unique<State>();
+    state->version = own.state_->version;
+    state->answers = own.state_->answers;
+    state->patience = own.state_->patience;
+    state->writer = own.state_->writer;
+    state->is_kept_in = false;
+    return open_as(path, Database::Access::read_only, std::move(state));
+}
+
+core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database::Access access,
+                                               std::unique_ptr<State> state) {
+    FEELER_TRY(state->database, open_store_file(path, access, state->patience));
     std::error_code failure;
     state->folder =
         std::filesystem::weakly_canonical(std::filesystem::absolute(path), failure).parent_path();
@@ -189,6 +137,15 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path, const st
 }
 
 std::shared_ptr<InputAnswers> ResultStore::answers() const { return state_->answers; }
+
+void ResultStore::try_again() { state_->writer->try_again(); }
+
+std::string ResultStore::key_of(const CheckJob& job) const {
+    const auto options = options_text(job);
+    const std::string sha256 = state_->answers->content_of(job.program);
+    if (!options || sha256.empty()) return {};
+    return result_key(state_->version, job, sha256, *options);
+}
 
 core::Result<std::vector<std::string>> ResultStore::keys() {
     const std::lock_guard lock(state_->mutex);
@@ -202,17 +159,18 @@ core::Result<std::vector<std::string>> ResultStore::keys() {
 }
 
 core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job) {
-    const auto options = options_text(job);
-    const std::string sha256 = state_->answers->content_of(job.program);
-    if (!options || sha256.empty()) return std::nullopt;
-    FEELER_TRY(const std::vector<KeptRow> rows,
-               state_->rows(result_key(state_->version, job, sha256, *options)));
+    const std::string key = key_of(job);
+    if (key.empty()) return std::nullopt;
+    FEELER_TRY(const std::vector<KeptRow> rows, state_->rows(key));
     for (const KeptRow& row : rows) {
         const bool is_same =
             std::all_of(row.inputs.begin(), row.inputs.end(),
                         [&](const InputFile& input) { return state_->answers->is_same(input); });
         if (!is_same || !is_sound(row)) continue;
-        if (auto result = result_from_json(row.value)) return *std::move(result);
+        auto result = result_from_json(row.value);
+        if (!result) continue;
+        state_->writer->put({row.key, row.looks, now()});
+        return *std::move(result);
     }
     return std::nullopt;
 }
@@ -221,14 +179,23 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
                                      const ProgramResult& result) {
     const auto options = options_text(job);
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
-    if (!options || was_stopped || run.sha256.empty()) return {};
-    KeptRow row{.key = result_key(state_->version, job, run.sha256, *options),
-                .looks = digest_of(run.inputs),
+    if (!state_->is_kept_in || !options || was_stopped || run.sha256.empty()) return {};
+    const int64_t at = now();
+    KeptRow row{.program = state_->place_of(job.program),
+                .setup = job.setup,
+                .options = *options,
+                .version = state_->version,
+                .checked_at = at / 1'000'000,
+                .key = result_key(state_->version, job, run.sha256, *options),
+                .looks = looks_of(run.inputs),
                 .value = json_of(result),
                 .inputs = run.inputs};
     row.seal = seal_of(row);
-    return state_->add(state_->place_of(job.program), job.setup, *options, row);
+    Sighting sighting{row.key, row.looks, at};
+    return state_->writer->put(std::move(row), std::move(sighting));
 }
+
+core::Result<void> ResultStore::flush() { return state_->writer->flush(); }
 
 core::Result<std::vector<KeptVersion>> ResultStore::history(const std::string& program) {
     const std::lock_guard lock(state_->mutex);
@@ -245,11 +212,27 @@ core::Result<std::vector<KeptVersion>> ResultStore::history(const std::string& p
                           .seal = rows.text(7)};
         auto result = result_from_json(row.value);
         if (!result || row.seal != seal_of(row)) continue;
-        versions.push_back({rows.number(0), rows.text(1), rows.text(2), rows.text(3), row.looks,
-                            *std::move(result)});
+        versions.push_back({.checked_at = rows.number(0),
+                            .seen_at = rows.number(8),
+                            .version = rows.text(1),
+                            .setup = rows.text(2),
+                            .options = rows.text(3),
+                            .inputs = row.looks,
+                            .key = row.key,
+                            .result = *std::move(result)});
     }
     rows.reset();
     return versions;
+}
+
+core::Result<int64_t> ResultStore::seen_at(const KeptVersion& version) {
+    const std::lock_guard lock(state_->mutex);
+    Statement& sighting = state_->sighting;
+    sighting.reset();
+    FEELER_TRY(const bool is_there, sighting.bind(1, version.key).bind(2, version.inputs).step());
+    const int64_t at = is_there ? sighting.number(0) : 0;
+    sighting.reset();
+    return at;
 }
 
 } // namespace app

@@ -15,10 +15,12 @@ namespace app {
 /// A result that was kept, and of when and what.
 struct KeptVersion {
     int64_t checked_at = 0; // seconds since 1970
+    int64_t seen_at = 0;    // when it was last seen to hold, microseconds since 1970
     std::string version;    // of the program that checked
     std::string setup;      // its path as it was given; empty: inferred
     std::string options;    // of the job: see options_text
     std::string inputs;     // a digest of all that was read
+    std::string key;        // see result_key
     ProgramResult result;
 };
 
@@ -33,17 +35,20 @@ public:
 
     /// `version` is that of the program that checks; results of others are not found.
     ///
+    /// It waits for others while there is patience.
+    ///
     /// Errors: io, with the file; unsupported for a database of another program or a newer version.
-    static core::Result<ResultStore> open(const std::string& path, const std::string& version);
+    static core::Result<ResultStore> open(const std::string& path, const std::string& version,
+                                          std::shared_ptr<Patience> patience = nullptr);
 
-    /// One that nothing is kept in. Stores that share answers ask the disk once for all of them.
+    /// One that nothing is kept in. It shares with `own` what the disk has answered, and its
+    /// patience; what is found is put down as seen in that.
     ///
     /// Errors: as open.
-    static core::Result<ResultStore> open_to_read(const std::string& path,
-                                                  const std::string& version,
-                                                  std::shared_ptr<InputAnswers> answers);
+    static core::Result<ResultStore> open_beside(const std::string& path, const ResultStore& own);
 
-    std::shared_ptr<InputAnswers> answers() const;
+    /// Under what it keeps the result of a job; empty for one whose results are not kept.
+    std::string key_of(const CheckJob& job) const;
 
     /// Under what results are kept: see result_key.
     ///
@@ -51,27 +56,42 @@ public:
     core::Result<std::vector<std::string>> keys();
 
     /// What the check of this job gave, if it was kept and nothing has changed since; empty if not.
+    /// What is found is put down as seen, where somebody may write.
     ///
     /// Errors: io, with the database.
     core::Result<std::optional<ProgramResult>> find(const CheckJob& job);
 
-    /// Keeps what the check of a job gave, wholly or not at all. What hangs on more than files and
-    /// options is not kept: a run that somebody stopped or that could not read a file, and a job
-    /// with edits.
+    /// From here on what could not be written before is no reason not to write.
+    void try_again();
+
+    /// Keeps what the check of a job gave, wholly or not at all. It is written by another thread,
+    /// within a fifth of a second unless the disk is slow, and is found from then on. What hangs on
+    /// more than files and options is not kept: a run that somebody stopped or that could not read
+    /// a file, and a job with edits.
     ///
-    /// Errors: io, with the database.
+    /// Errors: io, with the database: also that an earlier result could not be written.
     core::Result<void> keep(const CheckJob& job, const CheckRun& run, const ProgramResult& result);
 
-    /// Everything that was kept of a program, the oldest first.
+    /// Waits until all that was kept and seen is written; so does the end of the store.
+    ///
+    /// Errors: io, with the database.
+    core::Result<void> flush();
+
+    /// Everything that was kept of a program, what was seen last at the end.
     ///
     /// Errors: io, with the database.
     core::Result<std::vector<KeptVersion>> history(const std::string& program);
 
+    /// When a version that may lie in another database was last seen to hold in a check that had
+    /// this one; 0 if it was not.
+    ///
+    /// Errors: io, with the database.
+    core::Result<int64_t> seen_at(const KeptVersion& version);
+
 private:
     struct State;
-    static core::Result<ResultStore> open_as(const std::string& path, const std::string& version,
-                                             Database::Access access,
-                                             std::shared_ptr<InputAnswers> answers);
+    static core::Result<ResultStore> open_as(const std::string& path, Database::Access access,
+                                             std::unique_ptr<State> state);
     explicit ResultStore(std::unique_ptr<State> state);
 
     std::unique_ptr<State> state_;

@@ -10,7 +10,7 @@ namespace app {
 namespace {
 
 constexpr int64_t application = 0x4665656C; // "Feel"
-constexpr int64_t format = 1;
+constexpr int64_t format = 2;
 
 /// Results are never changed. What a check read is shared by all results that read the same.
 constexpr const char* tables = R"(
@@ -48,6 +48,16 @@ CREATE TABLE result_look(
 CREATE INDEX look_of_result ON result_look(look);
 )";
 
+/// When a result was last seen to hold, of this database or of one beside it. Since format 2.
+constexpr const char* seen_table = R"(
+CREATE TABLE seen(
+    key TEXT NOT NULL,
+    looks TEXT NOT NULL,
+    at INTEGER NOT NULL,      -- microseconds since 1970
+    PRIMARY KEY(key, looks)
+) STRICT, WITHOUT ROWID;
+)";
+
 /// A rollback journal, not a log beside the file: that one needs memory shared by all who have the
 /// database open, which there is none of across a network. FULL: a result that was kept outlives a
 /// power cut, and half of one never appears.
@@ -60,17 +70,16 @@ core::Error refusal(const std::string& path, std::string why) {
     return {core::ErrorCode::unsupported, {}, std::move(why), path};
 }
 
-/// Two who find the file empty at once take turns, and the second finds the tables of the first.
+/// Two who find the file empty or old at once take turns, and the second finds the tables of the
+/// first.
 core::Result<void> make_tables(Database& database) {
     FEELER_TRY(Transaction making, Transaction::begin(database));
     FEELER_TRY(const int64_t made, database.number("PRAGMA user_version"));
-    if (made == 0) {
-        if (auto done = database.run(tables); !done) return tl::unexpected(std::move(done).error());
-        if (auto done = database.run(fmt::format("PRAGMA application_id = {}", application)); !done)
-            return tl::unexpected(std::move(done).error());
-        if (auto done = database.run(fmt::format("PRAGMA user_version = {}", format)); !done)
-            return tl::unexpected(std::move(done).error());
-    }
+    std::string all = made == 0 ? tables : "";
+    if (made < format) all += seen_table;
+    all +=
+        fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", application, format);
+    if (auto done = database.run(all); !done) return done;
     return making.commit();
 }
 
@@ -85,9 +94,12 @@ core::Result<void> settle(Database& database, const std::string& path, Database:
             refusal(path, fmt::format("was written by a newer version of Feeler (its format is {}, "
                                       "this version knows {})",
                                       found, format)));
-    if (access == Database::Access::read_only) return {};
+    if (access == Database::Access::read_only) {
+        if (found == format) return {};
+        return tl::unexpected(refusal(path, "was written by an older version of Feeler"));
+    }
     if (auto done = database.run(manners); !done) return tl::unexpected(std::move(done).error());
-    return content > 0 ? core::Result<void>{} : make_tables(database);
+    return found == format ? core::Result<void>{} : make_tables(database);
 }
 
 /// The databases in a folder `.feeler`, sorted.
@@ -127,12 +139,13 @@ std::vector<std::string> stores_above(const std::string& program) {
     return {};
 }
 
-core::Result<Database> open_store_file(const std::string& path, Database::Access access) {
+core::Result<Database> open_store_file(const std::string& path, Database::Access access,
+                                       std::shared_ptr<Patience> patience) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code failure; // which opening the file tells as well
     if (folder.filename() == ".feeler" && access == Database::Access::read_write)
         std::filesystem::create_directory(folder, failure);
-    FEELER_TRY(Database database, Database::open(path, access));
+    FEELER_TRY(Database database, Database::open(path, access, std::move(patience)));
     if (auto done = settle(database, path, access); !done)
         return tl::unexpected(std::move(done).error());
     return database;

@@ -27,6 +27,7 @@ std::vector<std::string> stores_above(const std::string& program);
 ///
 /// Errors: io, with the file; unsupported for a database of another program or of a newer version.
 core::Result<Database> open_store_file(const std::string& path,
-                                       Database::Access access = Database::Access::read_write);
+                                       Database::Access access = Database::Access::read_write,
+                                       std::shared_ptr<Patience> patience = nullptr);
 
 } // namespace app

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <unordered_map>
 
 #include "app/batch/result_store.h"
@@ -13,21 +14,22 @@ namespace app {
 /// cannot be is as good as none.
 class StoresBeside {
 public:
-    /// Those beside the database at `path`, as they are now.
-    StoresBeside(const std::string& path, std::string version,
-                 std::shared_ptr<InputAnswers> answers);
+    /// Those beside the database at `path`, which is that of `own`, as they are now. One that
+    /// others have locked for longer than there is patience is not asked again.
+    StoresBeside(const std::string& path, const ResultStore& own);
 
     /// What the check of this job gave; see ResultStore. Several threads may ask.
     std::optional<ProgramResult> find(const CheckJob& job);
 
 private:
     ResultStore* store_at(const std::string& path);
+    std::optional<ProgramResult> find_in(const std::string& path, const CheckJob& job);
 
-    std::string version_;
-    std::shared_ptr<InputAnswers> answers_;
+    const ResultStore& own_;
     std::unordered_multimap<std::string, std::string> paths_of_key_;
     std::mutex mutex_; // over all below
     std::map<std::string, ResultStore> open_;
+    std::set<std::string> lost_; // paths
 };
 
 } // namespace app

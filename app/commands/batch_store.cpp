@@ -5,6 +5,7 @@
 #include "app/batch/build_version.h"
 #include "app/batch/store_file.h"
 #include "app/commands/output.h"
+#include "app/commands/progress.h"
 
 namespace app {
 namespace {
@@ -28,16 +29,17 @@ std::string place_of_store(const CheckOptions& options) {
 
 BatchStore::BatchStore(const CheckOptions& options) {
     path_ = place_of_store(options);
-    const std::string place = path_.empty() && options.watch ? ":memory:" : path_;
+    const std::string place = path_.empty() && options.watch ? Database::in_memory : path_;
     if (place.empty()) return;
-    auto store = ResultStore::open(place, build_version());
+    auto store =
+        ResultStore::open(place, build_version(), std::make_shared<Patience>(is_interrupted));
     if (!store) {
         give_up(store.error());
         return;
     }
     store_ = std::make_unique<ResultStore>(*std::move(store));
     if (options.cache.empty() && !path_.empty())
-        beside_ = std::make_unique<StoresBeside>(place, build_version(), store_->answers());
+        beside_ = std::make_unique<StoresBeside>(place, *store_);
 }
 
 void BatchStore::give_up(const core::Error& error) {
@@ -47,11 +49,26 @@ void BatchStore::give_up(const core::Error& error) {
     std::fputs("feeler: results are not kept; the check goes on\n", stderr);
 }
 
+void BatchStore::begin_again() {
+    if (store_) store_->try_again();
+    is_lost_ = false;
+    found_ = 0;
+}
+
 std::optional<ProgramResult> BatchStore::find(const CheckJob& job) {
+    if (is_lost_) return beside_ ? beside_->find(job) : std::nullopt;
     auto found = store_->find(job);
-    if (!found) give_up(found.error());
+    if (!found) {
+        is_lost_ = true;
+        give_up(found.error());
+    }
     if (found && *found) return *std::move(found);
     return beside_ ? beside_->find(job) : std::nullopt;
+}
+
+void BatchStore::flush() {
+    if (!store_) return;
+    if (auto written = store_->flush(); !written) give_up(written.error());
 }
 
 void BatchStore::serve(BatchHooks& hooks) {

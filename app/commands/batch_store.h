@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,7 +13,8 @@
 namespace app {
 
 /// Results of earlier batches, as far as there are any. What is wrong with the database is told
-/// once, and the batch goes on without it.
+/// once, and the batch goes on: without what it cannot do, and without the database altogether if
+/// it cannot even be read.
 class BatchStore {
 public:
     /// The database that was asked for, else that of the first folder or project file that was
@@ -23,11 +25,14 @@ public:
     /// The file of the database; empty if there is none.
     const std::string& path() const { return path_; }
 
-    /// Counts from nothing again.
-    void forget_found() { found_ = 0; }
+    /// For another run of the batch: a database that could not be used may be now.
+    void begin_again();
 
     /// Lets a batch ask it, and keep in it what it finds out.
     void serve(BatchHooks& hooks);
+
+    /// Waits until all of it is written.
+    void flush();
 
     /// How many results were found again.
     size_t found() const { return found_; }
@@ -40,6 +45,7 @@ private:
     std::unique_ptr<StoresBeside> beside_; // null if a database was asked for
     std::mutex guard_;
     bool is_told_ = false;
+    std::atomic<bool> is_lost_ = false; // the database, for this run
     size_t found_ = 0;
     std::string path_;
 };

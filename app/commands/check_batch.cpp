@@ -136,7 +136,10 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
         line.clear();
         talk.say(text);
     };
-    return run_batch(plan, limits, hooks);
+    BatchResult batch = run_batch(plan, limits, hooks);
+    line.clear();
+    store.flush();
+    return batch;
 }
 
 ExitCode failed(const core::Error& error) {
@@ -192,7 +195,7 @@ ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget
     own.push_back(store.path());
     bool is_again = false;
     return watch(own, [&](WatchedFiles& files) {
-        store.forget_found();
+        store.begin_again();
         return pass(options, *asked, targets, store, {&files, std::exchange(is_again, true)});
     });
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -33,25 +33,47 @@ core::Result<std::vector<std::string>> places_of_stores(const Options& options) 
                                   options.program));
 }
 
-/// All versions, the oldest first. What two databases have, as after another division of a library
-/// among machines, is one version.
+/// What two databases have, as after another division of a library among machines, is one version,
+/// and was last seen when anybody did.
+std::vector<KeptVersion> joined(std::vector<KeptVersion> all) {
+    std::map<std::vector<std::string>, size_t> places;
+    std::vector<KeptVersion> versions;
+    for (KeptVersion& each : all) {
+        const auto [at, is_new] = places.try_emplace(
+            {each.version, each.setup, each.options, each.inputs}, versions.size());
+        if (is_new) {
+            versions.push_back(std::move(each));
+            continue;
+        }
+        KeptVersion& same = versions[at->second];
+        same.checked_at = std::min(same.checked_at, each.checked_at);
+        same.seen_at = std::max(same.seen_at, each.seen_at);
+    }
+    return versions;
+}
+
+/// All versions, that which was seen last at the end.
 core::Result<std::vector<KeptVersion>> versions_in(const std::vector<std::string>& places,
                                                    const std::string& program) {
+    std::vector<ResultStore> stores;
     std::vector<KeptVersion> all;
     for (const std::string& place : places) {
         FEELER_TRY(ResultStore store, ResultStore::open(place, build_version()));
         FEELER_TRY(std::vector<KeptVersion> versions, store.history(program));
         std::move(versions.begin(), versions.end(), std::back_inserter(all));
+        stores.push_back(std::move(store));
     }
-    std::stable_sort(all.begin(), all.end(), [](const KeptVersion& a, const KeptVersion& b) {
-        return a.checked_at < b.checked_at;
-    });
-    std::set<std::vector<std::string>> seen;
-    std::erase_if(all, [&](const KeptVersion& version) {
-        return !seen.insert({version.version, version.setup, version.options, version.inputs})
-                    .second;
-    });
-    return all;
+    for (KeptVersion& version : all) {
+        for (ResultStore& store : stores) {
+            FEELER_TRY(const int64_t seen, store.seen_at(version));
+            version.seen_at = std::max(version.seen_at, seen);
+        }
+    }
+    std::vector<KeptVersion> versions = joined(std::move(all));
+    std::stable_sort(
+        versions.begin(), versions.end(),
+        [](const KeptVersion& a, const KeptVersion& b) { return a.seen_at < b.seen_at; });
+    return versions;
 }
 
 core::Result<void> write_history(const Options& options) {

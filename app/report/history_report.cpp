@@ -19,6 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int64_t microseconds = 1'000'000; // in a second
+
 /// The version before one that was checked in the same way; null if there is none.
 const KeptVersion* before(const std::vector<KeptVersion>& versions, size_t place) {
     const KeptVersion& asked = versions[place];
@@ -31,6 +33,8 @@ const KeptVersion* before(const std::vector<KeptVersion>& versions, size_t place
 std::string time_text(const char* form, int64_t seconds) {
     return fmt::format(fmt::runtime(form), fmt::gmtime(static_cast<std::time_t>(seconds)));
 }
+
+std::string minute_text(int64_t seconds) { return time_text("{:%Y-%m-%d %H:%M}", seconds); }
 
 std::string nearest_text(const ProgramResult& result) {
     if (!result.tightest) return "nothing came near";
@@ -68,9 +72,12 @@ std::string change_text(const ProgramChange& change) {
 
 std::string version_text(const KeptVersion& kept, const KeptVersion* earlier) {
     const ProgramResult& result = kept.result;
+    const std::string checked = minute_text(kept.checked_at);
+    const std::string seen = minute_text(kept.seen_at / microseconds);
     std::string text =
-        fmt::format("{}  {}\n", time_text("{:%Y-%m-%d %H:%M} UTC", kept.checked_at),
+        fmt::format("{} UTC  {}\n", checked,
                     result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
+    if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
                         duration_text(result.cycle_time), findings_text(result));
     text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
@@ -106,6 +113,7 @@ std::string history_json(const std::string& program, const std::vector<KeptVersi
         const KeptVersion* earlier = before(versions, i);
         json["versions"].push_back(
             {{"checked_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.checked_at)},
+             {"seen_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.seen_at / microseconds)},
              {"feeler", kept.version},
              {"setup", utf8_text(kept.setup)},
              {"options", Json::parse(kept.options)},

@@ -7,7 +7,7 @@
 
 namespace app {
 
-/// A program's versions for a person, the oldest first: when, verdict, nearest place, time, and
+/// A program's versions for a person, in the order given: when, verdict, nearest place, time, and
 /// what became other since the version before with the same set-up and options.
 std::string history_text(const std::string& program, const std::vector<KeptVersion>& versions);
 

@@ -90,16 +90,36 @@ TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-1of2.db"));
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-2of2.db"));
     EXPECT_FALSE(std::filesystem::exists(folder / ".feeler/results.db"));
-    const std::string before = test_support::bytes_of(folder / ".feeler/results-1of2.db");
     EXPECT_TRUE(says(check("1/2"), "2 of 2 results are those of earlier checks"));
+    const std::string before = test_support::bytes_of(folder / ".feeler/results-1of2.db");
     EXPECT_TRUE(says(check("2/3"), "1 of 1 results are those of earlier checks"));
     EXPECT_TRUE(says(check(""), "3 of 3 results are those of earlier checks"));
     folder.write("b.nc", clear_program + "( changed, and so the largest )\n");
     EXPECT_TRUE(says(check(""), "2 of 3 results are those of earlier checks"));
-    EXPECT_TRUE(says(check("1/2"), "1 of 1 results are those of earlier checks"));
     EXPECT_EQ(test_support::bytes_of(folder / ".feeler/results-1of2.db"), before);
+    EXPECT_TRUE(says(check("1/2"), "1 of 1 results are those of earlier checks"));
     const auto history = feeler({"history", folder / "b.nc"});
     EXPECT_TRUE(says(history, "2 versions")) << history.out << history.err;
+}
+
+TEST(BatchCache, HistoryEndsWithTheProgramAsItIsAlsoIfAShareHasSeenItBefore) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    const std::string parts = folder.path().string(), b = folder / "b.nc";
+    const auto last_of_history = [&] {
+        const std::string text = feeler({"history", b}).out;
+        return text.substr(text.rfind("program ") + 8, 8);
+    };
+    feeler({"check", parts, "--shard", "1/2"});
+    feeler({"check", parts, "--shard", "2/2"});
+    const std::string first = last_of_history();
+    folder.write("b.nc", clear_program + "( changed )\n");
+    feeler({"check", parts});
+    EXPECT_NE(last_of_history(), first);
+    folder.write("b.nc", clear_program);
+    EXPECT_TRUE(says(feeler({"check", parts}), "3 of 3 results are those of earlier checks"));
+    EXPECT_EQ(last_of_history(), first);
+    EXPECT_TRUE(says(feeler({"history", b}), ": 2 versions"));
 }
 
 TEST(BatchCache, BesideThatCannotBeReadIsAsGoodAsNone) {

