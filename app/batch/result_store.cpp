@@ -4,15 +4,18 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "app/batch/database.h"
 #include "app/batch/input_files.h"
 #include "app/batch/kept_row.h"
+#include "app/batch/quoted_path.h"
 #include "app/batch/result_key.h"
 #include "app/batch/result_writer.h"
 #include "app/batch/store_file.h"
+#include "app/batch/store_places.h"
 
 namespace app {
 namespace {
@@ -29,11 +32,20 @@ int64_t now() {
     return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
+/// Under what the result of a job is kept.
+struct JobKeys {
+    std::string options;     // see options_text, with places
+    std::string by_any_name; // whose texts are right whatever the paths of the job are
+    std::string by_this_name;
+};
+
 } // namespace
 
 struct ResultStore::State {
+    State(const std::string& path, std::string by) : version(std::move(by)), places(path) {}
+
     std::string version;
-    std::filesystem::path folder; // that the database is for
+    StorePlaces places;
     std::shared_ptr<InputAnswers> answers;
     std::shared_ptr<Patience> patience;
     std::shared_ptr<ResultWriter> writer; // of the own store if nothing is kept in this one
@@ -44,7 +56,11 @@ struct ResultStore::State {
 
     core::Result<void> prepare();
     std::string place_of(const std::string& program) const;
+    std::string content_of(const CheckJob& job) const;
+    JobKeys keys_of(const CheckJob& job, const std::string& sha256) const;
+    bool is_same(const KeptRow& row);
     core::Result<std::vector<KeptRow>> rows(const std::string& key);
+    core::Result<std::optional<ProgramResult>> find(const std::string& key);
 };
 
 core::Result<void> ResultStore::State::prepare() {
@@ -68,7 +84,26 @@ core::Result<void> ResultStore::State::prepare() {
 std::string ResultStore::State::place_of(const std::string& program) const {
     std::error_code failure;
     const auto whole = std::filesystem::weakly_canonical(program, failure);
-    return failure ? program : whole.lexically_relative(folder).string();
+    return failure ? program : whole.lexically_relative(places.folder()).string();
+}
+
+std::string ResultStore::State::content_of(const CheckJob& job) const {
+    return answers->content_of(places.path_of(places.place_of(job.program)));
+}
+
+JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha256) const {
+    const CheckJob there = placed(job, places);
+    const std::string options = options_text(there).value_or("");
+    const std::string names = result_key({}, job, {}, options_text(job).value_or(""));
+    return {.options = options,
+            .by_any_name = result_key(version, there, sha256, options),
+            .by_this_name = result_key(version, there, sha256, options + names + places.folder())};
+}
+
+bool ResultStore::State::is_same(const KeptRow& row) {
+    return std::all_of(row.inputs.begin(), row.inputs.end(), [this](const InputFile& input) {
+        return answers->is_same(asked_again(input, places));
+    });
 }
 
 core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& key) {
@@ -106,8 +141,7 @@ ResultStore::~ResultStore() = default;
 
 core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version,
                                             std::shared_ptr<Patience> patience) {
-    auto state = std::make_unique<State>();
-    state->version = version;
+    auto state = std::make_unique<State>(path, version);
     state->answers = std::make_shared<InputAnswers>();
     state->patience = patience ? std::move(patience) : std::make_shared<Patience>();
     state->writer = std::make_shared<ResultWriter>(path, state->patience);
@@ -116,8 +150,7 @@ core::Result<ResultStore> ResultStore::open(const std::string& path, const std::
 
 core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
                                                    const ResultStore& own) {
-    auto state = std::make_unique<State>();
-    state->version = own.state_->version;
+    auto state = std::make_unique<State>(path, own.state_->version);
     state->answers = own.state_->answers;
     state->patience = own.state_->patience;
     state->writer = own.state_->writer;
@@ -128,10 +161,6 @@ core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
 core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database::Access access,
                                                std::unique_ptr<State> state) {
     FEELER_TRY(state->database, open_store_file(path, access, state->patience));
-    std::error_code failure;
-    state->folder =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(path), failure).parent_path();
-    if (state->folder.filename() == ".feeler") state->folder = state->folder.parent_path();
     if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
     return ResultStore(std::move(state));
 }
@@ -140,11 +169,11 @@ std::shared_ptr<InputAnswers> ResultStore::answers() const { return state_->answ
 
 void ResultStore::try_again() { state_->writer->try_again(); }
 
-std::string ResultStore::key_of(const CheckJob& job) const {
-    const auto options = options_text(job);
-    const std::string sha256 = state_->answers->content_of(job.program);
-    if (!options || sha256.empty()) return {};
-    return result_key(state_->version, job, sha256, *options);
+std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
+    const std::string sha256 = state_->content_of(job);
+    if (!options_text(job) || sha256.empty()) return {};
+    const JobKeys keys = state_->keys_of(job, sha256);
+    return {keys.by_any_name, keys.by_this_name};
 }
 
 core::Result<std::vector<std::string>> ResultStore::keys() {
@@ -158,38 +187,47 @@ core::Result<std::vector<std::string>> ResultStore::keys() {
     }
 }
 
-core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job) {
-    const std::string key = key_of(job);
-    if (key.empty()) return std::nullopt;
-    FEELER_TRY(const std::vector<KeptRow> rows, state_->rows(key));
-    for (const KeptRow& row : rows) {
-        const bool is_same =
-            std::all_of(row.inputs.begin(), row.inputs.end(),
-                        [&](const InputFile& input) { return state_->answers->is_same(input); });
-        if (!is_same || !is_sound(row)) continue;
+core::Result<std::optional<ProgramResult>> ResultStore::State::find(const std::string& key) {
+    FEELER_TRY(const std::vector<KeptRow> found, rows(key));
+    for (const KeptRow& row : found) {
+        if (!is_same(row) || !is_sound(row)) continue;
         auto result = result_from_json(row.value);
         if (!result) continue;
-        state_->writer->put({row.key, row.looks, now()});
+        writer->put({row.key, row.looks, now()});
         return *std::move(result);
+    }
+    return std::nullopt;
+}
+
+core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job) {
+    for (const std::string& key : keys_of(job)) {
+        FEELER_TRY(std::optional<ProgramResult> found, state_->find(key));
+        if (found) return renamed(*std::move(found), job);
     }
     return std::nullopt;
 }
 
 core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
                                      const ProgramResult& result) {
-    const auto options = options_text(job);
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
-    if (!state_->is_kept_in || !options || was_stopped || run.sha256.empty()) return {};
+    if (!state_->is_kept_in || !options_text(job) || was_stopped || run.sha256.empty()) return {};
+    const StorePlaces& places = state_->places;
+    const JobKeys keys = state_->keys_of(job, run.sha256);
+    const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
+    std::set<InputFile> inputs; // of which two may have been one, by different names
+    for (const InputFile& input : run.inputs) inputs.insert(placed(input, places));
     const int64_t at = now();
     KeptRow row{.program = state_->place_of(job.program),
-                .setup = job.setup,
-                .options = *options,
+                .setup = places.place_of(job.setup),
+                .options = keys.options,
                 .version = state_->version,
                 .checked_at = at / 1'000'000,
-                .key = result_key(state_->version, job, run.sha256, *options),
-                .looks = looks_of(run.inputs),
+                .key = is_named ? keys.by_this_name : keys.by_any_name,
+                .looks = {},
                 .value = json_of(result),
-                .inputs = run.inputs};
+                .seal = {},
+                .inputs = {inputs.begin(), inputs.end()}};
+    row.looks = looks_of(row.inputs);
     row.seal = seal_of(row);
     Sighting sighting{row.key, row.looks, at};
     return state_->writer->put(std::move(row), std::move(sighting));

@@ -17,7 +17,7 @@ struct KeptVersion {
     int64_t checked_at = 0; // seconds since 1970
     int64_t seen_at = 0;    // when it was last seen to hold, microseconds since 1970
     std::string version;    // of the program that checked
-    std::string setup;      // its path as it was given; empty: inferred
+    std::string setup;      // where it lies: see StorePlaces; empty: inferred
     std::string options;    // of the job: see options_text
     std::string inputs;     // a digest of all that was read
     std::string key;        // see result_key
@@ -47,8 +47,8 @@ public:
     /// Errors: as open.
     static core::Result<ResultStore> open_beside(const std::string& path, const ResultStore& own);
 
-    /// Under what it keeps the result of a job; empty for one whose results are not kept.
-    std::string key_of(const CheckJob& job) const;
+    /// Under what the result of a job may be kept here; nothing for one whose results are not.
+    std::vector<std::string> keys_of(const CheckJob& job) const;
 
     /// Under what results are kept: see result_key.
     ///
@@ -56,7 +56,8 @@ public:
     core::Result<std::vector<std::string>> keys();
 
     /// What the check of this job gave, if it was kept and nothing has changed since; empty if not.
-    /// What is found is put down as seen, where somebody may write.
+    /// By what paths the job names its files, and from where, is no matter, unless a text of the
+    /// result has one of them. What is found is put down as seen, where somebody may write.
     ///
     /// Errors: io, with the database.
     core::Result<std::optional<ProgramResult>> find(const CheckJob& job);

@@ -33,9 +33,11 @@ std::optional<ProgramResult> StoresBeside::find_in(const std::string& path, cons
 
 std::optional<ProgramResult> StoresBeside::find(const CheckJob& job) {
     if (paths_of_key_.empty()) return std::nullopt;
-    const auto [first, last] = paths_of_key_.equal_range(own_.key_of(job));
-    for (auto at = first; at != last; ++at)
-        if (auto found = find_in(at->second, job)) return found;
+    for (const std::string& key : own_.keys_of(job)) {
+        const auto [first, last] = paths_of_key_.equal_range(key);
+        for (auto at = first; at != last; ++at)
+            if (auto found = find_in(at->second, job)) return found;
+    }
     return std::nullopt;
 }
 

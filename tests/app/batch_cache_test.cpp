@@ -122,6 +122,55 @@ TEST(BatchCache, HistoryEndsWithTheProgramAsItIsAlsoIfAShareHasSeenItBefore) {
     EXPECT_TRUE(says(feeler({"history", b}), ": 2 versions"));
 }
 
+/// A library that is checked from where it is named in three ways.
+class Library : public testing::Test {
+protected:
+    Library() {
+        std::filesystem::create_directories(folder / "lib/setups");
+        folder.write("lib/a.nc", clear_program);
+        folder.write("lib/wrong.nc", "G999\n" + clear_program);
+        folder.write("lib/setups/s.toml", test_support::SetupWriter().text());
+        folder.write("lib/feeler.toml",
+                     "[[program]]\nfiles = \"*.nc\"\nsetup = \"setups/s.toml\"\n");
+    }
+
+    test_support::Ran from(const std::string& working_folder,
+                           std::vector<std::string> words) const {
+        words.insert(words.begin(), "check");
+        return feeler(words, "cd " + test_support::quoted(folder / working_folder) + ";");
+    }
+
+    const test_support::ScopedFolder folder;
+};
+
+TEST_F(Library, IsCheckedOnceFromWhereverItIsNamed) {
+    from(".", {"lib", "--format", "jsonl", "-o", "1"});
+    const auto inside = from("lib", {".", "--format", "jsonl"});
+    EXPECT_NE(inside.err.find("2 of 2 results are those of earlier"), std::string::npos)
+        << inside.err;
+    EXPECT_EQ(inside.out.find("lib/"), std::string::npos) << inside.out;
+    EXPECT_NE(inside.out.find("\"setup\":\"setups/s.toml\""), std::string::npos) << inside.out;
+    EXPECT_TRUE(says(from("lib/setups", {".."}), "2 of 2 results are those of earlier"));
+    const auto whole = from("/", {folder / "lib"});
+    EXPECT_TRUE(says(whole, "2 of 2 results are those of earlier")) << whole.out;
+    EXPECT_TRUE(says(whole, folder / "lib/wrong.nc:1:1: G999")) << whole.out;
+    EXPECT_TRUE(says(feeler({"history", folder / "lib/a.nc"}), ": 1 version\n"));
+}
+
+TEST_F(Library, NeverSpeaksOfPathsAsAnotherCallNamedThem) {
+    folder.write("lib/control.ini", "[RS274NGC]\nPARAMETER_FILE = none.var\n");
+    const auto outside =
+        from(".", {"lib", "--ini", "lib/control.ini", "--format", "jsonl", "--verbose"});
+    ASSERT_TRUE(says(outside, "lib/control.ini: there is no lib/none.var")) << outside.out;
+    const auto inside = from("lib", {".", "--ini", "control.ini", "--format", "jsonl"});
+    EXPECT_TRUE(says(inside, "\"control.ini: there is no none.var")) << inside.out;
+    EXPECT_EQ(inside.out.find("lib/"), std::string::npos) << inside.out;
+    const auto again = from("lib", {".", "--ini", "control.ini"});
+    EXPECT_TRUE(says(again, "2 of 2 results are those of earlier")) << again.out;
+    const std::string history = feeler({"history", folder / "lib/a.nc"}).out;
+    EXPECT_NE(history.find(": 1 version\n"), std::string::npos) << history;
+}
+
 TEST(BatchCache, BesideThatCannotBeReadIsAsGoodAsNone) {
     const test_support::ScopedFolder folder;
     fill(folder);

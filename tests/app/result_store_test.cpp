@@ -141,19 +141,18 @@ TEST_F(Kept, AreBothVersionsOfASetupThatGoesToAndFro) {
 
 TEST_F(Kept, HistoryEndsWithWhatWasSeenLast) {
     keep();
+    const ProgramResult first = result;
     folder.write("a.nc", "G0 X2\n");
-    const CheckRun before = run;
-    run.sha256 = app::sha256_of_file(job.program);
+    run.sha256 = result.sha256 = app::sha256_of_file(job.program);
     run.inputs[0] = content(job.program);
     keep();
-    EXPECT_EQ(opened(path).history(job.program)->back().key,
-              app::result_key("1", job, run.sha256, *app::options_text(job)));
+    EXPECT_EQ(opened(path).history(job.program)->back().result, result);
     folder.write("a.nc", "G0 X1\n");
-    EXPECT_EQ(found(job), result);
+    EXPECT_EQ(found(job), first);
     const auto versions = opened(path).history(job.program);
     ASSERT_EQ(versions->size(), 2u);
     const app::KeptVersion& last = versions->back();
-    EXPECT_EQ(last.key, app::result_key("1", job, before.sha256, *app::options_text(job)));
+    EXPECT_EQ(last.result, first);
     EXPECT_GT(last.seen_at, versions->front().seen_at);
     EXPECT_EQ(*opened(path).seen_at(last), last.seen_at);
 }

@@ -96,7 +96,7 @@ TEST_F(OneResult, IsRefusedWithinTenSecondsInAllWhileSomebodyHasTheDatabase) {
     EXPECT_LT(taken, 12s);
     ASSERT_TRUE(other->run("COMMIT"));
     EXPECT_EQ(*store->find(each.job), std::nullopt);
-    store->look_again();
+    store->try_again();
     ASSERT_TRUE(store->keep(each.job, each.run, each.result));
     ASSERT_TRUE(store->flush());
     EXPECT_EQ(*store->find(each.job), each.result);

@@ -1,0 +1,95 @@
+#include "app/batch/store_places.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include "app/batch/plain_path.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What of a path lies below a folder, beginning with a slash; nothing if it does not. Both are
+/// plain; the root is empty.
+std::optional<std::string_view> below(std::string_view path, std::string_view folder) {
+    if (!path.starts_with(folder)) return std::nullopt;
+    path.remove_prefix(folder.size());
+    if (!path.empty() && path[0] != '/') return std::nullopt;
+    return path;
+}
+
+std::string_view parent_of(std::string_view folder) {
+    return folder.substr(0, std::min(folder.rfind('/'), folder.size()));
+}
+
+/// An absolute path without the parts that lead nowhere; the root is empty.
+std::string whole(const std::string& path, const std::string& working_folder) {
+    std::string plain = plain_path(path.starts_with('/') ? path : working_folder + "/" + path);
+    return plain == "/" ? std::string() : plain;
+}
+
+std::string folder_of(const std::string& database) {
+    const fs::path folder = fs::path(database).parent_path();
+    return (folder.filename() == ".feeler" ? folder.parent_path() : folder).string();
+}
+
+} // namespace
+
+StorePlaces::StorePlaces(const std::string& database) {
+    std::error_code failure;
+    working_folder_ = fs::current_path(failure).string();
+    named_folder_ = whole(folder_of(database), working_folder_);
+    folder_ = whole(fs::weakly_canonical(named_folder_ + "/", failure).string(), working_folder_);
+}
+
+std::string StorePlaces::place_of(const std::string& path) const {
+    if (path.empty()) return {};
+    const std::string file = whole(path, working_folder_);
+    for (const std::string& folder : {named_folder_, folder_})
+        if (const auto rest = below(file, folder))
+            return rest->empty() ? "." : std::string(rest->substr(1));
+    std::string up = "..";
+    for (std::string_view folder = parent_of(folder_); !folder.empty();
+         folder = parent_of(folder), up += "/..")
+        if (const auto rest = below(file, folder)) return up + std::string(*rest);
+    return file.empty() ? "/" : file;
+}
+
+std::string StorePlaces::path_of(const std::string& place) const {
+    if (place.empty() || place.starts_with('/')) return place;
+    std::string_view folder = folder_, rest = place;
+    while (rest == ".." || rest.starts_with("../")) {
+        folder = parent_of(folder);
+        rest.remove_prefix(std::min<size_t>(3, rest.size()));
+    }
+    std::string path(folder);
+    if (!rest.empty() && rest != ".") path += "/" + std::string(rest);
+    return path.empty() ? "/" : path;
+}
+
+CheckJob placed(const CheckJob& job, const StorePlaces& places) {
+    CheckJob made = job;
+    ProgramSettings& settings = made.settings;
+    for (std::string* path :
+         {&made.program, &made.setup, &settings.ini, &settings.parameters, &settings.tool_table})
+        *path = places.place_of(*path);
+    for (std::string& folder : settings.search_path) folder = places.place_of(folder);
+    return made;
+}
+
+InputFile placed(InputFile input, const StorePlaces& places) {
+    input.path = places.place_of(input.path);
+    if (input.question == core::FileQuestion::in_folder && input.answer)
+        input.answer = places.place_of(*input.answer);
+    return input;
+}
+
+InputFile asked_again(InputFile input, const StorePlaces& places) {
+    input.path = places.path_of(input.path);
+    if (input.question == core::FileQuestion::in_folder && input.answer)
+        input.answer = places.path_of(*input.answer);
+    return input;
+}
+
+} // namespace app

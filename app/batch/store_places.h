@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "app/session/check_run.h"
+
+namespace app {
+
+/// Where files lie as seen from the folder that a database is for: the same from wherever one
+/// calls, and wherever the folder is moved to with all that is in it. No link is followed and no
+/// `..` taken back, but for those above the folder: from a place one comes to the very file that
+/// whoever gave the path would have come to, also after links have changed. (A `.` counts as nothing
+/// also behind a file.)
+class StorePlaces {
+public:
+    /// Of a database in a file; `.feeler` is for the folder that it lies in.
+    explicit StorePlaces(const std::string& database);
+
+    /// Relative if the path leads into the folder or shares some of the way; empty if it is.
+    std::string place_of(const std::string& path) const;
+
+    /// An absolute path to a place.
+    std::string path_of(const std::string& place) const;
+
+    /// The folder, with all links followed.
+    const std::string& folder() const { return folder_; }
+
+private:
+    std::string working_folder_, named_folder_, folder_; // absolute; the second as it was given
+};
+
+/// A job with places in place of paths.
+CheckJob placed(const CheckJob& job, const StorePlaces& places);
+
+/// A look with places in place of paths, and back.
+InputFile placed(InputFile input, const StorePlaces& places);
+InputFile asked_again(InputFile input, const StorePlaces& places);
+
+} // namespace app
