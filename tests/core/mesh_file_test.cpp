@@ -208,7 +208,7 @@ TEST(MeshFile, KeepsBothCubesThatShareAnEdge) {
 TEST(MeshFile, SaysWhenThereIsNoSuchFile) {
     EXPECT_THAT(read_mesh("/nowhere/part.stl").error().message, HasSubstr("no such file"));
     EXPECT_THAT(read_mesh(::testing::TempDir()).error().message, HasSubstr("folder"));
-    EXPECT_THAT(read_mesh("/dev/null").error().message, HasSubstr("no file"));
+    EXPECT_THAT(read_mesh("/dev/null").error().message, HasSubstr("not a file"));
     EXPECT_THAT(error_of("empty.stl", ""), HasSubstr("empty"));
 }
 
