@@ -165,8 +165,6 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database
     return ResultStore(std::move(state));
 }
 
-std::shared_ptr<InputAnswers> ResultStore::answers() const { return state_->answers; }
-
 void ResultStore::try_again() { state_->writer->try_again(); }
 
 std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
