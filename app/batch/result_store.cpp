@@ -16,6 +16,7 @@
 #include "app/batch/result_writer.h"
 #include "app/batch/store_file.h"
 #include "app/batch/store_places.h"
+#include "app/session/digest.h"
 
 namespace app {
 namespace {
@@ -31,6 +32,20 @@ int64_t now() {
     using namespace std::chrono;
     return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
+
+/// All paths of a job as it has them, each with its length.
+std::string names_in(const CheckJob& job) {
+    const ProgramSettings& settings = job.settings;
+    std::vector<std::string> paths = settings.search_path;
+    paths.insert(paths.end(),
+                 {job.program, job.setup, settings.ini, settings.parameters, settings.tool_table});
+    std::string text;
+    for (const std::string& path : paths) text += fmt::format(" {}:{}", path.size(), path);
+    return text;
+}
+
+/// Whether a job is one whose results are kept.
+bool is_kept(const CheckJob& job) { return job.edits.empty() && !job.edits.tool_at_start; }
 
 /// Under what the result of a job is kept.
 struct JobKeys {
@@ -93,11 +108,11 @@ std::string ResultStore::State::content_of(const CheckJob& job) const {
 
 JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha256) const {
     const CheckJob there = placed(job, places);
-    const std::string options = options_text(there).value_or("");
-    const std::string names = result_key({}, job, {}, options_text(job).value_or(""));
-    return {.options = options,
-            .by_any_name = result_key(version, there, sha256, options),
-            .by_this_name = result_key(version, there, sha256, options + names + places.folder())};
+    JobKeys keys{
+        .options = options_text(there).value_or(""), .by_any_name = {}, .by_this_name = {}};
+    keys.by_any_name = result_key(version, there, sha256, keys.options);
+    keys.by_this_name = sha256_of(keys.by_any_name + places.folder() + names_in(job));
+    return keys;
 }
 
 bool ResultStore::State::is_same(const KeptRow& row) {
@@ -169,7 +184,7 @@ void ResultStore::try_again() { state_->writer->try_again(); }
 
 std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
     const std::string sha256 = state_->content_of(job);
-    if (!options_text(job) || sha256.empty()) return {};
+    if (!is_kept(job) || sha256.empty()) return {};
     const JobKeys keys = state_->keys_of(job, sha256);
     return {keys.by_any_name, keys.by_this_name};
 }
@@ -208,7 +223,7 @@ core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job
 core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
                                      const ProgramResult& result) {
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
-    if (!state_->is_kept_in || !options_text(job) || was_stopped || run.sha256.empty()) return {};
+    if (!state_->is_kept_in || !is_kept(job) || was_stopped || run.sha256.empty()) return {};
     const StorePlaces& places = state_->places;
     const JobKeys keys = state_->keys_of(job, run.sha256);
     const bool is_named = quotes_paths(result, job, run.inputs, places.folder());

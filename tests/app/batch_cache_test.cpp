@@ -1,7 +1,9 @@
+#include <chrono>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "app/batch/database.h"
 #include "tests/app/checked.h"
 
 namespace app_test {
@@ -74,6 +76,23 @@ TEST(BatchCache, ThatCannotBeUsedIsToldAndTheCheckGoesOn) {
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_NE(ran.err.find("wrong.db"), std::string::npos) << ran.err;
     EXPECT_NE(ran.err.find("the check goes on"), std::string::npos) << ran.err;
+    EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
+}
+
+TEST(BatchCache, ThatOthersHoldCostsTenSecondsOfARun) {
+    const test_support::ScopedFolder folder;
+    fill(folder);
+    feeler({"check", folder.path().string()});
+    auto other =
+        app::Database::open(folder / ".feeler/results.db", app::Database::Access::read_write);
+    ASSERT_TRUE(other && other->run("BEGIN EXCLUSIVE"));
+    const auto begin = std::chrono::steady_clock::now();
+    const auto ran = feeler({"check", folder.path().string(), "--jobs", "1"});
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(taken.count(), 15.0);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(ran.err.find("results.db: database is locked"), std::string::npos) << ran.err;
+    EXPECT_EQ(ran.err.find("goes on"), ran.err.rfind("goes on")) << "told once: " << ran.err;
     EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
 }
 
