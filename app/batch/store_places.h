@@ -9,8 +9,8 @@ namespace app {
 /// Where files lie as seen from the folder that a database is for: the same from wherever one
 /// calls, and wherever the folder is moved to with all that is in it. No link is followed and no
 /// `..` taken back, but for those above the folder: from a place one comes to the very file that
-/// whoever gave the path would have come to, also after links have changed. (A `.` counts as nothing
-/// also behind a file.)
+/// whoever gave the path would have come to, also after links have changed. (A `.` counts as
+/// nothing also behind a file.)
 class StorePlaces {
 public:
     /// Of a database in a file; `.feeler` is for the folder that it lies in.
