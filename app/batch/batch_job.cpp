@@ -17,7 +17,8 @@ std::string project_of(const std::string& word) {
         const fs::path inside = fs::path(word) / project_file_name;
         return core::is_there(inside) ? inside.string() : std::string();
     }
-    return fs::path(word).extension() == ".toml" && !is_glob(word) ? word : std::string();
+    const bool is_pattern = is_glob(word) && !core::is_there(word);
+    return fs::path(word).extension() == ".toml" && !is_pattern ? word : std::string();
 }
 
 CheckJob job_of(const ChosenProgram& chosen, const CheckJob& asked) {

@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "app/tools/line_comments.h"
-#include "core/base/file_reads.h"
 #include "gcode/program_text.h"
 
 namespace app {
@@ -100,7 +99,6 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
     for (const Kind& kind : foreign_kinds)
         if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
             return std::optional<std::string>(kind.what);
-    core::presence_of(path); // no check hangs on what is only looked into, but who watches does
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file)

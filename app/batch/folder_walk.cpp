@@ -68,15 +68,22 @@ private:
 void FolderWalk::sort_in(const fs::path& path) {
     std::error_code failure, ignored;
     const fs::file_status status = fs::status(path, failure);
-    if (fs::is_regular_file(status))
+    const auto cannot = [&] {
+        unreadable.push_back(
+            {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});
+    };
+    const bool leads_nowhere = status.type() == fs::file_type::not_found
+                               || failure == std::errc::too_many_symbolic_link_levels;
+    if (failure && !leads_nowhere)
+        cannot();
+    else if (fs::is_regular_file(status))
         files.push_back(path.string());
     else if (fs::exists(status))
         skipped.push_back({path.string(), "is neither a file nor a folder"});
     else if (fs::is_symlink(fs::symlink_status(path, ignored)))
         skipped.push_back({path.string(), "is a link that leads nowhere"});
     else if (failure != std::errc::no_such_file_or_directory) // that went while it was listed
-        unreadable.push_back(
-            {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});
+        cannot();
 }
 
 core::Error unreadable_folder(const fs::path& folder, const std::error_code& failure) {

@@ -16,7 +16,10 @@ namespace fs = std::filesystem;
 
 class Expansion {
 public:
-    explicit Expansion(const fs::path& pattern) : parts_(pattern.begin(), pattern.end()) {}
+    explicit Expansion(const fs::path& pattern) {
+        for (const fs::path& part : pattern) // `**/**` is `**`
+            if (part != "**" || parts_.empty() || parts_.back() != "**") parts_.push_back(part);
+    }
 
     FolderWalk run(const fs::path& folder) {
         expand(folder, 0);

@@ -22,6 +22,11 @@ void ProgramChoice::add(const ChosenProgram& program) {
         return;
     }
     ChosenProgram& known = programs_[at->second];
+    if (known.is_at_home && !program.is_at_home) return;
+    if (program.is_at_home && !known.is_at_home) {
+        known = {known.path, program.general, program.special, true};
+        return;
+    }
     known.general = overlaid(std::move(known.general), program.general);
     known.special = overlaid(std::move(known.special), program.special);
 }
@@ -48,7 +53,7 @@ std::vector<SkippedFile> ProgramChoice::skipped() const {
 }
 
 void Chooser::take_words(const std::vector<std::string>& words) {
-    take(choice_, find_programs(words), {}, {});
+    take(choice_, find_programs(words), {});
 }
 
 core::Result<void> Chooser::take_project(const std::string& path) {
@@ -78,19 +83,20 @@ core::Result<ProgramChoice> Chooser::read_choice(const std::string& path) {
                      {entry.line, 0, 0},
                      fmt::format("{} {}", error.file, error.message),
                      path};
-        take(choice, found, project.terms, entry.terms);
+        take(choice, found, {path, project.terms, entry.terms});
     }
     return choice;
 }
 
-void Chooser::take(ProgramChoice& choice, const FoundPrograms& found, const ProgramTerms& general,
-                   const ProgramTerms& special) {
+void Chooser::take(ProgramChoice& choice, const FoundPrograms& found, const Sayer& sayer) {
     for (const core::Error& error : found.failures) choice.fail(error);
     for (const SkippedFile& file : found.skipped) choice.skip(file);
     std::set<std::string> led_to;
     for (const FoundProgram& program : found.programs) {
         if (!program.project.empty()) led_to.insert(program.project);
-        take_found(choice, program, {program.path, general, special});
+        take_found(
+            choice, program,
+            {program.path, sayer.general, sayer.special, is_nearest(sayer.project, program.path)});
     }
     led_to.insert(found.projects.begin(), found.projects.end());
     for (const std::string& project : led_to) {
@@ -103,15 +109,21 @@ void Chooser::take(ProgramChoice& choice, const FoundPrograms& found, const Prog
         if (const Chosen chosen = chosen_by(project); chosen && *chosen) take_all(choice, **chosen);
 }
 
+bool Chooser::is_nearest(const std::string& project, const std::string& program) {
+    if (project.empty()) return false;
+    std::error_code ignored;
+    const auto folder = std::filesystem::absolute(program, ignored).parent_path();
+    const std::string nearest = owners_.of(std::filesystem::weakly_canonical(folder, ignored), "/");
+    return !nearest.empty() && identities_.of(nearest) == identities_.of(project);
+}
+
 /// A program that a search led to is what its own project says.
 void Chooser::take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named) {
     const Chosen chosen = found.project.empty() ? nullptr : chosen_by(found.project);
     if (!chosen || found.is_named) choice.add(as_named);
     if (!chosen || !*chosen) return;
     if (const ChosenProgram* program = (*chosen)->find(found.path)) {
-        as_named.general = program->general;
-        as_named.special = program->special;
-        choice.add(as_named);
+        choice.add({found.path, program->general, program->special, program->is_at_home});
     } else if (!found.is_named) {
         choice.skip({found.path, fmt::format("is named by no [[program]] of {}", found.project)});
     }

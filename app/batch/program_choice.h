@@ -10,6 +10,7 @@
 #include "app/batch/folder_walk.h"
 #include "app/batch/program_finder.h"
 #include "app/batch/project_file.h"
+#include "app/batch/project_owner.h"
 
 namespace app {
 
@@ -17,10 +18,12 @@ namespace app {
 struct ChosenProgram {
     std::string path;
     ProgramTerms general, special; // what its projects say of all, and of it by their tables
+    bool is_at_home = false;       // the nearest project above it says so
 };
 
 /// Programs, each once in the order in which they came, whatever the spelling of their paths; the
-/// first one stays.
+/// first one stays. Of what several projects say of one the nearest above it counts alone, else
+/// what comes later replaces what came before.
 class ProgramChoice {
 public:
     void add(const ChosenProgram& program);
@@ -58,13 +61,20 @@ private:
 
     Chosen chosen_by(const std::string& project);
     core::Result<ProgramChoice> read_choice(const std::string& project);
-    void take(ProgramChoice& choice, const FoundPrograms& found, const ProgramTerms& general,
-              const ProgramTerms& special);
+    /// Who names programs: a project by one of its tables, or nobody.
+    struct Sayer {
+        std::string project;
+        ProgramTerms general, special;
+    };
+
+    void take(ProgramChoice& choice, const FoundPrograms& found, const Sayer& sayer);
+    bool is_nearest(const std::string& project, const std::string& program);
     void take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named);
 
     ProgramChoice choice_;
     std::map<std::string, Chosen> projects_; // empty while one is being read
     FileIdentities identities_;
+    ProjectOwners owners_;
 };
 
 } // namespace app

@@ -36,10 +36,13 @@ std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t 
 std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
                                             const std::error_code& failure) {
     std::error_code ignored;
-    if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, ignored))) return "link";
     const bool is_absent = failure == std::errc::no_such_file_or_directory
                            || failure == std::errc::not_a_directory
                            || failure == std::errc::filename_too_long;
+    const bool leads_nowhere = is_absent || failure == std::errc::too_many_symbolic_link_levels;
+    if (leads_nowhere
+        && std::filesystem::is_symlink(std::filesystem::symlink_status(path, ignored)))
+        return "link";
     return is_absent ? std::nullopt : std::optional<std::string_view>("unknown");
 }
 

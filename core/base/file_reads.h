@@ -17,6 +17,7 @@ enum class FileQuestion : uint8_t {
     in_folder, // where a file of that name leads to; no answer when there is none in the folder
     any_case,  // the name of a file that is called so in any case; no answer when there is none
     listing,   // of a folder, all names in it; the answer is not told
+    kind,      // of a file, whether it looks like a program; likewise
 };
 
 /// A question to the disk and what it answered.

@@ -182,6 +182,35 @@ TEST_F(NestedProject, CountsInWhateverOrderItsProgramsAreNamed) {
     EXPECT_THAT(jobs(plan({".", "job/b.nc"})), Contains("job/b.nc  0")) << "named, not found";
 }
 
+TEST_F(NestedProject, KeepsItsSayThoughALaterSearchBeginsBelowIt) {
+    write("job/feeler.toml", "[[program]]\nfiles = \"**/*.nc\"\nsetup = \"vise.toml\"\n");
+    const std::string as_it_says = "job/sub/c.nc job/vise.toml 0";
+    EXPECT_THAT(jobs(plan({"**/*.nc", "job/sub"})), Contains(as_it_says));
+    EXPECT_THAT(jobs(plan({"**/*.nc", "job/sub/*.nc"})), Contains(as_it_says));
+    EXPECT_THAT(jobs(plan({"job/sub", "**/*.nc"})), Contains(as_it_says));
+}
+
+TEST_F(NestedProject, HasTheOnlySayInItsFolderThoughOthersReachIntoIt) {
+    for (const std::string name : {"A", "B"}) {
+        write(name + "/" + name + ".nc", good);
+        write(name + "/feeler.toml",
+              "[[program]]\nfiles = [\".\", \"../A\", \"../B\"]\nsetup = \"s.toml\"\n");
+    }
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"A"}, {"B"}, {"A", "B"}, {"B", "A"}})
+        EXPECT_THAT(jobs(plan(words)),
+                    testing::UnorderedElementsAre("A/A.nc A/s.toml 0", "B/B.nc B/s.toml 0"));
+    write("job/feeler.toml", "[[program]]\nfiles = \"../other/*.nc\"\nsetup = \"vise.toml\"\n");
+    write("feeler.toml", "[[program]]\nfiles = [\"other\", \"job\"]\nsetup = \"all.toml\"\n");
+    EXPECT_THAT(jobs(plan({"."})), ElementsAre("other/d.nc all.toml 0"));
+}
+
+TEST_F(NestedProject, IsTakenForOneWhereItsFolderHasBrackets) {
+    write("j[1]/a.nc", good);
+    write("j[1]/feeler.toml", "[[program]]\nfiles = \"*.nc\"\nsetup = \"vise.toml\"\n");
+    EXPECT_THAT(jobs(plan({"j[1]/feeler.toml"})), ElementsAre("j[1]/a.nc j[1]/vise.toml 0"));
+}
+
 TEST_F(NestedProject, IsReadOnceThoughProjectsLeadToEachOther) {
     write("feeler.toml", "[[program]]\nfiles = \"**/*.nc\"\nsetup = \"all.toml\"\n");
     write("job/feeler.toml", "[[program]]\nfiles = \"../**/*.nc\"\nsetup = \"vise.toml\"\n");

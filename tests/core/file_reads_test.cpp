@@ -17,7 +17,8 @@ using test_support::ScopedFolder;
 struct Looks {
     std::vector<std::string> seen;
     core::FileListening listening{[this](const FileLook& look) {
-        const char* const words[] = {"content", "presence", "in_folder", "any_case", "listing"};
+        const char* const words[] = {"content",  "presence", "in_folder",
+                                     "any_case", "listing",  "kind"};
         seen.push_back(std::string(words[static_cast<int>(look.question)]) + " "
                        + std::filesystem::path(look.path).filename().string() + ": "
                        + std::string(look.answer.value_or("-")));
