@@ -10,6 +10,7 @@ namespace {
 
 /// Between reading a file and looking at its time; the clock of files has ticks of some ms.
 constexpr int64_t fresh = 50'000'000; // ns
+constexpr int64_t fresh_by_seconds = 2'500'000'000;
 
 int64_t nanoseconds(const timespec& time) {
     return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
@@ -36,7 +37,9 @@ FileStamp stamp_of(const std::string& path) {
 
 bool is_fresh(const FileStamp& stamp) {
     // An older file that was put in the place of another keeps the time of its bytes.
-    return stamp.is_there && std::max(stamp.modified, stamp.changed) > now() - fresh;
+    const int64_t last = std::max(stamp.modified, stamp.changed);
+    const bool has_whole_seconds = last % 1'000'000'000 == 0; // or two of them, as FAT does
+    return stamp.is_there && last > now() - (has_whole_seconds ? fresh_by_seconds : fresh);
 }
 
 } // namespace app

@@ -183,6 +183,7 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database
 void ResultStore::try_again() { state_->writer->try_again(); }
 
 std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
+    if (!state_->places.still_hold()) return {};
     const std::string sha256 = state_->content_of(job);
     if (!is_kept(job) || sha256.empty()) return {};
     const JobKeys keys = state_->keys_of(job, sha256);
@@ -225,6 +226,7 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
     if (!state_->is_kept_in || !is_kept(job) || was_stopped || run.sha256.empty()) return {};
     const StorePlaces& places = state_->places;
+    if (!places.still_hold()) return {};
     const JobKeys keys = state_->keys_of(job, run.sha256);
     const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
     std::set<InputFile> inputs; // of which two may have been one, by different names

@@ -130,7 +130,8 @@ std::vector<std::string> stores_beside(const std::string& path) {
 
 std::vector<std::string> stores_above(const std::string& program) {
     std::error_code failure;
-    std::filesystem::path folder = std::filesystem::absolute(program, failure).parent_path();
+    std::filesystem::path folder = std::filesystem::weakly_canonical(
+        std::filesystem::absolute(program, failure).parent_path(), failure);
     while (!failure) {
         std::vector<std::string> stores = stores_in(folder / ".feeler");
         if (!stores.empty() || folder == folder.parent_path()) return stores;

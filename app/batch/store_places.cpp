@@ -1,5 +1,6 @@
 #include "app/batch/store_places.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 
@@ -29,8 +30,15 @@ std::string whole(const std::string& path, const std::string& working_folder) {
     return plain == "/" ? std::string() : plain;
 }
 
+/// The root is empty.
+std::array<FileStamp, 3> stamps_of(const std::array<std::string, 3>& folders) {
+    std::array<FileStamp, 3> stamps;
+    for (size_t i = 0; i < folders.size(); ++i) stamps[i] = stamp_of(folders[i] + "/");
+    return stamps;
+}
+
 std::string folder_of(const std::string& database) {
-    const fs::path folder = fs::path(database).parent_path();
+    const fs::path folder = fs::path(plain_path(database)).parent_path();
     return (folder.filename() == ".feeler" ? folder.parent_path() : folder).string();
 }
 
@@ -41,6 +49,17 @@ StorePlaces::StorePlaces(const std::string& database) {
     working_folder_ = fs::current_path(failure).string();
     named_folder_ = whole(folder_of(database), working_folder_);
     folder_ = whole(fs::weakly_canonical(named_folder_ + "/", failure).string(), working_folder_);
+    stamps_ = stamps_of({working_folder_, named_folder_, folder_});
+}
+
+bool StorePlaces::still_hold() const {
+    const auto is_same = [](const FileStamp& a, const FileStamp& b) {
+        return a.is_there && a.device == b.device && a.number == b.number;
+    };
+    const auto now = stamps_of({working_folder_, named_folder_, folder_});
+    const FileStamp here = stamp_of(".");
+    return std::equal(stamps_.begin(), stamps_.end(), now.begin(), is_same)
+           && is_same(stamps_[0], here);
 }
 
 std::string StorePlaces::place_of(const std::string& path) const {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <string>
 
+#include "app/batch/file_stamp.h"
 #include "app/session/check_run.h"
 
 namespace app {
@@ -22,11 +24,16 @@ public:
     /// An absolute path to a place.
     std::string path_of(const std::string& place) const;
 
+    /// Whether the folder's name still leads to it, and the working folder is the same. Where a
+    /// link was swapped or a folder renamed since, paths and places are those of different files.
+    bool still_hold() const;
+
     /// The folder, with all links followed.
     const std::string& folder() const { return folder_; }
 
 private:
     std::string working_folder_, named_folder_, folder_; // absolute; the second as it was given
+    std::array<FileStamp, 3> stamps_{};                  // of all three
 };
 
 /// A job with places in place of paths.

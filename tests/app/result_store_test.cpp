@@ -233,4 +233,19 @@ TEST(ResultKey, HoldsTheBuildOfTheProgram) {
     EXPECT_EQ(app::build_version(), app::build_version());
 }
 
+TEST_F(Kept, IsNotFoundForAnotherFolderOfTheSameName) {
+    const ScopedFolder other;
+    fs::create_directory_symlink(folder.path(), other / "current");
+    CheckJob linked = job;
+    linked.program = other / "current/a.nc";
+    linked.setup = other / "current/job.toml";
+    ResultStore store = opened(other / "current/.feeler/results.db");
+    ASSERT_TRUE(store.keep(linked, run, result));
+    ASSERT_TRUE(store.flush());
+    EXPECT_TRUE(*store.find(linked));
+    fs::remove(other / "current");
+    fs::create_directory_symlink(fs::temp_directory_path(), other / "current");
+    EXPECT_FALSE(*store.find(linked)) << "there is another a.nc, or none";
+}
+
 } // namespace

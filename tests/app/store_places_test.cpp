@@ -145,4 +145,25 @@ TEST(QuotedPath, IsNotTheNameOfTheProgramWhichIsPutBack) {
     EXPECT_TRUE(app::quotes_paths(result, job, {}, "/home/w"));
 }
 
+TEST_F(Places, HoldUntilTheWorkingFolderIsAnother) {
+    const StorePlaces places = from("old", "../lib/.feeler/results.db");
+    EXPECT_TRUE(places.still_hold());
+    fs::rename(folder / "old", folder / "older");
+    fs::create_directory(folder / "old");
+    EXPECT_FALSE(places.still_hold());
+}
+
+TEST_F(Places, AreThoseOfTheFileHoweverItIsSpelled) {
+    EXPECT_EQ(from(".", "lib/.feeler/./results.db").place_of("lib/a.nc"), "a.nc");
+    EXPECT_EQ(from(".", "lib//.feeler/results.db").place_of("lib/a.nc"), "a.nc");
+}
+
+TEST_F(Places, HoldUntilALinkToTheFolderIsSwapped) {
+    const StorePlaces places = from(".", "link/.feeler/results.db");
+    EXPECT_TRUE(places.still_hold());
+    fs::remove(folder / "link");
+    fs::create_directory_symlink("new", folder / "link");
+    EXPECT_FALSE(places.still_hold());
+}
+
 } // namespace
