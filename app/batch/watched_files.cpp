@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/batch/file_kind.h"
 #include "gcode/program_folder.h"
 
 namespace app {
@@ -16,6 +17,13 @@ std::string whole_path(const std::string& path) {
     return failure ? path : whole.string();
 }
 
+/// Why a file is no program, as the search for programs sees it.
+std::string kind_of(const std::string& path) {
+    const auto why = why_no_program(path);
+    if (!why) return "?";
+    return why->value_or("");
+}
+
 } // namespace
 
 WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
@@ -26,9 +34,10 @@ WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
 bool WatchedFiles::is_own(const std::string& path) const {
     if (own_.empty()) return false;
     const std::string whole = whole_path(path);
-    // A database has a journal beside it, of its name and some more.
     return std::any_of(own_.begin(), own_.end(), [&](const std::string& own) {
-        return whole == own || whole.starts_with(own + "-");
+        // A database has these beside it.
+        return whole == own || whole == own + "-journal" || whole == own + "-wal"
+               || whole == own + "-shm";
     });
 }
 
@@ -39,46 +48,50 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
     return names;
 }
 
-WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Place& place) const {
+WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& asked,
+                                         const Look& before) const {
     Look look{stamp_of(path)};
-    if (!look.stamp.is_folder) return look;
-    // Of a folder only the names count: also what does not concern anybody changes its times.
-    const FileStamp& before = place.latest.stamp;
-    const bool is_untouched = before.is_there && look.stamp.modified == before.modified
-                              && look.stamp.number == before.number;
-    if (place.is_folder) look.names = is_untouched ? place.latest.names : names_of(path);
-    look.stamp.size = 0;
-    look.stamp.changed = 0;
+    look.was_fresh = is_fresh(look.stamp);
+    const bool is_known = before.stamp == look.stamp && !before.was_fresh;
+    if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
+    if (asked.kind && look.stamp.is_there && !look.stamp.is_folder)
+        look.kind = is_known ? before.kind : kind_of(path);
     return look;
 }
 
+bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
+    if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder) return true;
+    // Of a folder only the names count: also what does not concern anybody changes its times.
+    if (asked.bytes && !a.stamp.is_folder && a.stamp != b.stamp) return true;
+    return a.names != b.names || a.kind != b.kind;
+}
+
 void WatchedFiles::note(const core::FileLook& look) {
-    const bool is_listed = look.question == core::FileQuestion::listing
-                           || look.question == core::FileQuestion::any_case;
-    const bool is_named = look.question == core::FileQuestion::in_folder;
+    using enum core::FileQuestion;
+    const bool is_named = look.question == in_folder;
     const std::string path = is_named ? (fs::path(look.path) / look.name).string() : look.path;
     if (path.empty() || is_own(path)) return;
     const std::lock_guard lock(mutex_);
     const auto [found, is_new] = places_.try_emplace(path);
     Place& place = found->second;
-    if (!is_new && (place.is_folder || !is_listed)) return;
-    place.is_folder = is_listed;
-    place.first = place.latest = {};
-    place.first = place.latest = look_at(path, place);
-    place.was_fresh = !is_listed && is_fresh(place.first.stamp);
+    const Asked before = place.asked;
+    place.asked.bytes |= look.question == content || is_named;
+    place.asked.names |= look.question == listing || look.question == any_case;
+    place.asked.kind |= look.question == kind;
+    if (!is_new && place.asked == before) return;
+    place.latest = look_at(path, place.asked, {});
+    place.first = place.latest;
 }
 
 WatchedFiles::Change WatchedFiles::look_again() {
-    const auto differ = [](Look a, Look b, bool is_folder) {
-        if (is_folder) a.stamp.modified = b.stamp.modified = 0;
-        return a != b;
-    };
     Change change;
     for (auto& [path, place] : places_) {
-        Look look = look_at(path, place);
-        if (differ(look, place.latest, place.is_folder)) change.is_settled = false;
+        Look look = look_at(path, place.asked, place.latest);
+        if (differ(place.asked, look, place.latest))
+            (place.asked.names ? change.are_names_settled : change.are_files_settled) = false;
         place.latest = std::move(look);
-        if (place.was_fresh || differ(place.latest, place.first, place.is_folder))
+        const bool was_written = place.asked.bytes && place.first.was_fresh;
+        if (was_written || differ(place.asked, place.latest, place.first))
             change.paths.push_back(path);
     }
     return change;

@@ -24,30 +24,38 @@ public:
 
     struct Change {
         std::vector<std::string> paths; // that are not as they were, sorted
-        bool is_settled = true;         // nothing has moved since the call before
+        // Nothing has moved since the call before: no file, no name in a folder.
+        bool are_files_settled = true, are_names_settled = true;
     };
 
-    /// How the places are now. One that was written just when it was looked at counts as changed:
-    /// nobody knows which of its contents was seen. Costs a look at the disk for each, of folders
-    /// that have changed a list of their names.
+    /// How the places are now. One that was written just when it was read counts as changed: nobody
+    /// knows which of its contents was seen. Costs a look at the disk for each, and what was asked
+    /// for again of folders and files that were written.
     Change look_again();
 
 private:
+    /// What was asked for; that there is something of its name is always.
+    struct Asked {
+        bool bytes = false;
+        bool names = false; // in a folder
+        bool kind = false;  // whether it looks like a program
+
+        bool operator==(const Asked&) const = default;
+    };
     struct Look {
         FileStamp stamp;
-        std::string names = {}; // of a folder that was listed
-
-        bool operator==(const Look&) const = default;
+        bool was_fresh = false; // written just when it was looked at
+        std::string names = {}, kind = {};
     };
     struct Place {
+        Asked asked;
         Look first, latest;
-        bool is_folder = false; // whose names were asked for
-        bool was_fresh = false; // it was written just when it was looked at
     };
 
-    Look look_at(const std::string& path, const Place& place) const;
+    Look look_at(const std::string& path, const Asked& asked, const Look& before) const;
     bool is_own(const std::string& path) const;
     std::string names_of(const std::string& folder) const;
+    static bool differ(const Asked& asked, const Look& a, const Look& b);
 
     std::vector<std::string> own_;
     std::map<std::string, Place> places_; // by path

@@ -29,16 +29,25 @@ void wait(Clock::duration duration) {
         std::this_thread::sleep_for(std::min<Clock::duration>(50ms, end - Clock::now()));
 }
 
-/// What has changed, once whoever writes it has finished; empty after Ctrl-C.
+/// What has changed, once whoever writes it has finished; empty after Ctrl-C. Names that come and
+/// go without end, and a file that is written for long, are not waited for.
 std::vector<std::string> wait_for_change(WatchedFiles& files) {
     Clock::duration pause = least_wait;
+    Clock::time_point since = Clock::now(); // there has been a change
     while (true) {
         wait(pause);
         if (is_interrupted()) return {};
         const Clock::time_point begin = Clock::now();
         WatchedFiles::Change change = files.look_again();
         pause = std::max<Clock::duration>(least_wait, idle_share * (Clock::now() - begin));
-        if (!change.paths.empty() && change.is_settled) return std::move(change.paths);
+        if (change.paths.empty()) {
+            since = Clock::now();
+            continue;
+        }
+        const Clock::duration waited = begin - since;
+        const bool are_names_settled = change.are_names_settled || waited > 2s;
+        if ((change.are_files_settled && are_names_settled) || waited > 30s)
+            return std::move(change.paths);
     }
 }
 

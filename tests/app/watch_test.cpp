@@ -1,4 +1,6 @@
+#include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -10,6 +12,7 @@
 namespace app_test {
 namespace {
 
+namespace fs = std::filesystem;
 using test_support::bytes_of;
 using test_support::program;
 using test_support::ScopedFolder;
@@ -100,6 +103,47 @@ TEST_F(Watch, SaysOnlyWhatWasCheckedAgainOfMany) {
     EXPECT_THAT(seen, HasSubstr("3 programs in"));
     EXPECT_EQ(end(terminal), 1);
     EXPECT_FALSE(std::filesystem::exists(folder / ".feeler"));
+}
+
+TEST_F(Watch, SaysAgainWhatCameBack) {
+    Terminal terminal = watching({folder.path(), "--cache", folder / "kept.db"});
+    pass(terminal);
+    for (int i = 0; i < 2; ++i) {
+        folder.write("plate.nc", near);
+        EXPECT_THAT(pass(terminal), HasSubstr(folder / "plate.nc: 3 errors")) << i;
+        folder.write("plate.nc", fine);
+        EXPECT_THAT(pass(terminal), HasSubstr(folder / "plate.nc\r\n")) << i;
+    }
+    EXPECT_EQ(end(terminal), 0);
+}
+
+TEST_F(Watch, KeepsNothingWhereNothingIsToBeKept) {
+    fs::create_directory(folder / "here");
+    const std::string home = fs::current_path();
+    fs::current_path(folder / "here");
+    Terminal terminal = watching({folder / "plate.nc", folder / "plate.nc", "--no-cache"});
+    pass(terminal);
+    EXPECT_EQ(end(terminal), 0);
+    fs::current_path(home);
+    EXPECT_TRUE(fs::is_empty(folder / "here"));
+}
+
+TEST_F(Watch, GoesOnWhileOthersWriteBesideIt) {
+    Terminal terminal = watching({folder.path(), "--no-cache"});
+    pass(terminal);
+    folder.write("plate.nc", near);
+    std::atomic<bool> is_over = false;
+    std::thread busy([&] {
+        for (int i = 0; !is_over; ++i) {
+            folder.write("note " + std::to_string(i), "");
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+    });
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_THAT(terminal.until("3 errors"), HasSubstr("plate.nc"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    is_over = true;
+    busy.join();
 }
 
 TEST_F(Watch, DoesNotWakeUpBecauseOfItsOwnReports) {

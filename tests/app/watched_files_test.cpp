@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/batch/folder_walk.h"
+#include "app/batch/program_finder.h"
 #include "app/batch/watched_files.h"
 #include "gcode/program_folder.h"
 #include "tests/support/scoped_folder.h"
@@ -111,14 +112,44 @@ TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
 
 TEST_F(WatchedFilesTest, AreSettledOnceNothingMovesAnyMore) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    EXPECT_TRUE(files.look_again().is_settled);
+    EXPECT_TRUE(files.look_again().are_files_settled);
     folder.write("a.nc", "G0 X1\nG1");
-    EXPECT_FALSE(files.look_again().is_settled);
+    EXPECT_FALSE(files.look_again().are_files_settled);
     folder.write("a.nc", "G0 X1\nG1 X5\n");
-    EXPECT_FALSE(files.look_again().is_settled);
+    EXPECT_FALSE(files.look_again().are_files_settled);
     const WatchedFiles::Change change = files.look_again();
-    EXPECT_TRUE(change.is_settled);
+    EXPECT_TRUE(change.are_files_settled);
     EXPECT_EQ(change.paths.size(), 1U);
+}
+
+TEST_F(WatchedFilesTest, SettleWhileOtherNamesComeAndGo) {
+    watch([&] {
+        walk_folder(folder.path());
+        core::file_bytes(folder / "a.nc");
+    });
+    files.look_again();
+    folder.write("new.tmp", "");
+    const WatchedFiles::Change change = files.look_again();
+    EXPECT_TRUE(change.are_files_settled);
+    EXPECT_FALSE(change.are_names_settled);
+}
+
+TEST_F(WatchedFilesTest, CountTheReportsOfOthersOnlyWhenTheyBecomePrograms) {
+    folder.write("report.txt", "all is well\n");
+    let_it_rest();
+    watch([&] { find_programs({folder.path()}); });
+    folder.write("report.txt", "all is well, again\n");
+    EXPECT_EQ(changed(), Names{});
+    folder.write("report.txt", "G21 G90\nG0 X1\nM30\n");
+    EXPECT_EQ(changed(), Names{"report.txt"});
+}
+
+TEST_F(WatchedFilesTest, SeeANameBehindTimesThatWerePutBack) {
+    watch([&] { walk_folder(folder.path()); });
+    const auto time = fs::last_write_time(folder.path());
+    folder.write("b.nc", "");
+    fs::last_write_time(folder.path(), time);
+    EXPECT_EQ(changed(), Names{folder.path().filename()});
 }
 
 TEST_F(WatchedFilesTest, KeepTheFirstLookOfSeveral) {
