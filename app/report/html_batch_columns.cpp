@@ -35,7 +35,7 @@ private:
 };
 
 void ProgramColumns::add_tightest(const std::optional<Tightest>& tightest) {
-    const int64_t lower = tightest ? um_below(tightest->lower) : -1;
+    const int64_t lower = tightest ? clearance_um(tightest->lower) : -1;
     const bool has_upper = tightest && tightest->upper;
     pair_.add(tightest ? shown_text(texts_, pair_name(tightest->pair)) : -1);
     line_.push_back(tightest ? tightest->line : 0);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/batch/outcome.h"
+#include "app/report/html_bounds.h"
+#include "app/report/html_columns.h"
 #include "app/report/html_facts.h"
 #include "app/report/html_text.h"
 #include "app/report/rule_help.h"
@@ -60,10 +62,14 @@ std::string tightest_html(const BatchResult& batch) {
     const ProgramResult& program = batch.programs[at];
     const Tightest& tightest = *program.tightest;
     const std::string name = program.program.substr(common_folder(batch).size());
-    return fmt::format("{:.3f} mm, {:.3f} mm to keep: {} / {}, <button type=\"button\" "
+    const double margin =
+        1e-3 * static_cast<double>(clearance_um(tightest.lower) - um_above(tightest.allowance));
+    return fmt::format("{}{:.3f} mm: clearance {}, {} mm to keep, {} / {}, <button type=\"button\" "
                        "class=\"link\" data-program=\"{}\">{}, line {}</button>",
-                       tightest.lower, tightest.allowance, html_text(tightest.pair[0]),
-                       html_text(tightest.pair[1]), at, html_text(name), tightest.line);
+                       tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
+                       bounds_text(tightest.lower, tightest.upper), mm_at_most(tightest.allowance),
+                       html_text(tightest.pair[0]), html_text(tightest.pair[1]), at,
+                       html_text(name), tightest.line);
 }
 
 std::string findings_text(const BatchResult& batch) {
@@ -116,7 +122,9 @@ std::string common_folder(const BatchResult& batch) {
 
 std::string batch_title(const BatchResult& batch) {
     const std::string folder = common_folder(batch);
-    return counted(all_programs(batch), "program") + (folder.empty() ? folder : " in " + folder);
+    const std::string all =
+        counted(all_programs(batch), "program") + (folder.empty() ? folder : " in " + folder);
+    return batch.share.empty() ? all : all + ", " + batch.share;
 }
 
 std::string batch_outcome_text(const BatchResult& batch) {
@@ -147,6 +155,8 @@ std::string html_missing(const BatchResult& batch) {
             stopped.push_back(program.program.substr(folder.size()) + ": "
                               + clipped(program.error->message, longest));
     std::string html;
+    if (!batch.share.empty())
+        html += "<p><b>" + html_text(batch.share) + ":</b> of the others other reports tell.</p>\n";
     if (!unchecked.empty())
         html += "<p><b>" + share(batch, unchecked.size())
                 + " not checked:</b> the batch was ended before.</p>\n"
@@ -156,8 +166,9 @@ std::string html_missing(const BatchResult& batch) {
                 + " could not be run to the end:</b> nothing is said of what comes behind.</p>\n"
                 + list_html(stopped, shown);
     if (html.empty()) return html;
-    return "<div class=\"missing\" role=\"note\">\n" + html
-           + "<p><button type=\"button\" data-lost=\"true\">Show all of them</button></p></div>\n";
+    if (!unchecked.empty() || !stopped.empty())
+        html += "<p><button type=\"button\" data-lost=\"true\">Show all of them</button></p>";
+    return "<div class=\"missing\" role=\"note\">\n" + html + "</div>\n";
 }
 
 std::string html_outcomes(const BatchResult& batch) {

@@ -45,11 +45,11 @@ void add_clearance(const CheckRun& run, const core::BlockResult& result, PairTab
     if (result.motion != core::BlockMotion::none && result.checked) {
         if (result.deciding) {
             const core::PairClearance& near = result.pairs[*result.deciding];
-            lower = um_below(near.lower);
+            lower = clearance_um(near.lower);
             if (near.found()) width = std::max<int64_t>(um_above(near.upper) - lower, 0);
             pair = pairs.index_of(near);
         } else {
-            lower = um_below(least_clearance(run.setup, result));
+            lower = clearance_um(least_clearance(run.setup, result));
         }
     }
     columns.lower.push_back(lower);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/report/html_bounds.h"
 #include "app/report/html_text.h"
 #include "app/report/text_layout.h"
 
@@ -42,7 +43,7 @@ std::string picture_of(const CheckRun& run, const std::string& rule, size_t bloc
 }
 
 std::string clearance_of(const FindingStretch& stretch) {
-    return stretch.clearance ? fmt::format(" \xC2\xB7 {:.3f} mm", *stretch.clearance)
+    return stretch.clearance ? " \xC2\xB7 " + mm_at_least(*stretch.clearance) + " mm"
                              : std::string();
 }
 
@@ -103,6 +104,7 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
     if (!nearest) return "";
     const size_t block = core::value_of(nearest->block);
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
+    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
     return fmt::format(
                R"(<article class="card"><header><span class="badge">tightest</span><h3>{}</h3>)"
                R"(<span class="pair">{} / {}</span></header>)",
@@ -110,9 +112,9 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
                html_text(core::body_name(run.setup, pair.pair)))
            + picture_of(run, "tightest", block, views)
            + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
-                         "\xC2\xB7 {1:.3f} mm, {2:.3f} mm to keep</button> <code>{3}</code></p>"
+                         "\xC2\xB7 {1}, {2} mm to keep</button> <code>{3}</code></p>"
                          "</article>\n",
-                         block, pair.lower, pair.allowance.distance,
+                         block, bounds_text(pair.lower, upper), mm_at_most(pair.allowance.distance),
                          html_text(trimmed(nearest->text)));
 }
 

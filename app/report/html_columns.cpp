@@ -1,5 +1,6 @@
 #include "app/report/html_columns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -46,6 +47,8 @@ int64_t TextTable::index_of(const std::string& text) {
 int64_t um_below(double mm) {
     return static_cast<int64_t>(std::floor(1e3 * (mm + core::resolution)));
 }
+
+int64_t clearance_um(double lower) { return std::max<int64_t>(um_below(lower), 0); }
 
 int64_t um_above(double mm) {
     return static_cast<int64_t>(std::ceil(1e3 * (mm - core::resolution)));

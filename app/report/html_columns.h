@@ -56,6 +56,9 @@ private:
 /// What is certainly kept, as whole um, where that many mm are known to be.
 int64_t um_below(double mm);
 
+/// The same of a clearance, which is never below 0: what overlaps has none.
+int64_t clearance_um(double lower);
+
 /// Whole um that are certainly no less than that many mm.
 int64_t um_above(double mm);
 

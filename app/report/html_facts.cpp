@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/report/html_bounds.h"
 #include "app/report/html_text.h"
 #include "app/report/text_layout.h"
 #include "app/report/text_report.h"
@@ -29,12 +30,11 @@ std::string tightest_text(const CheckRun& run) {
     const CheckedBlock* block = nearest_block(run);
     if (!block) return "no pair of bodies came near";
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-    std::string bounds = fmt::format("{:.3f}", pair.lower);
-    bounds += pair.found() ? fmt::format(" to {:.3f} mm", pair.upper) : " mm or more";
-    return fmt::format("{}, {:.3f} mm to keep: {} / {} in block {}, line {}", bounds,
-                       pair.allowance.distance, core::part_name(run.setup, pair.pair),
-                       core::body_name(run.setup, pair.pair), core::value_of(block->block),
-                       block->line);
+    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
+    return fmt::format("{}, {} mm to keep: {} / {} in block {}, line {}",
+                       bounds_text(pair.lower, upper), mm_at_most(pair.allowance.distance),
+                       core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
+                       core::value_of(block->block), block->line);
 }
 
 /// The widest interval of all pairs that decide a block, mm; empty if none was measured.
@@ -96,7 +96,7 @@ std::string html_bound_terms(const CheckRun& run) {
     rows += term("search limit", fmt::format("{} mm", run.setup.search_limit),
                  "Nothing farther away is measured.");
     if (const auto widest = widest_interval(run))
-        rows += term("widest interval", fmt::format("{:.3f} mm", *widest),
+        rows += term("widest interval", mm_at_most(*widest) + " mm",
                      "The most by which lower and upper bound of a deciding pair differ in any "
                      "block.");
     return rows;

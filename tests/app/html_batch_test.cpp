@@ -89,6 +89,33 @@ TEST(HtmlBatchColumns, SayWhatTheResultsSay) {
     EXPECT_EQ(texts[data["errors"][1][4].get<size_t>()], "G999: no such code");
 }
 
+TEST(HtmlBatchColumns, RoundClearancesDownAndWhatMustBeKeptUp) {
+    BatchResult batch = large_batch(3, 0);
+    batch.programs[0].tightest =
+        Tightest{.block = 11, .line = 23, .lower = 1.0006, .upper = 2.0004, .allowance = 2.0002};
+    batch.programs[1].tightest =
+        Tightest{.block = 12, .line = 24, .lower = -2e-6, .upper = 0.0, .allowance = 0.0};
+    batch.programs[2].tightest.reset();
+    batch.programs[2].removed = 812.4;
+    const json data = json::parse(batch_columns_json(batch));
+    EXPECT_EQ(data["lower"], json({1000, 0, -1}));
+    EXPECT_EQ(data["width"], json({1001, 0, -1}));
+    EXPECT_EQ(data["keep"], json({2001, 0, 0}));
+    EXPECT_EQ(data["block"], json({11, 12, 0}));
+    EXPECT_EQ(data["line"], json({23, 24, 0}));
+    EXPECT_EQ(data["removed"], json({0, 11, 812}));
+}
+
+TEST(HtmlBatchColumns, RoundWhatIsMissingUp) {
+    BatchResult batch = large_batch(1, 2);
+    batch.programs[0].findings[0].shortfall = 0.5004;
+    batch.programs[0].findings[1].shortfall = 1.25;
+    const json data = json::parse(batch_columns_json(batch));
+    auto missing = unpacked(data["findings"]["shortfall"]);
+    std::sort(missing.begin(), missing.end());
+    EXPECT_EQ(missing, (std::vector<int64_t>{501, 1250}));
+}
+
 TEST(HtmlBatchColumns, HoldEveryFindingTheWorstFirst) {
     const BatchResult batch = large_batch(20, 7);
     const json data = json::parse(batch_columns_json(batch)), &found = data["findings"];
@@ -144,6 +171,9 @@ TEST(HtmlBatch, SaysNothingOfMissingOnesWhereAllAreThere) {
     EXPECT_STREQ(batch_outcome_class(batch), "undecided");
     batch.programs[0].findings = {{.rule = "no-feed", .severity = Severity::error}};
     EXPECT_EQ(batch_outcome_text(batch), "1 of 2 programs has errors");
+    EXPECT_STREQ(batch_outcome_class(batch), "error");
+    batch.programs[0] = one_of_many(50, 0); // stopped
+    EXPECT_STREQ(batch_outcome_class(batch), "error");
 }
 
 TEST(HtmlBatch, DoesNotCallNothingClear) {
@@ -158,6 +188,21 @@ TEST(HtmlBatch, NamesTheProgramWithTheLeastMargin) {
     batch.programs[7].tightest->allowance = 5.0; // 4.1 mm too near, more than any other
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("data-program=\"7\">order 7/part 7.nc, line 5</button>"));
+}
+
+TEST(HtmlBatch, ShowsNoMarginLargerThanItIs) {
+    BatchResult batch = large_batch(1, 0);
+    Tightest& tightest = *batch.programs[0].tightest;
+    tightest.lower = 1.9996;
+    EXPECT_THAT(html_batch_summary(batch),
+                HasSubstr("least margin</th><td>\xE2\x89\xA5 -0.001 mm: "
+                          "clearance 1.999 mm or more, 2.000 mm to keep"));
+    tightest.upper = 2.0024;
+    EXPECT_THAT(html_batch_summary(batch),
+                HasSubstr("<td>-0.001 mm: clearance 1.999 to 2.003 mm, "));
+    tightest = {.lower = -0.0000011, .upper = 0.0};
+    EXPECT_THAT(html_batch_summary(batch),
+                HasSubstr("<td>0.000 mm: clearance 0.000 mm, 0.000 mm "));
 }
 
 TEST(HtmlBatch, CountsSkippedFilesByTheirReason) {

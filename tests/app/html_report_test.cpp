@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/html_blocks.h"
+#include "app/report/html_bounds.h"
 #include "app/report/html_columns.h"
 #include "app/report/html_report.h"
 #include "app/report/html_text.h"
@@ -105,6 +106,58 @@ TEST(HtmlBlocks, SayWhatTheRunSays) {
     }
     EXPECT_GT(measured, 20U);
     EXPECT_EQ(data["found"].size(), 4U);
+}
+
+/// The pair that decides the first block that has one, and where that block is.
+std::pair<core::PairClearance*, size_t> first_deciding(CheckRun& run) {
+    for (size_t i = 0; i < run.blocks.size(); ++i) {
+        core::BlockResult& result = run.blocks[i].result;
+        if (result.deciding) return {&result.pairs[*result.deciding], i};
+    }
+    return {nullptr, 0};
+}
+
+TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
+    CheckRun run = clamped_plate();
+    const auto [pair, block] = first_deciding(run);
+    ASSERT_NE(pair, nullptr);
+    const auto bounds = [&, at = block](double lower, double upper) {
+        pair->lower = lower;
+        pair->upper = upper;
+        const json data = json::parse(blocks_json(run));
+        return std::pair(data["lower"][at].get<int64_t>(), data["width"][at].get<int64_t>());
+    };
+    EXPECT_EQ(bounds(1.0006, 2.0004), std::pair(int64_t{1000}, int64_t{1001}));
+    EXPECT_EQ(bounds(1.9996, 1.9996), std::pair(int64_t{1999}, int64_t{1}));
+    EXPECT_EQ(bounds(-2e-6, 0.0), std::pair(int64_t{0}, int64_t{0})) << "-1 is: not known";
+}
+
+TEST(HtmlBounds, ShowNoLowerBoundLargerThanItIs) {
+    EXPECT_EQ(mm_at_least(1.9999), "1.999");
+    EXPECT_EQ(mm_at_least(2.0), "2.000");
+    EXPECT_EQ(mm_at_least(-0.0000011), "0.000");
+    EXPECT_EQ(mm_at_most(2.0001), "2.001");
+    EXPECT_EQ(bounds_text(1.9996, {}), "1.999 mm or more");
+    EXPECT_EQ(bounds_text(1.9996, 1.9996), "1.999 mm");
+    EXPECT_EQ(bounds_text(1.9996, 2.0024), "1.999 to 2.003 mm");
+}
+
+TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {
+    CheckRun run = clamped_plate();
+    run.findings.clear();
+    const CheckedBlock* nearest = nearest_block(run);
+    ASSERT_NE(nearest, nullptr);
+    const size_t at = core::value_of(nearest->block);
+    core::BlockResult& result = run.blocks[at].result;
+    core::PairClearance& pair = result.pairs[*result.deciding];
+    pair.lower = pair.allowance.distance - 0.0004;
+    pair.upper = pair.allowance.distance + 0.0003;
+    for (CheckedBlock& block : run.blocks)
+        if (core::value_of(block.block) != at) block.result.deciding.reset();
+    const double keep = pair.allowance.distance;
+    const std::string shown =
+        fmt::format("{:.3f} to {:.3f} mm, {:.3f} mm to keep", keep - 0.001, keep + 0.001, keep);
+    EXPECT_EQ(count_of(html_report(run, {}), shown), 2U) << "in the summary and in the card";
 }
 
 TEST(HtmlBlocks, AddUpToWhatWasRemoved) {

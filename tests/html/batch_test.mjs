@@ -83,6 +83,27 @@ test("words, verdict and rule filter, and a click on a rule or a number does", a
   assert.deepEqual(wrong, []);
 });
 
+test("the name of a subprogram's file finds the programs in which it went wrong", async (browser) => {
+  const { page } = await openReport(browser, report("sub"));
+  for (const [word, program] of [["o2000.nc", "main.nc"], ["O3000", "broken.nc"]]) {
+    await page.locator("#filter-text").fill(word);
+    assert.equal(await countText(page), "1 of 2 programs", word);
+    assert.ok((await cells(page, 1))[0].includes(program), word);
+  }
+});
+
+test("a program that was not checked stands last by each of its numbers, both ways", async (browser) => {
+  const { page } = await openReport(browser, report("large"));
+  const grid = page.locator("#grid");
+  for (const name of ["Margin mm", "Errors", "Warnings", "Blocks", "Cycle time", "Check s"])
+    for (let way = 0; way < 2; ++way) {
+      await sortBy(page, name);
+      assert.doesNotMatch((await rowTexts(page))[0], /never\.nc/, name);
+      await grid.evaluate((node) => { node.scrollTop = node.scrollHeight; });
+      await page.waitForFunction(() => [...document.querySelectorAll(".grid-row")].pop().textContent.includes("never.nc"), null, { timeout: 5000 });
+    }
+});
+
 test("a program opens to its findings, facts, assumptions and the command for its own page", async (browser) => {
   const { page, wrong } = await openReport(browser, report("shop"), { permissions: ["clipboard-read", "clipboard-write"] });
   await openProgram(page, "it's");

@@ -29,6 +29,17 @@ END
 make_report 2 shop --no-cache --format html -o shop.html # one of them cannot be run to its end
 make_report 0 "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
     --setup "$assets/setups/clamped_plate.toml"
+
+# Holes drilled through the clamps by a subprogram in a file of its own, and a program that ends in one.
+rm -rf sub
+mkdir -p sub
+sed '/^G98/,$d' "$assets/programs/clamped_plate_low.nc" >sub/main.nc
+printf 'M98 P2000\nM30\n%%\n' >>sub/main.nc
+{ echo O2000; sed -n '/^G98/,/^G80/p' "$assets/programs/clamped_plate_low.nc"; echo M99; } >sub/O2000.nc
+printf '%%\nO7\nG21 G90 G54\nM98 P3000\nM30\n%%\n' >sub/broken.nc
+printf 'O3000\nG999 X1.\nM99\n' >sub/O3000.nc
+make_report 2 sub/main.nc sub/broken.nc --no-cache --format html -o sub.html \
+    --setup "$assets/setups/clamped_plate.toml"
 "$large_page" large.html empty.html
 
 exec node batch_test.mjs "$work"

@@ -160,6 +160,100 @@ test("a click in the chart goes to the block, a drag looks closer", async (brows
   await page.locator("#chart-all").click();
 });
 
+/** How many pixels of the chart have the colour of a state, in each column that has any. */
+const pixelsLike = (page, state) => page.evaluate((name) => {
+  const canvas = document.getElementById("clearance-chart"), context = canvas.getContext("2d");
+  const color = getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const wanted = parseInt(color.slice(1), 16), found = new Map();
+  const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+  for (let i = 0; i < data.length; i += 4)
+    if ((data[i] << 16 | data[i + 1] << 8 | data[i + 2]) === wanted && data[i + 3] === 255) {
+      const x = (i / 4) % canvas.width;
+      found.set(x, (found.get(x) || 0) + 1);
+    }
+  return [...found].sort((a, b) => a[0] - b[0]);
+}, state);
+
+for (const width of [1400, 400])
+  test(`one violation among thousands of blocks in contact is seen in the chart, ${width} px wide`, async (browser) => {
+    const { page } = await openReport(browser, report("one_of_many"), { width });
+    assert.ok(Number((await countText(page)).split(" ")[0]) > 9000);
+    await page.locator("#filter-verdict").selectOption("open");
+    assert.equal(await countText(page).then((text) => text.split(" ")[0]), "1");
+    for (const axis of ["time", "block"]) {
+      await page.locator("#chart-axis").selectOption(axis);
+      const red = await pixelsLike(page, "violation");
+      assert.ok(red.length >= 3, `${red.length} columns along ${axis}`);
+      assert.ok(red.some(([, pixels]) => pixels > 5), "a bar as tall as the clearance, not its foot alone");
+      assert.deepEqual(await pixelsLike(page, "near"), [], "contact that is allowed is clear");
+      const chart = page.locator("#clearance-chart");
+      await chart.scrollIntoViewIfNeeded();
+      await keepPicture(page, `${folder}/one-of-many-${axis}-${width}.png`);
+      const box = await chart.boundingBox();
+      await page.mouse.click(box.x + red[Math.floor(red.length / 2)][0], box.y + 100);
+      assert.match(await page.locator("#chart-read").textContent(), /G1 X90\. F9000\. .*near-miss/);
+    }
+  });
+
+test("of the blocks of a pixel the chart shows the worst: verdict, then margin, errors without a clearance too", async (browser) => {
+  const { page } = await openReport(browser, report("clear"));
+  // The page keeps its functions to itself: they are made once more, without its start.
+  await page.evaluate(() => {
+    const script = [...document.scripts].pop().textContent, inner = script.slice(script.indexOf("{") + 1, script.lastIndexOf("startPage();"));
+    Object.assign(window, new Function(inner + "; return { unpackBlocks, worstPerPixel, stateOf };")());
+  });
+  /** The worst of blocks as [lower, keep, verdict, severity of what was found], all on one pixel and in either order. */
+  const worst = async (...blocks) => {
+    const both = await page.evaluate((list) => [list, [...list].reverse()].map((rows) => {
+      const runs = (numbers) => numbers.flatMap((number) => [number, 1]);
+      const zeros = [0, rows.length];
+      const made = unpackBlocks({ count: rows.length, time: rows.map(() => 0), end: 0, limit: 20000, line: zeros, text: zeros,
+        texts: [""], file: zeros, files: [""], motion: zeros, tool: zeros, removed: [], rules: ["r"],
+        verdict: runs(rows.map((row) => row[2])), pair: runs(rows.map((row, i) => (row[0] < 0 ? -1 : i))),
+        pairs: rows.map((row) => ["a", "b", row[1]]), lower: rows.map((row) => row[0]), width: rows.map(() => 0),
+        found: rows.flatMap((row, i) => (row[3] ? [[i, row[3], 0]] : [])) });
+      const [block] = worstPerPixel(made, () => [0, 0], 1), atEnd = worstPerPixel(made, () => [4, 4], 4);
+      if (atEnd[3] !== block) return "lost at the end of the range";
+      return block < 0 ? "none" : JSON.stringify(rows[block]) + " " + stateOf(made, block);
+    }), blocks);
+    assert.equal(both[0], both[1]);
+    return both[0];
+  };
+  const touching = [0, 0, 0, 0], far = [20000, 0, 0, 0], unknown = [-1, 0, 0, 0];
+  assert.equal(await worst(touching, [1500, 2000, 2, 0], far), "[1500,2000,2,0] violation");
+  assert.equal(await worst([1500, 2000, 2, 0], [3000, 5000, 2, 0]), "[3000,5000,2,0] violation");
+  assert.equal(await worst([0, 2000, 1, 0], [1500, 2000, 2, 0]), "[1500,2000,2,0] violation");
+  assert.equal(await worst([1000, 2000, 2, 0], [1500, 2000, 3, 0]), "[1500,2000,3,0] violation");
+  assert.equal(await worst(touching, [-1, 0, 0, 3], far), "[-1,0,0,3] violation");
+  assert.equal(await worst([1500, 2000, 2, 0], [-1, 0, 0, 3]), "[1500,2000,2,0] violation");
+  assert.equal(await worst([0, 2000, 1, 0], [9000, 2000, 0, 3]), "[9000,2000,0,3] violation");
+  assert.equal(await worst(touching, [3000, 2000, 0, 2]), "[3000,2000,0,2] near");
+  assert.equal(await worst(touching, [4000, 2000, 0, 0]), "[0,0,0,0] clear");
+  assert.equal(await worst(unknown, unknown), "none");
+});
+
+test("no number under the chart is cut off", async (browser) => {
+  const { page } = await openReport(browser, report("one_of_many"));
+  const spare = await page.evaluate(() => {
+    const canvas = document.getElementById("clearance-chart"), axis = document.getElementById("chart-axis"), spare = [];
+    const write = CanvasRenderingContext2D.prototype.fillText;
+    CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+      if (this.textAlign === "center") spare.push(canvas.clientWidth - x - this.measureText(text).width / 2);
+      write.call(this, text, x, y);
+    };
+    for (let width = 400; width <= 1300; width += 15) {
+      canvas.style.width = width + "px";
+      for (const name of ["block", "time"]) {
+        axis.value = name;
+        axis.dispatchEvent(new Event("input"));
+      }
+    }
+    return spare;
+  });
+  assert.ok(spare.length > 200);
+  assert.ok(Math.min(...spare) >= 0, `${-Math.min(...spare)} px are missing`);
+});
+
 test("the keyboard alone reaches the findings and shows them", async (browser) => {
   const { page } = await openReport(browser, report("findings"));
   for (let i = 0; i < 6; ++i) await page.keyboard.press("Tab");

@@ -1,4 +1,4 @@
-// The chart of clearances: a bar from zero for each pixel, the least of all blocks that it covers.
+// The chart of clearances: a bar from zero for each pixel, that of the worst block that it covers.
 
 const chartMargin = { left: 44, right: 8, top: 8, bottom: 24 };
 
@@ -12,22 +12,19 @@ function niceStep(range, count) {
   return power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
 }
 
-/** The least clearance, and the block that has it, for each pixel of a range of blocks. */
-function leastPerPixel(blocks, placeOf, width) {
-  const least = new Float64Array(width).fill(Infinity), block = new Int32Array(width).fill(-1);
+/** For each pixel of a range of blocks the worst of those that it covers; -1: of none is anything known. */
+function worstPerPixel(blocks, placeOf, width) {
+  const worst = new Int32Array(width).fill(-1);
   for (let i = 0; i < blocks.count; ++i) {
-    if (blocks.lower[i] < 0) continue;
+    if (badnessOf(blocks, i) < 0) continue;
     const [from, to] = placeOf(i);
-    if (to < 0 || from >= width) continue;
-    for (let x = Math.max(0, Math.floor(from)); x < Math.min(width, Math.max(to, Math.floor(from) + 1)); ++x) {
-      // Of blocks alike near, one that is not clear is the one to see.
-      const worse = block[x] >= 0 && blocks.verdict[i] > blocks.verdict[block[x]];
-      if (blocks.lower[i] > least[x] || (blocks.lower[i] === least[x] && !worse)) continue;
-      least[x] = blocks.lower[i];
-      block[x] = i;
-    }
+    if (to < 0 || from > width) continue;
+    // What takes no time has a pixel too, also where the range ends.
+    const first = Math.min(Math.floor(from), width - 1);
+    for (let x = Math.max(0, first); x < Math.min(width, Math.max(to, first + 1)); ++x)
+      if (isWorse(blocks, i, worst[x])) worst[x] = i;
   }
-  return { least, block };
+  return worst;
 }
 
 /** Small clearances get most of the height: it goes with the root. */
@@ -38,7 +35,7 @@ function heightShare(um, top) {
 class Chart {
   /** `onChoose(block)` is told of clicks, `onPoint(block)` of the block under the pointer, -1: none. */
   constructor(canvas, blocks, onChoose, onPoint) {
-    Object.assign(this, { canvas, blocks, onChoose, onPoint, axis: "time", range: null, chosen: -1, drag: null, columns: null });
+    Object.assign(this, { canvas, blocks, onChoose, onPoint, axis: "time", range: null, chosen: -1, drag: null, worst: null });
     this.context = canvas.getContext("2d");
     this.top = Math.max(blocks.limit, 1000); // um
     canvas.addEventListener("pointerdown", (event) => { this.drag = { from: this.place(event), to: this.place(event) }; });
@@ -60,7 +57,7 @@ class Chart {
   /** Shows a range of the axis; null: the whole program. */
   look(range) {
     this.range = range;
-    this.columns = null;
+    this.worst = null;
     this.draw();
   }
 
@@ -82,8 +79,8 @@ class Chart {
     canvas.height = Math.round(canvas.clientHeight * scale);
     context.setTransform(scale, 0, 0, scale, 0, 0);
     this.range ||= this.whole();
-    if (!this.columns || this.columns.block.length !== this.width())
-      this.columns = leastPerPixel(this.blocks, (i) => [this.pixelOf(this.startOf(i)), this.pixelOf(this.endOf(i))], this.width());
+    if (!this.worst || this.worst.length !== this.width())
+      this.worst = worstPerPixel(this.blocks, (i) => [this.pixelOf(this.startOf(i)), this.pixelOf(this.endOf(i))], this.width());
     context.fillStyle = colorOf("dim");
     context.strokeStyle = colorOf("line");
     context.font = "11px system-ui, sans-serif";
@@ -91,6 +88,7 @@ class Chart {
     this.drawAxis();
     this.drawBars();
     this.drawMarks();
+    this.drawAlarms();
   }
 
   drawHeights() {
@@ -116,21 +114,32 @@ class Chart {
     context.textBaseline = "top";
     const step = Math.max(niceStep(range[1] - range[0], this.width() / 90), least);
     const text = (value) => (axis === "block" ? String(Math.round(value)) : step < 1 ? value.toFixed(3) + " s" : secondsText(value));
-    for (let value = Math.ceil(range[0] / step) * step; value <= range[1]; value += step)
-      context.fillText(text(value), chartMargin.left + this.pixelOf(value), chartMargin.top + this.height() + 6);
+    for (let value = Math.ceil(range[0] / step) * step; value <= range[1]; value += step) {
+      // The last one is moved in from the border as far as it needs.
+      const label = text(value), most = this.canvas.clientWidth - context.measureText(label).width / 2 - 1;
+      context.fillText(label, Math.min(chartMargin.left + this.pixelOf(value), most), chartMargin.top + this.height() + 6);
+    }
   }
 
   drawBars() {
-    const { context, columns } = this, foot = chartMargin.top + this.height();
-    const colors = { violation: colorOf("violation"), near: colorOf("near"), clear: colorOf("clear") };
-    for (let x = 0; x < columns.block.length; ++x) {
-      if (columns.block[x] < 0) continue;
-      const state = stateOf(this.blocks, columns.block[x]);
-      const tall = Math.max(foot - this.heightOf(columns.least[x]), 2);
-      context.fillStyle = colors[state] || colors.clear;
-      context.fillRect(chartMargin.left + x, foot - tall, 1, tall);
-      // A finding of which the clearance says nothing still has to be seen.
-      if (state === "violation") context.fillRect(chartMargin.left + x - 1, foot - 5, 3, 5);
+    const { worst, blocks } = this, colors = { near: colorOf("near"), clear: colorOf("clear") };
+    for (let x = 0; x < worst.length; ++x)
+      if (worst[x] >= 0 && stateOf(blocks, worst[x]) !== "violation") this.drawBar(x, colors[stateOf(blocks, worst[x])]);
+  }
+
+  drawBar(x, color) {
+    const foot = chartMargin.top + this.height(), tall = Math.max(foot - this.heightOf(this.blocks.lower[this.worst[x]]), 2);
+    this.context.fillStyle = color;
+    this.context.fillRect(chartMargin.left + x, foot - tall, 1, tall);
+  }
+
+  /** What is not clear, or has an error, is drawn upon all else, with a foot where no clearance is known too. */
+  drawAlarms() {
+    const { context, worst, blocks } = this, color = colorOf("violation"), foot = chartMargin.top + this.height();
+    for (let x = 0; x < worst.length; ++x) {
+      if (worst[x] < 0 || stateOf(blocks, worst[x]) !== "violation") continue;
+      this.drawBar(x, color);
+      context.fillRect(chartMargin.left + x - 1, foot - 5, 3, 5);
     }
   }
 
@@ -152,11 +161,10 @@ class Chart {
 
   /** The worst block within reach of a finger or a mouse; -1: none. */
   blockNear(pixel) {
-    const { block, least } = this.columns;
-    let best = -1;
+    let worst = -1;
     for (let x = Math.max(0, pixel - 3); x <= Math.min(this.width() - 1, pixel + 3); ++x)
-      if (block[x] >= 0 && (best < 0 || least[x] < least[best])) best = x;
-    return best < 0 ? -1 : block[best];
+      if (isWorse(this.blocks, this.worst[x], worst)) worst = this.worst[x];
+    return worst;
   }
 
   onMove(event) {

@@ -6,19 +6,19 @@ function textsWith(programs, word) {
   return programs.lowered.map((text) => text.includes(word));
 }
 
-/** A word as a question about a program: its name, verdict, rules, and all texts of it. */
+/** A word as a question about a program: its name, verdict, rules, and what it says of what was found. */
 function programQuestion(word, programs) {
   const wanted = word.toLowerCase(), has = (text) => text.toLowerCase().includes(wanted);
   const texts = textsWith(programs, wanted), rules = programs.findings.rules.map(has);
-  const { starts, message, pair, text, cure } = programs.findings;
+  const { starts, message, pair, text, cure, file } = programs.findings;
   return (i) => {
     if (has(programs.path[i]) || has(outcomes[programs.outcome[i]])) return true;
     if (texts[programs.setup[i]] || texts[programs.dialect[i]] || texts[programs.pair[i]] === true) return true;
     const failure = programs.failure.get(i);
-    if (failure && texts[failure.message]) return true;
+    if (failure && (texts[failure.message] || texts[failure.file])) return true;
     if (talliesOf(programs.findings, i).some((tally) => rules[tally.rule])) return true;
     for (let k = starts[i]; k < starts[i + 1]; ++k)
-      if (texts[message[k]] || texts[pair[k]] || texts[text[k]] || texts[cure[k]]) return true;
+      if (texts[message[k]] || texts[pair[k]] || texts[text[k]] || texts[cure[k]] || texts[file[k]]) return true;
     return false;
   };
 }

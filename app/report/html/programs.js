@@ -37,20 +37,26 @@ function countsOf(findings, programs, severity) {
     talliesOf(findings, i).reduce((sum, tally) => sum + (tally.severity === severity ? tally.count : 0), 0));
 }
 
-/** Units: um, ms, mm3. `pair` is -1 where nothing came near, `margin` then NaN. */
+/**
+ * Units: um, ms, mm3. `pair` is -1 where nothing came near, `margin` then NaN. So are the numbers of a
+ * program that was not checked, but for its outcome.
+ */
 function unpackPrograms(data) {
   const count = data.count, findings = unpackFindings(data.findings, count);
   const runs = (name) => unpackRuns(data[name], count);
-  const pair = runs("pair");
+  const pair = runs("pair"), outcome = runs("outcome");
+  const checked = (numbers) => Float64Array.from(numbers, (number, i) => (outcome[i] < outcomes.length - 1 ? number : NaN));
   return {
     ...data,
     findings,
     pair,
-    outcome: runs("outcome"), setup: runs("setup"), dialect: runs("dialect"), engine: runs("engine"),
+    outcome,
+    setup: runs("setup"), dialect: runs("dialect"), engine: runs("engine"),
     margin: Float64Array.from(pair, (index, i) => (index < 0 ? NaN : data.lower[i] - data.keep[i])),
-    errors: countsOf(findings, count, 3),
-    warnings: countsOf(findings, count, 2),
-    notes: countsOf(findings, count, 1),
+    blocks: checked(data.blocks), cycle: checked(data.cycle), seconds: checked(data.seconds),
+    errors: checked(countsOf(findings, count, 3)),
+    warnings: checked(countsOf(findings, count, 2)),
+    notes: checked(countsOf(findings, count, 1)),
     failure: new Map(data.errors.map(([i, file, line, column, message]) => [i, { file, line, column, message }])),
     assumptions: startsOf(runs("assumptions")),
   };
