@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
-
+#include "app/batch/kept_json.h"
 #include "app/session/digest.h"
 #include "app/setup/utf8_text.h"
 #include "core/base/file_reads.h"
@@ -13,7 +12,7 @@
 namespace app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = KeptJson;
 
 /// In characters, as editors count them and SARIF says; bytes where the line cannot be read.
 uint32_t column_of(const core::Error& error) {
@@ -98,31 +97,34 @@ Enum named_as(const std::string& name) {
     throw std::invalid_argument("no value is called " + name);
 }
 
-template <typename Value>
-std::optional<Value> optional_from(const Json& json) {
-    return json.is_null() ? std::nullopt : std::optional<Value>(json.get<Value>());
+KeptError error_from(const Json& json) {
+    return {json.at("file"), whole_from<uint32_t>(json.at("line")),
+            whole_from<uint32_t>(json.at("column")), json.at("message")};
 }
 
 KeptFinding finding_from(const Json& json) {
-    return {.rule = json.at("rule"),
-            .severity = named_as<core::Severity, 4>(json.at("severity")),
-            .block = optional_from<uint32_t>(json.at("block")),
-            .line = json.at("line"),
-            .file = json.at("file"),
-            .text = json.at("text"),
-            .message = json.at("message"),
-            .cure = json.at("cure"),
-            .pair = json.at("pair"),
-            .shortfall = json.at("shortfall")};
+    KeptFinding finding{.rule = json.at("rule"),
+                        .severity = named_as<core::Severity, 4>(json.at("severity")),
+                        .line = whole_from<uint32_t>(json.at("line")),
+                        .file = json.at("file"),
+                        .text = json.at("text"),
+                        .message = json.at("message"),
+                        .cure = json.at("cure"),
+                        .pair = pair_from(json.at("pair")),
+                        .shortfall = number_from(json.at("shortfall"))};
+    if (const Json& block = json.at("block"); !block.is_null())
+        finding.block = whole_from<uint32_t>(block);
+    return finding;
 }
 
 Tightest tightest_from(const Json& json) {
-    return {.block = json.at("block"),
-            .line = json.at("line"),
-            .pair = json.at("pair"),
-            .lower = json.at("lower"),
-            .upper = optional_from<double>(json.at("upper")),
-            .allowance = json.at("allowance")};
+    Tightest tightest{.block = whole_from<uint32_t>(json.at("block")),
+                      .line = whole_from<uint32_t>(json.at("line")),
+                      .pair = pair_from(json.at("pair")),
+                      .lower = number_from(json.at("lower")),
+                      .allowance = number_from(json.at("allowance"))};
+    if (const Json& upper = json.at("upper"); !upper.is_null()) tightest.upper = number_from(upper);
+    return tightest;
 }
 
 ProgramResult result_from(const Json& json) {
@@ -132,17 +134,15 @@ ProgramResult result_from(const Json& json) {
                          .dialect = json.at("dialect"),
                          .engine = json.at("engine"),
                          .verdict = named_as<core::Verdict, 4>(json.at("verdict")),
-                         .assumptions = json.at("assumptions"),
-                         .blocks = json.at("blocks"),
-                         .cycle_time = json.at("cycle_time"),
-                         .removed = json.at("removed"),
-                         .seconds = json.at("seconds")};
-    if (const Json& error = json.at("error"); !error.is_null())
-        result.error = {error.at("file"), error.at("line"), error.at("column"),
-                        error.at("message")};
+                         .assumptions = list_from(json.at("assumptions")),
+                         .blocks = whole_from<size_t>(json.at("blocks")),
+                         .cycle_time = number_from(json.at("cycle_time"), 0.0),
+                         .removed = number_from(json.at("removed")),
+                         .seconds = number_from(json.at("seconds"), 0.0)};
+    if (const Json& error = json.at("error"); !error.is_null()) result.error = error_from(error);
     if (const Json& tightest = json.at("tightest"); !tightest.is_null())
         result.tightest = tightest_from(tightest);
-    for (const Json& finding : json.at("findings"))
+    for (const Json& finding : list_from(json.at("findings")))
         result.findings.push_back(finding_from(finding));
     return result;
 }
@@ -206,7 +206,7 @@ std::string json_of(const ProgramResult& result) {
 
 core::Result<ProgramResult> result_from_json(const std::string& text) {
     try {
-        return result_from(Json::parse(text));
+        return result_from(kept_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
                           std::string("this is no result of a check: ") + wrong.what());

@@ -1,15 +1,23 @@
 #include "app/batch/shard_file.h"
 
+#include <charconv>
+#include <string_view>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
+
+#include "app/batch/kept_json.h"
+#include "app/session/digest.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = KeptJson;
 
 constexpr int format = 1;
+constexpr std::string_view beginning = "{\"feeler_shard\"";
+constexpr double longest = 1e10; // seconds, three centuries
 
 std::string text_of(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -17,11 +25,17 @@ std::string text_of(const Json& json) {
 
 Json json_of(const PlannedProgram& program) { return {program.name, program.size, program.terms}; }
 
-PlannedProgram program_from(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
+PlannedProgram program_from(const Json& json) {
+    list_from(json, 3);
+    return {json[0], whole_from<uintmax_t>(json[1]), json[2]};
+}
 
 Json json_of(const SkippedFile& file) { return {file.path, file.why}; }
 
-SkippedFile skipped_from(const Json& json) { return {json.at(0), json.at(1)}; }
+SkippedFile skipped_from(const Json& json) {
+    const auto [path, why] = pair_from(json);
+    return {path, why};
+}
 
 /// An entry to a line.
 template <typename Entries, typename TextOf>
@@ -32,9 +46,15 @@ std::string list_text(const char* key, const Entries& entries, TextOf text_of_en
     return text + "]";
 }
 
-core::Result<std::vector<ProgramResult>> results_from(const Json& list) {
+std::vector<size_t> places_from(const Json& json) {
+    std::vector<size_t> places;
+    for (const Json& each : list_from(json)) places.push_back(whole_from<size_t>(each));
+    return places;
+}
+
+core::Result<std::vector<ProgramResult>> results_from(const Json& json) {
     std::vector<ProgramResult> results;
-    for (const Json& each : list) {
+    for (const Json& each : list_from(json)) {
         FEELER_TRY(ProgramResult result, result_from_json(each.dump()));
         results.push_back(std::move(result));
     }
@@ -42,21 +62,51 @@ core::Result<std::vector<ProgramResult>> results_from(const Json& list) {
 }
 
 core::Result<Shard> shard_from(const Json& json) {
+    if (whole_from<int>(json.at("feeler_shard")) != format)
+        throw std::invalid_argument("it has another format");
     Shard shard;
     shard.version = json.at("version");
-    const Json& share = json.at("share");
-    FEELER_TRY(shard.share, share_named(share.at(0).dump() + "/" + share.at(1).dump()));
-    shard.seconds = json.at("seconds");
-    for (const Json& each : json.at("programs")) shard.programs.push_back(program_from(each));
-    for (const Json& each : json.at("skipped")) shard.skipped.push_back(skipped_from(each));
-    shard.places = json.at("places").get<std::vector<size_t>>();
-    shard.unchecked = json.at("unchecked").get<std::vector<size_t>>();
+    const Json& share = list_from(json.at("share"), 2);
+    FEELER_TRY(shard.share, share_named(text_of(ShareName{whole_from<size_t>(share[0]),
+                                                          whole_from<size_t>(share[1])})));
+    shard.seconds = number_from(json.at("seconds"), 0.0);
+    if (shard.seconds > longest) throw std::invalid_argument("it took longer than anything does");
+    for (const Json& each : list_from(json.at("programs")))
+        shard.programs.push_back(program_from(each));
+    for (const Json& each : list_from(json.at("skipped")))
+        shard.skipped.push_back(skipped_from(each));
+    shard.places = places_from(json.at("places"));
+    shard.unchecked = places_from(json.at("unchecked"));
     FEELER_TRY(shard.failures, results_from(json.at("failures")));
     FEELER_TRY(shard.results, results_from(json.at("results")));
     return shard;
 }
 
+/// The last entry: the digest of all that stands before it.
+std::string seal_of(std::string_view text) {
+    return fmt::format(",\n\"seal\": \"{}\"}}\n", sha256_of(text));
+}
+
+bool is_sealed(std::string_view text) {
+    const size_t length = seal_of("").size();
+    if (text.size() < length) return false;
+    const std::string_view before = text.substr(0, text.size() - length);
+    return text.substr(before.size()) == seal_of(before);
+}
+
+/// Whether it is a share of another, later format. A newer version may seal otherwise.
+bool is_newer(const std::string& text) {
+    const size_t colon = text.find(": ", beginning.size());
+    int number = 0;
+    if (colon != beginning.size()) return false;
+    const auto [end, wrong] =
+        std::from_chars(text.data() + colon + 2, text.data() + text.size(), number);
+    return wrong == std::errc() && number > format && (*end == ',' || *end == '}');
+}
+
 } // namespace
+
+std::string sealed(std::string text) { return text + seal_of(text); }
 
 std::string json_of(const Shard& shard) {
     const auto line = [](const auto& entry) { return text_of(json_of(entry)); };
@@ -69,25 +119,29 @@ std::string json_of(const Shard& shard) {
     json += list_text("programs", shard.programs, line);
     json += list_text("skipped", shard.skipped, line);
     json += list_text("failures", shard.failures, result_line);
-    return json + list_text("results", shard.results, result_line) + "}\n";
+    return sealed(json + list_text("results", shard.results, result_line));
 }
 
 core::Result<Shard> shard_from_json(const std::string& text) {
-    try {
-        const Json json = Json::parse(text, nullptr, false);
-        const bool is_one = json.is_object() && json.contains("feeler_shard");
-        if (is_one && json["feeler_shard"] == format) return shard_from(json);
-        if (is_one && json["feeler_shard"] > format)
-            return core::fail(core::ErrorCode::unsupported,
-                              "was written by a newer version of Feeler");
+    if (!text.starts_with(beginning))
         return core::fail(core::ErrorCode::syntax,
-                          text.starts_with("{\"feeler_shard\"")
-                              ? "is a share of a batch that was cut off or changed"
-                              : "is no share of a batch: --format shard writes one");
+                          "is no share of a batch: --format shard writes one");
+    if (is_newer(text))
+        return core::fail(core::ErrorCode::unsupported, "was written by a newer version of Feeler");
+    if (!is_sealed(text))
+        return core::fail(core::ErrorCode::syntax,
+                          "is a share of a batch that was cut off or changed");
+    try {
+        return shard_from(kept_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
                           fmt::format("is no share of a batch: {}", wrong.what()));
     }
+}
+
+bool is_shard_file(const std::string& path) {
+    const auto text = core::file_bytes(path, beginning.size());
+    return text && text->starts_with(beginning);
 }
 
 } // namespace app

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "app/batch/build_version.h"
+#include "app/batch/shard_file.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"
@@ -72,12 +74,12 @@ SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
     return work;
 }
 
-/// The share of an earlier run must not be taken for that of a run that was killed.
+/// The share of an earlier run must not be taken for that of a run that was killed. What is no
+/// share is somebody's file: whether it may be replaced is seen when it is written.
 core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets) {
+        if (target.format != "shard" || !is_shard_file(target.path)) continue;
         std::error_code failure;
-        if (target.format != "shard" || !std::filesystem::is_regular_file(target.path, failure))
-            continue;
         if (!std::filesystem::remove(target.path, failure))
             return tl::unexpected<core::Error>(
                 {core::ErrorCode::io, {}, "cannot be replaced: " + failure.message(), target.path});
@@ -87,7 +89,7 @@ core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
 
 std::string share_text(const CheckOptions& options, const SharedWork& work) {
     if (!options.share) return {};
-    return fmt::format("share {}: {} of {} programs\n", text_of(*options.share), work.places.size(),
+    return fmt::format("share {}: {} of {} programs", text_of(*options.share), work.places.size(),
                        work.programs.size());
 }
 
@@ -104,12 +106,22 @@ Shard shard_of(const ShareName& share, const SharedWork& work, const BatchResult
 /// Between the passes of --watch.
 struct Watch {
     WatchedFiles* files = nullptr; // of this pass; null: nothing is watched
-    bool is_again = false;         // not the first pass: what is known already is not said
+    // What was said last of each program; what is known and the same is not said again.
+    std::map<std::string, ProgramResult> said = {};
+    bool is_again = false; // not the first pass
 };
 
+/// Whether this is not what was said of the program before.
+bool note_said(Watch& watch, ProgramResult result) {
+    result.seconds = 0.0;
+    const auto [place, is_first] = watch.said.try_emplace(result.program, result);
+    if (!is_first && place->second == result) return false;
+    place->second = std::move(result);
+    return true;
+}
+
 BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchTalk& talk,
-                      BatchStore& store, const Watch& watch, ReadFiles& read) {
-    stop_on_interrupt();
+                      BatchStore& store, Watch& watch, ReadFiles& read) {
     ProgressLine line;
     BatchHooks hooks;
     store.serve(hooks);
@@ -130,8 +142,9 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
     hooks.waiting = [&line](const BatchProgress& progress) { line.show(progress); };
     hooks.ended = [&](const ProgramResult& result) {
         const std::scoped_lock lock(guard);
-        const std::string text =
-            known.contains(result.program) ? "" : program_text(result, talk.style);
+        const bool is_new = watch.files && note_said(watch, result);
+        if (known.contains(result.program) && !is_new) return;
+        const std::string text = program_text(result, talk.style);
         if (text.empty()) return;
         line.clear();
         talk.say(text);
@@ -155,8 +168,9 @@ ExitCode failed(const std::vector<core::Error>& errors) {
 
 /// Once through the whole batch.
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
-              const std::vector<ReportTarget>& targets, BatchStore& store, const Watch& watch) {
+              const std::vector<ReportTarget>& targets, BatchStore& store, Watch& watch) {
     const Stopwatch time;
+    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     ReadFiles read;
     if (!store.path().empty()) read.add(store.path());
     auto plan = plan_batch(options.programs, asked);
@@ -164,10 +178,10 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
     const SharedWork work = work_of(options, *std::move(plan));
-    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
-    const BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);
-    talk.say("\n" + share_text(options, work) + batch_summary(batch, time.seconds(), talk.style));
+    BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);
+    batch.share = share_text(options, work);
+    talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));
     if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
@@ -189,14 +203,18 @@ ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget
     if (!asked) return failed(asked.error());
     asked->engine = options.engine;
     asked->detail = detail_of(options);
+    stop_on_interrupt();
     BatchStore store(options);
-    if (!options.watch) return pass(options, *asked, targets, store, {});
+    Watch state;
+    if (!options.watch) return pass(options, *asked, targets, store, state);
     std::vector<std::string> own = paths_of(targets);
     own.push_back(store.path());
-    bool is_again = false;
     return watch(own, [&](WatchedFiles& files) {
         store.begin_again();
-        return pass(options, *asked, targets, store, {&files, std::exchange(is_again, true)});
+        state.files = &files;
+        const ExitCode code = pass(options, *asked, targets, store, state);
+        state.is_again = true;
+        return code;
     });
 }
 

@@ -57,6 +57,25 @@ core::Result<std::vector<ReportTarget>> safe_targets(const Options& options) {
     return targets;
 }
 
+/// A check reads what its shares name; here only a report could take the place of it.
+core::Result<void> refuse_lost_input(const std::vector<Shard>& shards,
+                                     const std::vector<ReportTarget>& targets, ReadFiles& read) {
+    const auto add = [&](const std::string& path) {
+        if (!path.empty()) read.add(path);
+    };
+    for (const Shard& shard : shards) {
+        for (const PlannedProgram& program : shard.programs) add(program.name);
+        for (const ProgramResult& result : shard.results) {
+            add(result.setup);
+            if (result.error) add(result.error->file);
+            for (const KeptFinding& finding : result.findings) add(finding.file);
+        }
+    }
+    for (const ReportTarget& target : targets)
+        if (auto safe = read.check(target.path); !safe) return safe;
+    return {};
+}
+
 /// What one run says while it goes on, and at its end.
 void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const BatchTalk& talk) {
     for (const ProgramResult& program : batch.programs) talk.say(program_text(program, talk.style));
@@ -70,9 +89,11 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
 }
 
 core::Result<ExitCode> merge(const Options& options) {
-    const ReadFiles read;
+    ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets, safe_targets(options));
     FEELER_TRY(const std::vector<Shard> shards, read_shards(options.files));
+    if (auto safe = refuse_lost_input(shards, targets, read); !safe)
+        return tl::unexpected(safe.error());
     FEELER_TRY(const BatchResult batch, merged(shards));
     const BatchTalk talk = talk_of(options.style, targets);
     say_all(batch, shards, talk);

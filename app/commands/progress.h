@@ -7,8 +7,8 @@
 namespace app {
 
 /// From now on Ctrl-C, and what a scheduler or a closed terminal sends, asks a check to stop, once;
-/// the next one ends the process. A reader of our output that goes away ends nothing: writing
-/// fails, and reports that go elsewhere are written all the same.
+/// the next one, half a second later or more, ends the process. A reader of our output that goes
+/// away ends nothing: writing fails, and reports that go elsewhere are written all the same.
 void stop_on_interrupt();
 
 /// Whether something did.

@@ -59,8 +59,12 @@ std::string batch_json_report(const BatchResult& batch) {
     Json skipped = Json::array();
     for (const SkippedFile& file : batch.skipped)
         skipped.push_back({{"file", file.path}, {"why", file.why}});
+    if (!batch.share.empty())
+        text += "\n],\n\"share\":" + dumped(batch.share);
+    else
+        text += "\n]";
     return text
-           + fmt::format("\n],\n\"unchecked\":{},\n\"skipped\":{}}}\n", dumped(batch.unchecked),
+           + fmt::format(",\n\"unchecked\":{},\n\"skipped\":{}}}\n", dumped(batch.unchecked),
                          dumped(skipped));
 }
 

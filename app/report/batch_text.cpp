@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -34,11 +35,12 @@ std::string counts_text(const ProgramResult& result) {
     return text;
 }
 
-/// A line for each rule that was found, with its lines in the program; the worst first.
+/// A line for each rule that was found, with its lines in the program and the message of its worst
+/// finding; the worst rule first.
 std::string findings_text(const ProgramResult& result, const BatchStyle& style) {
     struct Group {
-        const KeptFinding* first;
-        std::vector<uint32_t> lines;
+        const KeptFinding* worst;
+        std::set<uint32_t> lines;
     };
     std::map<std::pair<int, std::string>, Group> groups;
     for (const KeptFinding& finding : result.findings) {
@@ -46,17 +48,18 @@ std::string findings_text(const ProgramResult& result, const BatchStyle& style) 
         const std::pair<int, std::string> key = {-static_cast<int>(finding.severity),
                                                  finding.rule + finding.file};
         Group& group = groups.try_emplace(key, Group{&finding, {}}).first->second;
-        if (finding.line != 0) group.lines.push_back(finding.line);
+        if (finding.shortfall > group.worst->shortfall) group.worst = &finding;
+        if (finding.line != 0) group.lines.insert(finding.line);
     }
     std::string text;
     for (const auto& [key, group] : groups) {
-        const KeptFinding& first = *group.first;
-        std::string line = fmt::format("{} {}", core::name_of(first.severity), first.rule);
-        if (!first.file.empty()) line += " in " + first.file;
+        const KeptFinding& worst = *group.worst;
+        std::string line = fmt::format("{} {}", core::name_of(worst.severity), worst.rule);
+        if (!worst.file.empty()) line += " in " + worst.file;
         if (!group.lines.empty())
             line += fmt::format(", line{} {}", group.lines.size() == 1 ? "" : "s",
-                                line_ranges(group.lines));
-        text += wrapped(line + ": " + first.message, 11, 2);
+                                line_ranges({group.lines.begin(), group.lines.end()}));
+        text += wrapped(line + ": " + worst.message, 11, 2);
     }
     return text;
 }
@@ -173,7 +176,8 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
 }
 
 std::string batch_summary(const BatchResult& batch, double seconds, const BatchStyle& style) {
-    std::string text = counted(batch.programs.size() + batch.unchecked.size(), "program");
+    std::string text = batch.share.empty() ? batch.share : batch.share + "\n";
+    text += counted(batch.programs.size() + batch.unchecked.size(), "program");
     if (seconds >= 60.0) text += " in " + duration_text(seconds);
     if (seconds >= 0.0 && seconds < 60.0) text += fmt::format(" in {:.1f} s", seconds);
     const std::string verdicts = verdicts_text(batch);

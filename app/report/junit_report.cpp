@@ -111,16 +111,18 @@ std::string junit_report(const BatchResult& batch) {
         cases += case_of(program);
     }
     for (const std::string& program : batch.unchecked)
-        cases += fmt::format("    <testcase {} time=\"0\">\n      <skipped message=\"was not "
-                             "checked\"/>\n    </testcase>\n",
-                             name_attributes(program));
+        cases +=
+            fmt::format("    <testcase {} time=\"0\">\n      <error message=\"was not checked: "
+                        "the batch was ended before\"/>\n    </testcase>\n",
+                        name_attributes(program));
+    errors += batch.unchecked.size(); // nobody is to take a batch that was cut short for a good one
     const std::string counts =
         fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"",
                     batch.programs.size() + batch.unchecked.size(), failures, errors, seconds);
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-           + fmt::format("<testsuites name=\"feeler\" {0}>\n  <testsuite name=\"feeler check\" "
-                         "{0} skipped=\"{1}\">\n{2}  </testsuite>\n</testsuites>\n",
-                         counts, batch.unchecked.size(), cases);
+           + fmt::format("<testsuites name=\"feeler\" {0}>\n  <testsuite name=\"feeler check{1}\" "
+                         "{0} skipped=\"0\">\n{2}  </testsuite>\n</testsuites>\n",
+                         counts, batch.share.empty() ? "" : ", " + batch.share, cases);
 }
 
 } // namespace app

@@ -7,7 +7,9 @@
 namespace app {
 
 /// A batch as SARIF 2.1.0, for code hosts: a result for each finding, at its line; the rules with
-/// their help; a result and a notification for each program that could not be run to its end.
+/// their help; a result and a notification for each program that could not be run to its end, or
+/// was not checked. Of more than 25,000 results, which code hosts refuse, the worst: errors first,
+/// and the worst of each program before its others; a notification says how many are left out.
 /// `folder` is the one that relative paths count from, as an absolute path.
 ///
 /// Fingerprints are made of rule, bodies, the block's text without its number, and how often the

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -5,6 +7,7 @@
 
 #include "app/report/batch_report.h"
 #include "app/report/batch_text.h"
+#include "app/report/html_batch.h"
 #include "app/report/junit_report.h"
 #include "app/report/rule_help.h"
 #include "app/report/sarif_report.h"
@@ -73,7 +76,7 @@ TEST(Sarif, HasWhatTheSchemaAsksFor) {
     const json& run = log["runs"][0];
     EXPECT_EQ(run["tool"]["driver"]["name"], "Feeler");
     const json& rules = run["tool"]["driver"]["rules"];
-    ASSERT_EQ(run["results"].size(), 5U);
+    ASSERT_EQ(run["results"].size(), 6U);
     for (const json& result : run["results"]) {
         EXPECT_FALSE(result["message"]["text"].get<std::string>().empty()
                      && result["ruleId"] != "air-cut");
@@ -113,6 +116,76 @@ TEST(Sarif, TellsOfWhatWasNotRunToItsEnd) {
     EXPECT_EQ(run["invocations"][0]["executionSuccessful"], false);
     EXPECT_EQ(run["invocations"][0]["toolExecutionNotifications"].size(), 3U);
     EXPECT_EQ(run["originalUriBaseIds"]["%SRCROOT%"]["uri"], "file:///home/me/my%20shop/");
+}
+
+/// Hosts that go by results alone must not show green.
+TEST(Sarif, HasAResultForWhatWasNotChecked) {
+    const json run = sarif()["runs"][0];
+    const json& result = run["results"][5];
+    EXPECT_EQ(result["ruleId"], "not-checked");
+    EXPECT_EQ(result["level"], "error");
+    EXPECT_EQ(result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "late.nc");
+    const json& rule = run["tool"]["driver"]["rules"].at(result["ruleIndex"].get<size_t>());
+    EXPECT_EQ(rule["id"], "not-checked");
+    EXPECT_EQ(rule["defaultConfiguration"]["level"], "error");
+}
+
+/// So many findings in a program, of which each third is an error and the last is the worst.
+BatchResult batch_of_many(size_t programs, size_t findings) {
+    BatchResult batch;
+    for (size_t i = 0; i < programs; ++i) {
+        ProgramResult program{.program = std::to_string(i) + ".nc"};
+        for (size_t k = 0; k < findings; ++k) {
+            KeptFinding finding = near_miss("G0 X5.", static_cast<uint32_t>(k + 1));
+            if (k % 3 != 0) finding.severity = Severity::warning;
+            finding.shortfall = static_cast<double>(k);
+            program.findings.push_back(finding);
+        }
+        batch.programs.push_back(program);
+    }
+    return batch;
+}
+
+TEST(Sarif, HasNoMoreResultsThanCodeHostsTake) {
+    BatchResult batch = batch_of_many(5000, 5);
+    const json whole = json::parse(sarif_report(batch, "/"))["runs"][0];
+    EXPECT_EQ(whole["results"].size(), 25'000U);
+    EXPECT_TRUE(whole["invocations"][0]["toolExecutionNotifications"].empty());
+    batch.unchecked = {"late.nc"};
+    const json cut = json::parse(sarif_report(batch, "/"))["runs"][0];
+    EXPECT_EQ(cut["results"].size(), 25'000U);
+    EXPECT_EQ(cut["results"].back()["ruleId"], "not-checked");
+    const json& notes = cut["invocations"][0]["toolExecutionNotifications"];
+    ASSERT_EQ(notes.size(), 2U);
+    EXPECT_EQ(notes[0]["level"], "warning");
+    EXPECT_THAT(notes[0]["message"]["text"].get<std::string>(),
+                testing::AllOf(testing::StartsWith("left out: 1 of the results"),
+                               HasSubstr("--format json has all")));
+    // What is left out is the mildest of the last program, a warning with the least shortfall.
+    const auto& results = cut["results"];
+    EXPECT_EQ(results[24'994], whole["results"][24'994]);
+    EXPECT_EQ(results[24'995], whole["results"][24'995]);
+    EXPECT_EQ(results[24'996], whole["results"][24'997]) << "its fingerprint is not counted anew";
+}
+
+TEST(Sarif, HasTheWorstOfEachProgramBeforeOthers) {
+    BatchResult batch = batch_of_many(2, 60'000);
+    batch.programs.push_back(ProgramResult{.program = "2.nc"});
+    batch.programs[2].findings = batch_of_many(1, 4).programs[0].findings;
+    const json results = json::parse(sarif_report(batch, "/"))["runs"][0]["results"];
+    ASSERT_EQ(results.size(), 25'000U);
+    std::map<std::string, size_t> counts;
+    double least = 60'000.0;
+    for (const json& result : results) {
+        EXPECT_EQ(result["level"], "error");
+        const std::string program = result["properties"]["program"];
+        ++counts[program];
+        if (program != "2.nc")
+            least = std::min(least, result["properties"]["shortfall"].get<double>());
+    }
+    EXPECT_EQ(counts,
+              (std::map<std::string, size_t>{{"0.nc", 12'499}, {"1.nc", 12'499}, {"2.nc", 2}}));
+    EXPECT_EQ(least, 3.0 * (20'000 - 12'499));
 }
 
 TEST(Sarif, HasHelpForEachRule) {
@@ -167,12 +240,12 @@ TEST(Junit, IsValid) {
 
 TEST(Junit, HasACaseForEachProgram) {
     const std::string xml = junit_report(batch_of_all_kinds());
-    EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\" time=\"2.250\""));
+    EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"2\" time=\"2.250\""));
     EXPECT_THAT(xml, HasSubstr("<testcase name=\"good.nc\" classname=\"parts\" time=\"0.500\">"));
     EXPECT_THAT(xml, HasSubstr("<failure message=\"violation: 2 errors\" type=\"violation\">"));
     EXPECT_THAT(xml, HasSubstr("&lt;clamp-1&gt; &amp; &quot;more&quot;"));
     EXPECT_THAT(xml, HasSubstr("<error message=\"line 3: G999: no such &lt;code&gt;\""));
-    EXPECT_THAT(xml, HasSubstr("<skipped message=\"was not checked\"/>"));
+    EXPECT_THAT(xml, HasSubstr("<error message=\"was not checked: the batch was ended before\"/>"));
     EXPECT_THAT(xml, HasSubstr("bell ? and line\nend"));
 }
 
@@ -214,6 +287,27 @@ TEST(BatchReport, HasARowForEachProgram) {
         cells.push_back(count);
     }
     EXPECT_EQ(cells, (std::vector<size_t>{20, 20, 20, 20, 20}));
+}
+
+TEST(BatchText, HasTheMessageOfTheWorstOfARuleAndEachLineOnce) {
+    ProgramResult program{.program = "a.nc",
+                          .findings = {near_miss("G0 X5.", 7), near_miss("G0", 7)}};
+    program.findings[1].shortfall = 2.0;
+    program.findings[1].message = "It is at 0.000 mm.";
+    const std::string text = batch_text({.programs = {program}}, {});
+    EXPECT_THAT(text, HasSubstr("error near-miss, line 7: It is at 0.000 mm."));
+}
+
+TEST(BatchReport, OfAShareSaysThatItIsOne) {
+    BatchResult batch = batch_of_all_kinds();
+    batch.share = "share 2/8: 4 of 31 programs";
+    EXPECT_EQ(json::parse(batch_json_report(batch))["share"], batch.share);
+    EXPECT_FALSE(json::parse(batch_json_report(batch_of_all_kinds())).contains("share"));
+    const json run = json::parse(sarif_report(batch, "/"))["runs"][0];
+    EXPECT_EQ(run["automationDetails"]["description"]["text"], batch.share);
+    EXPECT_THAT(junit_report(batch), HasSubstr("feeler check, share 2/8"));
+    EXPECT_THAT(batch_text(batch, {}), HasSubstr(batch.share + "\n4 programs"));
+    EXPECT_THAT(batch_html_report(batch), HasSubstr("<b>" + batch.share));
 }
 
 TEST(BatchText, TellsOfErrorsAndWithVerboseOfAll) {

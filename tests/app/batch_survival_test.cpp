@@ -87,6 +87,17 @@ TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
     }
 }
 
+TEST_F(BatchSurvival, TakesASignalThatComesTwiceAtOnceForOne) {
+    folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
+    for (int i = 0; i < 5; ++i) { // without --foreground it goes to the process and to its group
+        fs::remove(folder / "report.json");
+        const Ran ran = feeler({"check", folder / "long.nc", folder / "lib/other.nc", "--format",
+                                "json", "-o", folder / "report.json"},
+                               "timeout -s TERM 0.5");
+        EXPECT_TRUE(fs::exists(folder / "report.json")) << i;
+    }
+}
+
 TEST_F(BatchSurvival, OutlivesItsTerminalUnderNohup) {
     for (int i = 0; i < 12; ++i)
         folder.write("lib/p" + std::to_string(i) + ".nc",

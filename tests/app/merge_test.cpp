@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "app/batch/shard_file.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
 
@@ -208,6 +209,31 @@ TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
     EXPECT_THAT(feeler({"merge", share(2)}).err, HasSubstr("a share is missing: 1/2"));
 }
 
+TEST_F(Merge, FindsNoOldShareOfAMachineThatSawNoPrograms) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    fs::rename(folder / "lib", folder / "not mounted");
+    fs::create_directory(folder / "lib");
+    const Ran ran =
+        feeler({"check", folder / "lib", "--shard", "1/2", "--format", "shard", "-o", share(1)});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_FALSE(fs::exists(share(1)));
+}
+
+TEST_F(Merge, LeavesAFileThatIsNoShareUntilItIsReplaced) {
+    folder.write("notes", "mine\n");
+    fs::create_directory(folder / "empty");
+    EXPECT_EQ(feeler({"check", folder / "empty", "--shard", "1/2", "--format", "shard", "-o",
+                      folder / "notes"})
+                  .status,
+              2);
+    EXPECT_EQ(bytes_of(folder / "notes"), "mine\n");
+    EXPECT_LE(feeler({"check", folder / "lib", "--shard", "1/2", "--format", "shard", "-o",
+                      folder / "notes"})
+                  .status,
+              2);
+    EXPECT_THAT(bytes_of(folder / "notes"), HasSubstr("feeler_shard"));
+}
+
 TEST_F(Merge, RefusesSharesThatWereAskedForOtherwise) {
     check_share(1, 2);
     for (const Words& more : std::vector<Words>{{"--allowance", "2.5"},
@@ -254,6 +280,12 @@ TEST_F(Merge, RefusesSharesOfOtherStatesOfTheLibrary) {
                 HasSubstr("another set-up"));
     words.insert(words.end(), {"--tool-table", folder.write("tool.tbl", "T1 P1 D10\n")});
     EXPECT_THAT(why([&] { folder.write("tool.tbl", "T1 P1 D11\n"); }), HasSubstr("another set-up"));
+    words.insert(words.end(), {"--parameters", folder.write("variables", "5220\t1\n")});
+    EXPECT_THAT(why([&] { folder.write("variables", "5220\t1\n5221\t0\n"); }),
+                HasSubstr("another set-up"));
+    words.insert(words.end(), {"--ini", folder.write("mill.ini", "[TRAJ]\nCOORDINATES = XYZ\n")});
+    EXPECT_THAT(why([&] { folder.write("mill.ini", "[TRAJ]\nCOORDINATES = X Y Z\n"); }),
+                HasSubstr("another set-up"));
     EXPECT_THAT(why([&] { words.push_back(folder / "nothing*.nc"); }),
                 HasSubstr("what its words do not find"));
 }
@@ -278,6 +310,9 @@ TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
     std::string foreign = whole;
     foreign.replace(foreign.find("\"version\": \"") + 12, 1, "9");
     EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
+                HasSubstr("foreign: is a share of a batch that was cut off or changed"));
+    foreign = app::sealed(foreign.substr(0, foreign.rfind(",\n\"seal\"")));
+    EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
                 HasSubstr("was made by feeler 9"));
 }
 
@@ -288,6 +323,31 @@ TEST_F(Merge, NeverLosesAShareThatItReads) {
     EXPECT_EQ(ran.status, 2);
     EXPECT_THAT(ran.err, HasSubstr("2.share: is read here, and would be lost"));
     EXPECT_EQ(bytes_of(share(2)), before);
+}
+
+TEST_F(Merge, NeverLosesWhatItsSharesHaveRead) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (const char* name : {"lib/fine.nc", "lib/a bad one.nc", "setup.toml"}) {
+        const std::string before = bytes_of(folder / name);
+        const Ran ran = merge(2, {"--format", "csv", "-o", folder / name});
+        EXPECT_EQ(ran.status, 2) << name;
+        EXPECT_EQ(ran.out, "") << name;
+        EXPECT_THAT(ran.err, HasSubstr(std::string(name) + ": is read here, and would be lost"));
+        EXPECT_EQ(bytes_of(folder / name), before) << name;
+    }
+}
+
+TEST_F(Merge, TakesAsLongAsItsSharesTogether) {
+    words = {folder / "lib/fine.nc", folder / "lib/near.nc", "--setup", folder / "setup.toml"};
+    for (int i = 1; i <= 2; ++i) {
+        check_share(i, 2);
+        std::string text = bytes_of(share(i));
+        text.resize(text.rfind(",\n\"seal\""));
+        const std::string seconds = i == 1 ? "\"seconds\": 20.25," : "\"seconds\": 10.5,";
+        text = std::regex_replace(text, std::regex("\"seconds\": [^,]*,"), seconds);
+        folder.write(std::to_string(i) + ".share", app::sealed(text));
+    }
+    EXPECT_THAT(merge(2).out, HasSubstr("2 programs in 30.8 s"));
 }
 
 TEST_F(Merge, TakesNoShareThatIsNone) {

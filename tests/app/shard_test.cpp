@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -64,8 +65,9 @@ TEST(ShareNamed, ReadsOneOfSomeAndNothingElse) {
     EXPECT_EQ(*app::share_named("2/8"), (app::ShareName{2, 8}));
     EXPECT_EQ(*app::share_named("1/1"), (app::ShareName{1, 1}));
     for (const char* text : {"", "2", "0/3", "4/3", "1/0", "1/2/3", "-1/2", "1 /2", "a/b", "1/",
-                             "1/99999999999999999999999"})
+                             "1/99999999999999999999999", "1/1000001"})
         EXPECT_FALSE(app::share_named(text)) << text;
+    EXPECT_EQ(*app::share_named("1000000/1000000"), (app::ShareName{1'000'000, 1'000'000}));
 }
 
 /// Ten programs in three shares, as three machines would write them.
@@ -221,11 +223,127 @@ TEST(Shard, SaysWhatATextIsThatIsNone) {
     EXPECT_EQ(why("{\"feeler_shard\": 2}"), "was written by a newer version of Feeler");
     EXPECT_EQ(why("{\"feeler_shard\": 1, \"versi"),
               "is a share of a batch that was cut off or changed");
-    EXPECT_THAT(why("{\"feeler_shard\": 1, \"version\": 3}"),
+    EXPECT_EQ(why("{\"feeler_shard\": 2, \"versi"), why("{\"feeler_shard\": 2}"));
+    EXPECT_EQ(why("{\"feeler_shard\": \"x\"}"),
+              "is a share of a batch that was cut off or changed");
+    EXPECT_THAT(why(app::sealed("{\"feeler_shard\": 1, \"version\": 3")),
                 testing::StartsWith("is no share of a batch: "));
-    std::string other = app::json_of(three_shards()[0]);
-    other.replace(other.find("[1, 3]"), 6, "[5, 3]");
-    EXPECT_THAT(why(other), testing::StartsWith("'5/3' is no share"));
+    EXPECT_EQ(why(app::json_of(three_shards()[0]) + " "),
+              "is a share of a batch that was cut off or changed");
+}
+
+/// A share of one program that comes too near, as its text without the seal.
+std::string unsealed_share() {
+    Shard shard{.version = "1", .share = {1, 1}, .programs = {{"a.nc", 9, "terms"}}, .places = {0}};
+    shard.skipped = {{"part.stl", "is a mesh"}};
+    shard.results = {{.program = "a.nc",
+                      .verdict = core::Verdict::violation,
+                      .findings = {{.rule = "near-miss",
+                                    .severity = core::Severity::error,
+                                    .block = 7,
+                                    .line = 8,
+                                    .pair = {"holder", "clamp"},
+                                    .shortfall = 0.5}},
+                      .assumptions = {"rapids run straight"},
+                      .blocks = 12,
+                      .cycle_time = 3.5,
+                      .removed = 4.5,
+                      .tightest = app::Tightest{.block = 7,
+                                                .line = 8,
+                                                .pair = {"holder", "clamp"},
+                                                .lower = 1.5,
+                                                .upper = 1.75,
+                                                .allowance = 2.0},
+                      .seconds = 0.25}};
+    shard.seconds = 6.5;
+    const std::string whole = app::json_of(shard);
+    return whole.substr(0, whole.rfind(",\n\"seal\""));
+}
+
+/// Why a share is refused in which the first of these texts is another, under a new seal.
+std::string why_not_with(const std::string& text, const std::string& other) {
+    std::string share = unsealed_share();
+    const size_t at = share.find(text);
+    if (at == std::string::npos) return "there is no " + text;
+    const auto read = app::shard_from_json(app::sealed(share.replace(at, text.size(), other)));
+    return read ? "" : read.error().message;
+}
+
+TEST(Shard, IsRefusedWhenAnyByteOfItIsAnother) {
+    const std::string whole = app::sealed(unsealed_share());
+    ASSERT_TRUE(app::shard_from_json(whole));
+    for (size_t at = 0; at < whole.size(); ++at) {
+        std::string other = whole;
+        other[at] = other[at] == '1' ? '2' : '1';
+        ASSERT_FALSE(app::shard_from_json(other)) << at;
+    }
+    std::string edited = whole;
+    edited.replace(edited.find("violation"), 9, "clear");
+    EXPECT_EQ(app::shard_from_json(edited).error().message,
+              "is a share of a batch that was cut off or changed");
+}
+
+TEST(Shard, TakesNoOtherTypeForAList) {
+    const std::string findings = "\"findings\":[";
+    const std::string share = unsealed_share();
+    const size_t from = share.find(findings) + findings.size() - 1;
+    const std::string list = share.substr(from, share.find("}]", from) + 2 - from);
+    for (const std::string& text :
+         {list, std::string("[\"rapids run straight\"]"), std::string("[1, 1]"), std::string("[0]"),
+          std::string("[\"holder\",\"clamp\"]"), std::string("[\"a.nc\",9,\"terms\"]"),
+          std::string("[\"part.stl\",\"is a mesh\"]")})
+        for (const char* other : {"{}", "null", "0", "\"x\"", "[[]]", "{\"0\":0}"})
+            EXPECT_THAT(why_not_with(text, other), testing::HasSubstr("is no ")) << text << other;
+    for (const char* other : {"[\"holder\"]", "[\"holder\",\"clamp\",\"vise\"]"})
+        EXPECT_NE(why_not_with("[\"holder\",\"clamp\"]", other), "") << other;
+    EXPECT_NE(why_not_with("[1, 1]", "[1, 1, 1]"), "");
+}
+
+TEST(Shard, TakesNoOtherNumberForAWholeOne) {
+    for (const char* key : {"\"places\": [0", "\"block\":7", "\"line\":8", "\"blocks\":12",
+                            "\"share\": [1", "[\"a.nc\",9", "\"feeler_shard\": 1"}) {
+        std::string before = key;
+        while (std::isdigit(static_cast<unsigned char>(before.back())) != 0) before.pop_back();
+        for (const char* other : {"1e30", "0.7", "-1", "true", "null", "\"0\"", "1.0",
+                                  "99999999999999999999", "1000000000000000000000000000000"})
+            EXPECT_NE(why_not_with(key, before + other), "") << key << " " << other;
+    }
+    EXPECT_NE(why_not_with("\"line\":8", "\"line\":4294967296"), "");
+    EXPECT_EQ(why_not_with("\"line\":8", "\"line\":4294967295"), "");
+}
+
+TEST(Shard, TakesNoTimeThatNothingTakes) {
+    for (const char* key :
+         {"\"seconds\": 6.5", "\"seconds\":0.25", "\"cycle_time\":3.5", "\"removed\":4.5",
+          "\"lower\":1.5", "\"upper\":1.75", "\"allowance\":2.0", "\"shortfall\":0.5"}) {
+        const std::string before = std::string(key).substr(0, std::string(key).rfind(':') + 1);
+        for (const char* other : {"1e999", "true", "\"1\"", "[]"})
+            EXPECT_NE(why_not_with(key, before + other), "") << key << " " << other;
+        EXPECT_EQ(why_not_with(key, before + "4"), "") << key;
+    }
+    for (const char* key : {"\"seconds\": ", "\"seconds\":", "\"cycle_time\":"})
+        EXPECT_NE(why_not_with(key, key + std::string("-")), "") << key;
+    EXPECT_NE(why_not_with("\"seconds\": 6.5", "\"seconds\": 1e308"), "");
+}
+
+TEST(Shard, IsRefusedWhereItIsNestedTooDeep) {
+    const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+    const std::string why = "is no share of a batch: its lists are nested too deep";
+    EXPECT_EQ(why_not_with("[1, 1]", deep), why);
+    EXPECT_EQ(why_not_with("\"results\": [", "\"results\": [" + deep + ","), why);
+    EXPECT_EQ(
+        app::shard_from_json(app::sealed(unsealed_share() + ",\"x\": " + deep)).error().message,
+        why);
+    EXPECT_FALSE(app::result_from_json(deep));
+    // Brackets in a text are none, also behind a quotation mark that is part of it.
+    EXPECT_EQ(why_not_with("rapids run", "\\\"" + deep.substr(0, 300) + "\\\\"), "");
+}
+
+TEST(Shard, IsRefusedWhereItsNameIsNone) {
+    std::string other = unsealed_share();
+    other.replace(other.find("[1, 1]"), 6, "[5, 3]");
+    EXPECT_THAT(app::shard_from_json(app::sealed(other)).error().message,
+                testing::StartsWith("'5/3' is no share"));
 }
 
 } // namespace
