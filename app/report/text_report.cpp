@@ -133,6 +133,18 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
     return text + assumptions_text(run.assumptions, told);
 }
 
+/// Whether a text has a name that is not a part of another word.
+bool has_word(const std::string& text, const std::string& name) {
+    const auto ends_word = [&](size_t at) {
+        return at >= text.size()
+               || std::string_view(" :'\",;()").find(text[at]) != std::string::npos;
+    };
+    if (name.empty()) return true;
+    for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+        if ((at == 0 || ends_word(at - 1)) && ends_word(at + name.size())) return true;
+    return false;
+}
+
 } // namespace
 
 std::string counts_text(const CheckRun& run) {
@@ -158,8 +170,8 @@ std::string text_report(const CheckRun& run, const TextOptions& options) {
 
 std::string error_text(const core::Error& error) {
     // Messages about a file as a whole name it themselves.
-    const bool named = error.message.find(error.file) != std::string::npos;
-    std::string text = named && error.where.line == 0 ? std::string() : error.file;
+    const bool is_named = error.where.line == 0 && has_word(error.message, error.file);
+    std::string text = is_named ? std::string() : error.file;
     if (error.where.line > 0) text += fmt::format(":{}", error.where.line);
     if (error.where.column > 0) text += fmt::format(":{}", error.where.column);
     return text.empty() ? error.message : text + ": " + error.message;

@@ -28,7 +28,9 @@ std::string way_out(const PairClearance& pair, double missing) {
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
-    const double along = missing * length / std::abs(away[axis]);
+    // Rounded up: what is printed has to do.
+    const double along =
+        1e-3 * std::ceil(1e3 * (missing * length / std::abs(away[axis]) - resolution));
     return fmt::format("{:.3f} mm more room towards {}{}", along, "XYZ"[axis],
                        away[axis] > 0.0 ? '+' : '-');
 }
@@ -89,10 +91,13 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
 }
 
 /// One number where both are the same to what is printed, else both.
-std::string range(double low, double high) {
-    if (high - low < 0.002) return fmt::format("{:.3f}", high);
-    return fmt::format("{:.3f} to {:.3f}", low, high);
+std::string range(double low, double high, int digits) {
+    if (high - low < 0.002) return fmt::format("{:.{}f}", high, digits);
+    return fmt::format("{:.{}f} to {:.{}f}", low, digits, high, digits);
 }
+
+/// So many that what is kept is not printed as what must be, nor what is missing as nothing.
+int digits_for(double missing) { return missing < 0.0015 ? 6 : 3; }
 
 /// Whose rapid it is.
 const char* words_for_rapid(MoveWithin within) {
@@ -135,11 +140,13 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
         return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
         return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
+    const double missing = pair.allowance.distance - pair.upper;
+    const int digits = digits_for(missing);
     if (pair.verdict == Verdict::violation)
-        return fmt::format(
-            "{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.", kind, part,
-            body, range(pair.lower, pair.upper), pair.allowance.distance,
-            range(pair.allowance.distance - pair.upper, pair.allowance.distance - pair.lower));
+        return fmt::format("{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.",
+                           kind, part, body, range(pair.lower, pair.upper, digits),
+                           pair.allowance.distance,
+                           range(missing, pair.allowance.distance - pair.lower, digits));
     if (pair.allowance.distance <= resolution)
         return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
                            kind, part, body);
@@ -170,10 +177,12 @@ std::string change_message(const PairClearance& pair, ToolNumber tool, const std
         return fmt::format("Tool {} is changed in where its {} {} in {}.", number, part,
                            many ? "stand" : "stands", body);
     if (pair.verdict == Verdict::violation)
-        return fmt::format("Tool {} is changed in where its {} {} only {} mm from {}; {:.3f} mm "
-                           "must be kept.",
-                           number, part, many ? "are" : "is", range(pair.lower, pair.upper), body,
-                           pair.allowance.distance);
+        return fmt::format(
+            "Tool {} is changed in where its {} {} only {} mm from {}; {:.3f} mm "
+            "must be kept.",
+            number, part, many ? "are" : "is",
+            range(pair.lower, pair.upper, digits_for(pair.allowance.distance - pair.upper)), body,
+            pair.allowance.distance);
     return fmt::format("Tool {} is changed in where its {} may be as near to {} as {:.3f} mm; "
                        "{:.3f} mm must be kept.",
                        number, part, body, pair.lower, pair.allowance.distance);

@@ -6,6 +6,7 @@
 #include "app/commands/progress.h"
 #include "app/report/csv_report.h"
 #include "app/report/json_report.h"
+#include "app/report/text_report.h"
 
 namespace app {
 namespace {
@@ -38,6 +39,16 @@ std::vector<std::string> cells_of(const std::string& row) {
             cells.back() += c;
     }
     return cells;
+}
+
+TEST(ErrorText, NamesTheFileUnlessTheMessageDoes) {
+    const auto text = [](const std::string& file, const std::string& message) {
+        return error_text({core::ErrorCode::io, {}, message, file});
+    };
+    EXPECT_EQ(text("a.nc", "cannot read a.nc: no such file"), "cannot read a.nc: no such file");
+    EXPECT_EQ(text("'a b'", "there is no 'a b'"), "there is no 'a b'");
+    EXPECT_EQ(text("e", "holds no NC program"), "e: holds no NC program");
+    EXPECT_EQ(text("", "is wrong"), "is wrong");
 }
 
 TEST(JsonLines, SayWhatJsonSays) {
