@@ -31,8 +31,10 @@ app::BatchResult odd_batch() {
 int main(int count, char** words) {
     if (count != 2) return 2;
     const std::string folder = words[1];
-    std::ofstream odd(folder + "/odd.sarif"), empty(folder + "/empty.sarif");
+    std::ofstream odd(folder + "/odd.sarif"), empty(folder + "/empty.sarif"),
+        cut(folder + "/cut.sarif");
+    cut << app::sarif_report(test_support::large_batch(6000, 5), "/"); // more than hosts take
     odd << app::sarif_report(odd_batch(), "/home/me/my shop");
     empty << app::sarif_report({}, "/");
-    return odd && empty ? 0 : 1;
+    return odd && empty && cut ? 0 : 1;
 }

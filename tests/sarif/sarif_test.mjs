@@ -12,7 +12,7 @@ addFormats(ajv);
 const isValid = ajv.compile(schema);
 
 const results = new Map(process.argv.slice(2).map((file) => [file, JSON.parse(readFileSync(file, "utf8"))]));
-assert.equal(results.size, 7);
+assert.equal(results.size, 8);
 for (const [file, log] of results) {
   const valid = isValid(log);
   console.log(`${valid ? "valid  " : "INVALID"} ${file}: ${log.runs[0].results.length} results`);
@@ -25,6 +25,7 @@ const counts = Object.fromEntries([...results].map(([file, log]) => [file.replac
 assert.ok(counts["findings.sarif"] > 1);
 assert.equal(counts["clear.sarif"], 0);
 assert.equal(counts["empty.sarif"], 0);
+assert.equal(counts["cut.sarif"], 25000);
 assert.equal(counts["broken.sarif"], 1);
 assert.equal(counts["nowhere.sarif"], 1);
 assert.equal(counts["shop.sarif"], 2 * counts["findings.sarif"] + 1);
