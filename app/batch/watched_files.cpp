@@ -61,7 +61,10 @@ WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& a
 
 bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
     if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder) return true;
-    // Of a folder only the names count: also what does not concern anybody changes its times.
+    // Of a folder only the names count: also what does not concern anybody changes its times. But
+    // it may be another one, by a link.
+    if (a.stamp.is_folder && (a.stamp.number != b.stamp.number || a.stamp.device != b.stamp.device))
+        return true;
     if (asked.bytes && !a.stamp.is_folder && a.stamp != b.stamp) return true;
     return a.names != b.names || a.kind != b.kind;
 }

@@ -127,11 +127,14 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
     store.serve(hooks);
     std::mutex guard;
     std::set<std::string> known; // programs
-    if (hooks.known && watch.is_again)
+    if (hooks.known && watch.files)
         hooks.known = [&, find = hooks.known](const CheckJob& job) {
+            // The database asks for files where links led to when it was opened.
+            for (const std::string& path : {job.program, job.setup})
+                watch.files->note({core::FileQuestion::content, path, {}, {}});
             auto found = find(job);
             const std::scoped_lock lock(guard);
-            if (found) known.insert(found->program);
+            if (found && watch.is_again) known.insert(found->program);
             return found;
         };
     hooks.looked = [&](const core::FileLook& look) {

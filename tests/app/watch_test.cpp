@@ -117,6 +117,29 @@ TEST_F(Watch, SaysAgainWhatCameBack) {
     EXPECT_EQ(end(terminal), 0);
 }
 
+TEST_F(Watch, SeesALinkThatIsSwappedAlsoBehindKnownResults) {
+    for (const std::string name : {"one", "two"}) {
+        fs::create_directory(folder / name);
+        folder.write(name + "/a.nc", name == "one" ? fine : near);
+        folder.write(name + "/a.toml", setup("42"));
+    }
+    fs::create_directory_symlink("one", folder / "current");
+    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    ASSERT_EQ(feeler({"check", folder / "current"}).status, 0);
+    for (const std::string word : {"current", "current/a.nc"}) {
+        Terminal terminal =
+            watching({folder / word, "--cache", folder / "current/.feeler/results.db", "--jobs",
+                      "1", folder / "one/a.nc"});
+        pass(terminal);
+        fs::create_directory_symlink("two", folder / "next");
+        fs::rename(folder / "next", folder / "current");
+        EXPECT_THAT(pass(terminal), HasSubstr("current/a.nc: 3 errors")) << word;
+        EXPECT_EQ(end(terminal), 1);
+        fs::remove(folder / "current");
+        fs::create_directory_symlink("one", folder / "current");
+    }
+}
+
 TEST_F(Watch, KeepsNothingWhereNothingIsToBeKept) {
     fs::create_directory(folder / "here");
     const std::string home = fs::current_path();

@@ -144,6 +144,19 @@ TEST_F(WatchedFilesTest, CountTheReportsOfOthersOnlyWhenTheyBecomePrograms) {
     EXPECT_EQ(changed(), Names{"report.txt"});
 }
 
+TEST_F(WatchedFilesTest, SeeALinkToAFolderThatIsSwapped) {
+    for (const char* name : {"one", "two"}) {
+        fs::create_directory(folder / name);
+        folder.write(std::string(name) + "/x.txt", "no program\n");
+    }
+    fs::create_directory_symlink("one", folder / "current");
+    watch([&] { find_programs({folder / "current"}); });
+    EXPECT_EQ(changed(), Names{});
+    fs::remove(folder / "current");
+    fs::create_directory_symlink("two", folder / "current");
+    EXPECT_EQ(changed(), Names{"current"});
+}
+
 TEST_F(WatchedFilesTest, SeeANameBehindTimesThatWerePutBack) {
     watch([&] { walk_folder(folder.path()); });
     const auto time = fs::last_write_time(folder.path());
