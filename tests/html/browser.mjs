@@ -1,5 +1,6 @@
 // Chromium, and a report in it of which all that goes wrong is kept.
 
+import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const flags = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -11,7 +12,7 @@ export function launch(more = []) {
 /** A report in a window of its own; `wrong` gets a line for every error and every request. */
 export async function openReport(browser, file, { width = 1400, height = 1000, colorScheme = "light", ...more } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, ...more });
-  const page = await context.newPage(), wrong = [], url = "file://" + file;
+  const page = await context.newPage(), wrong = [], url = pathToFileURL(file).href;
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) wrong.push("console: " + message.text()); });
   page.on("pageerror", (error) => wrong.push("error: " + error.message));
   page.on("request", (request) => {
