@@ -14,11 +14,4 @@ void InputRecorder::note(const core::FileLook& look) {
     inputs_.insert(std::move(input));
 }
 
-std::string content_in(const std::vector<InputFile>& inputs, const std::string& path) {
-    for (const InputFile& input : inputs)
-        if (input.question == core::FileQuestion::content && input.path == path)
-            return input.answer.value_or("");
-    return {};
-}
-
 } // namespace app

@@ -22,7 +22,4 @@ private:
     core::FileListening listening_;
 };
 
-/// What was read from a file of this path: its SHA-256; empty when it was not.
-std::string content_in(const std::vector<InputFile>& inputs, const std::string& path);
-
 } // namespace app
