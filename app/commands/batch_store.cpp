@@ -46,7 +46,7 @@ void BatchStore::give_up(const core::Error& error) {
     const std::scoped_lock lock(guard_);
     if (std::exchange(is_told_, true)) return;
     print_error(error);
-    std::fputs("feeler: results are not kept; the check goes on\n", stderr);
+    print_note("feeler: results are not kept; the check goes on\n");
 }
 
 void BatchStore::begin_again() {

@@ -25,8 +25,7 @@ core::Result<void> bench_paper(const Options& options) {
 ExitCode run_bench(const Options& options) {
     const auto done = bench_paper(options);
     if (done) return ExitCode::clear;
-    print_error(done.error());
-    return ExitCode::failed;
+    return failed(done.error());
 }
 
 } // namespace

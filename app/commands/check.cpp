@@ -58,12 +58,12 @@ std::string report(const CheckOptions& options, const ReportTarget& target,
 }
 
 /// Whether what is to be written can be, as far as that is known beforehand.
-core::Result<void> check_files(const CheckOptions& options, const CheckJob& job,
-                               const std::vector<ReportTarget>& targets) {
-    if (auto safe = check_targets(targets, {job.program, job.setup}); !safe) return safe;
+core::Result<void> check_files(const CheckOptions& options,
+                               const std::vector<ReportTarget>& targets, const ReadFiles& read) {
+    if (auto safe = read.check(paths_of(targets)); !safe) return safe;
     for (const std::string& name : {options.stock, options.comparison}) {
         if (name.empty()) continue;
-        if (auto safe = check_output(name, {job.program, job.setup}); !safe) return safe;
+        if (auto safe = read.check(name); !safe) return safe;
         for (const ReportTarget& target : targets)
             if (auto safe = check_output(name, {target.path}); !safe) return safe;
         if (auto form = mesh_form(name); !form) return tl::unexpected(form.error());
@@ -99,8 +99,7 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run, cons
 bool say_memory(double bytes) {
     constexpr double much = 1e9;
     if (bytes >= much)
-        std::fputs(fmt::format("the check takes about {:.1f} GB of memory\n", 1e-9 * bytes).c_str(),
-                   stderr);
+        print_note(fmt::format("the check takes about {:.1f} GB of memory\n", 1e-9 * bytes));
     return true;
 }
 
@@ -120,11 +119,6 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
     return all;
 }
 
-ExitCode failed(const core::Error& error) {
-    print_error(error);
-    return ExitCode::failed;
-}
-
 /// Tells those who read SARIF or JUnit that a check could not begin.
 ExitCode fail(const CheckJob& job, const core::Error& error,
               const std::vector<ReportTarget>& targets, const ReadFiles& read) {
@@ -141,10 +135,12 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
 /// `told`: the assumptions that are on the screen; those of this check come in their place.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& told) {
-    const ReadFiles read;
+    ReadFiles read;
     auto job = job_of(options.what);
     if (!job) return failed(job.error());
-    if (const auto safe = check_files(options, *job, targets); !safe) return failed(safe.error());
+    read.add(job->program);
+    read.add(job->setup);
+    if (const auto safe = check_files(options, targets, read); !safe) return failed(safe.error());
     stop_on_interrupt();
     ProgressLine line;
     job->detail = detail_of(options);

@@ -48,17 +48,6 @@ BatchLimits limits_of(const CheckOptions& options) {
             .memory = options.memory ? *options.memory * 1e6 : usual_memory()};
 }
 
-core::Result<void> refuse_lost_input(const BatchPlan& plan,
-                                     const std::vector<ReportTarget>& targets) {
-    std::error_code ignored;
-    for (const ReportTarget& target : targets) {
-        if (!std::filesystem::is_regular_file(target.path, ignored)) continue;
-        for (const CheckJob& job : plan.jobs)
-            if (auto safe = check_output(target.path, {job.program, job.setup}); !safe) return safe;
-    }
-    return {};
-}
-
 /// What is to be done here, of a batch that other machines may have shares of.
 struct SharedWork {
     BatchPlan plan;
@@ -134,7 +123,7 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
                 watch.files->note({core::FileQuestion::content, path, {}, {}});
             auto found = find(job);
             const std::scoped_lock lock(guard);
-            if (found && watch.is_again) known.insert(found->program);
+            if (found) known.insert(found->program);
             return found;
         };
     hooks.looked = [&](const core::FileLook& look) {
@@ -158,13 +147,8 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
     return batch;
 }
 
-ExitCode failed(const core::Error& error) {
-    print_error(error);
-    return ExitCode::failed;
-}
-
 /// Nothing was found to check: old reports stay.
-ExitCode failed(const std::vector<core::Error>& errors) {
+ExitCode all_failed(const std::vector<core::Error>& errors) {
     for (const core::Error& error : errors) print_error(error);
     return ExitCode::failed;
 }
@@ -175,11 +159,15 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     const Stopwatch time;
     if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     ReadFiles read;
-    if (!store.path().empty()) read.add(store.path());
+    read.add(store.path());
     auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
-    if (const auto safe = refuse_lost_input(*plan, targets); !safe) return failed(safe.error());
-    if (plan->jobs.empty() && !plan->failures.empty()) return failed(plan->failures);
+    for (const CheckJob& job : plan->jobs) {
+        read.add(job.program);
+        read.add(job.setup);
+    }
+    if (const auto safe = read.check(paths_of(targets)); !safe) return failed(safe.error());
+    if (plan->jobs.empty() && !plan->failures.empty()) return all_failed(plan->failures);
     const SharedWork work = work_of(options, *std::move(plan));
     const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
     BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/output.h"
-
 namespace app {
 namespace {
 
@@ -41,13 +39,6 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
                 return refused(fmt::format("two reports would go to {}", targets[i].path));
     }
     return targets;
-}
-
-core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
-                                 std::initializer_list<std::string> read) {
-    for (const ReportTarget& target : targets)
-        if (auto safe = check_output(target.path, read); !safe) return safe;
-    return {};
 }
 
 std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets) {

@@ -42,12 +42,6 @@ struct ReportTarget {
 core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
                                                    const std::vector<std::string>& outputs);
 
-/// Refuses targets that are a file that is read here.
-///
-/// Errors: invalid_value, with the path.
-core::Result<void> check_targets(const std::vector<ReportTarget>& targets,
-                                 std::initializer_list<std::string> read);
-
 core::Detail detail_of(const CheckOptions& options);
 
 /// Checks many programs, says a line for each, and writes the reports; with --watch again whenever

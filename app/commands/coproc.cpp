@@ -78,10 +78,7 @@ core::Result<ExitCode> coproc(const Options& options) {
     if (trace.vcd)
         if (auto written = write_output(options.vcd, trace.vcd->text(), read); !written)
             return tl::unexpected(std::move(written).error());
-    if (result.run.check.stopped) {
-        print_error(*result.run.check.stopped);
-        return ExitCode::failed;
-    }
+    if (result.run.check.stopped) return failed(*result.run.check.stopped);
     const bool refuses = std::any_of(result.run.blocks.begin(), result.run.blocks.end(),
                                      [](const auto& block) { return !block.permit.permitted; });
     return refuses || result.timing.missed > 0 ? ExitCode::findings : ExitCode::clear;
@@ -114,8 +111,7 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--no-fit", options->no_fit, "Do not look for the smallest device");
     command.callback([options, &exit_code] {
         auto done = coproc(*options);
-        if (!done) print_error(done.error());
-        exit_code = done ? *done : ExitCode::failed;
+        exit_code = done ? *done : failed(done.error());
     });
 }
 

@@ -120,15 +120,9 @@ private:
 
 ExitCode debug(const Options& options) {
     const auto job = job_of(options.what);
-    if (!job) {
-        print_error(job.error());
-        return ExitCode::failed;
-    }
+    if (!job) return failed(job.error());
     auto session = DebugSession::open(*job);
-    if (!session) {
-        print_error(session.error());
-        return ExitCode::failed;
-    }
+    if (!session) return failed(session.error());
     note_interrupts();
     Console console(**session);
     const bool goes_on = console.carry_out(options.scripts) || console.failed;

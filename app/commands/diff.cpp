@@ -59,8 +59,7 @@ core::Result<ExitCode> compare(const Options& options) {
 ExitCode diff(const Options& options) {
     const auto compared = compare(options);
     if (compared) return *compared;
-    print_error(compared.error());
-    return ExitCode::failed;
+    return failed(compared.error());
 }
 
 } // namespace

@@ -42,14 +42,10 @@ core::Result<std::string> answer(const Options& options) {
 ExitCode distance(const Options& options) {
     const ReadFiles read;
     const auto text = answer(options);
-    if (!text) {
-        print_error(text.error());
-        return ExitCode::failed;
-    }
+    if (!text) return failed(text.error());
     const auto written = write_output(options.output, *text, read);
     if (written) return ExitCode::clear;
-    print_error(written.error());
-    return ExitCode::failed;
+    return failed(written.error());
 }
 
 void add_vector(CLI::App& command, const char* name, std::vector<double>& value, const char* help) {

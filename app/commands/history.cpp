@@ -93,8 +93,7 @@ core::Result<void> write_history(const Options& options) {
 ExitCode history(const Options& options) {
     const auto written = write_history(options);
     if (written) return ExitCode::clear;
-    print_error(written.error());
-    return ExitCode::failed;
+    return failed(written.error());
 }
 
 } // namespace

@@ -50,30 +50,16 @@ core::Result<std::vector<Shard>> read_shards(const std::vector<std::string>& fil
     return shards;
 }
 
-core::Result<std::vector<ReportTarget>> safe_targets(const Options& options) {
-    FEELER_TRY(std::vector<ReportTarget> targets, targets_of(options.formats, options.outputs));
-    for (const std::string& file : options.files)
-        if (auto safe = check_targets(targets, {file}); !safe) return tl::unexpected(safe.error());
-    return targets;
-}
-
 /// A check reads what its shares name; here only a report could take the place of it.
-core::Result<void> refuse_lost_input(const std::vector<Shard>& shards,
-                                     const std::vector<ReportTarget>& targets, ReadFiles& read) {
-    const auto add = [&](const std::string& path) {
-        if (!path.empty()) read.add(path);
-    };
+void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
     for (const Shard& shard : shards) {
-        for (const PlannedProgram& program : shard.programs) add(program.name);
+        for (const PlannedProgram& program : shard.programs) read.add(program.name);
         for (const ProgramResult& result : shard.results) {
-            add(result.setup);
-            if (result.error) add(result.error->file);
-            for (const KeptFinding& finding : result.findings) add(finding.file);
+            read.add(result.setup);
+            if (result.error) read.add(result.error->file);
+            for (const KeptFinding& finding : result.findings) read.add(finding.file);
         }
     }
-    for (const ReportTarget& target : targets)
-        if (auto safe = read.check(target.path); !safe) return safe;
-    return {};
 }
 
 /// What one run says while it goes on, and at its end.
@@ -90,10 +76,13 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
 
 core::Result<ExitCode> merge(const Options& options) {
     ReadFiles read;
-    FEELER_TRY(const std::vector<ReportTarget> targets, safe_targets(options));
+    FEELER_TRY(const std::vector<ReportTarget> targets,
+               targets_of(options.formats, options.outputs));
+    for (const std::string& file : options.files) read.add(file);
+    if (auto safe = read.check(paths_of(targets)); !safe) return tl::unexpected(safe.error());
     FEELER_TRY(const std::vector<Shard> shards, read_shards(options.files));
-    if (auto safe = refuse_lost_input(shards, targets, read); !safe)
-        return tl::unexpected(safe.error());
+    add_inputs(shards, read);
+    if (auto safe = read.check(paths_of(targets)); !safe) return tl::unexpected(safe.error());
     FEELER_TRY(const BatchResult batch, merged(shards));
     const BatchTalk talk = talk_of(options.style, targets);
     say_all(batch, shards, talk);
@@ -103,8 +92,7 @@ core::Result<ExitCode> merge(const Options& options) {
 ExitCode merge_aloud(const Options& options) {
     const auto done = merge(options);
     if (done) return *done;
-    print_error(done.error());
-    return ExitCode::failed;
+    return failed(done.error());
 }
 
 } // namespace

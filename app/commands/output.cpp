@@ -130,6 +130,11 @@ void print_error(const core::Error& error) {
     print_note(fmt::format("feeler: {}\n", error_text(error)));
 }
 
+ExitCode failed(const core::Error& error) {
+    print_error(error);
+    return ExitCode::failed;
+}
+
 void print_note(const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);

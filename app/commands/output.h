@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/commands/commands.h"
 #include "core/base/result.h"
 
 namespace app {
@@ -50,5 +51,8 @@ private:
 /// Prints to standard error; what cannot be written there is lost.
 void print_error(const core::Error& error);
 void print_note(const std::string& text);
+
+/// Prints an error: what the command then ends with.
+ExitCode failed(const core::Error& error);
 
 } // namespace app

@@ -1,10 +1,24 @@
 #include "app/commands/read_files.h"
 
 #include <filesystem>
+#include <map>
+#include <utility>
 
+#include "app/batch/file_stamp.h"
 #include "app/commands/output.h"
 
 namespace app {
+namespace {
+
+/// A device, and what a file is there.
+using FileNumber = std::pair<uint64_t, uint64_t>;
+
+FileNumber number_of(const std::string& path) {
+    const FileStamp stamp = stamp_of(path);
+    return {stamp.device, stamp.number};
+}
+
+} // namespace
 
 ReadFiles::ReadFiles() : listening_([this](const core::FileLook& look) { note(look); }) {}
 
@@ -13,16 +27,26 @@ void ReadFiles::note(const core::FileLook& look) {
 }
 
 void ReadFiles::add(const std::string& path) {
+    if (path.empty()) return;
     const std::scoped_lock lock(mutex_);
     paths_.insert(path);
 }
 
 core::Result<void> ReadFiles::check(const std::string& output) const {
+    return check(std::vector{output});
+}
+
+core::Result<void> ReadFiles::check(const std::vector<std::string>& outputs) const {
+    std::map<FileNumber, std::string> there;
     std::error_code ignored;
-    if (output.empty() || !std::filesystem::is_regular_file(output, ignored)) return {};
+    for (const std::string& output : outputs)
+        if (!output.empty() && std::filesystem::is_regular_file(output, ignored))
+            there.emplace(number_of(output), output);
+    if (there.empty()) return {};
     const std::scoped_lock lock(mutex_);
     for (const std::string& path : paths_)
-        if (auto safe = check_output(output, {path}); !safe) return safe;
+        if (const auto output = there.find(number_of(path)); output != there.end())
+            if (auto safe = check_output(output->second, {path}); !safe) return safe;
     return {};
 }
 

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/base/file_reads.h"
 #include "core/base/result.h"
@@ -18,12 +19,13 @@ public:
 
     /// Told of a look by another thread.
     void note(const core::FileLook& look);
-    void add(const std::string& path);
+    void add(const std::string& path); // empty: nothing
 
     /// Refuses an output file that is one of them, also by another name or link.
     ///
     /// Errors: invalid_value, with the path.
     core::Result<void> check(const std::string& output) const;
+    core::Result<void> check(const std::vector<std::string>& outputs) const;
 
 private:
     mutable std::mutex mutex_;

@@ -28,8 +28,7 @@ ExitCode setup(const Options& options) {
     auto written = write_setup(options);
     if (written) return ExitCode::clear;
     if (written.error().file.empty()) written.error().file = options.program;
-    print_error(written.error());
-    return ExitCode::failed;
+    return failed(written.error());
 }
 
 } // namespace

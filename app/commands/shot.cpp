@@ -225,8 +225,7 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     add_device_arguments(command, options->device);
     command.callback([options, &exit_code] {
         const auto done = shoot(*options);
-        exit_code = done ? ExitCode::clear : ExitCode::failed;
-        if (!done) print_error(done.error());
+        exit_code = done ? ExitCode::clear : failed(done.error());
     });
 }
 

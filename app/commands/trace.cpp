@@ -131,8 +131,7 @@ ExitCode trace(const Options& options) {
     if (traced) return ExitCode::clear;
     core::Error error = std::move(traced).error();
     if (error.file.empty()) error.file = options.program;
-    print_error(error);
-    return ExitCode::failed;
+    return failed(error);
 }
 
 } // namespace

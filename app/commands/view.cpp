@@ -36,10 +36,7 @@ struct Options {
 ExitCode view(const Options& options) {
     const CheckArguments& arguments = options.what;
     auto check = job_of(arguments);
-    if (!check) {
-        print_error(check.error());
-        return ExitCode::failed;
-    }
+    if (!check) return failed(check.error());
     viewer::WindowJob job;
     if (!arguments.program.empty()) job.check = *std::move(check);
     if (const auto folder = user_folder("XDG_CONFIG_HOME", ".config"); !folder.empty()) {
