@@ -16,6 +16,21 @@ core::Aabb box_of(const std::vector<PathPoint>& points, size_t first, size_t las
     return box;
 }
 
+/// Where the points of a block are, or would be: first and one past the last.
+std::pair<size_t, size_t> place_of_block(const std::vector<PathPoint>& points, uint32_t block) {
+    const auto first = std::partition_point(points.begin(), points.end(),
+                                            [&](const PathPoint& p) { return p.block < block; });
+    const auto last = std::partition_point(first, points.end(),
+                                           [&](const PathPoint& p) { return p.block == block; });
+    return {first - points.begin(), last - points.begin()};
+}
+
+/// Of the piece that ends at a point.
+double piece_length(const std::vector<PathPoint>& points, size_t end) {
+    if (end == 0 || points[end].begins) return 0.0;
+    return glm::distance(core::Vec3(points[end - 1].place), core::Vec3(points[end].place));
+}
+
 } // namespace
 
 ToolPath tool_path(std::vector<PathPoint> points) {
@@ -33,13 +48,27 @@ ToolPath tool_path(std::vector<PathPoint> points) {
 }
 
 std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block) {
-    const auto begin = path.points.begin();
-    const auto first = std::partition_point(begin, path.points.end(),
-                                            [&](const PathPoint& p) { return p.block < block; });
-    const auto last = std::partition_point(first, path.points.end(),
-                                           [&](const PathPoint& p) { return p.block == block; });
-    if (first == last) return {0, 0};
-    return {static_cast<size_t>(first - begin), static_cast<size_t>(last - begin)};
+    const auto [first, last] = place_of_block(path.points, block);
+    return first == last ? std::pair<size_t, size_t>() : std::pair(first, last);
+}
+
+ToolPath path_near(const ToolPath& path, uint32_t block, const PathReach& reach) {
+    const auto [begin, end] = place_of_block(path.points, block);
+    size_t first = begin, last = end;
+    for (double way = 0.0; first > 0 && begin - first < reach.most; --first) {
+        if (first == path.points.size()) continue;
+        if (path.points[first].block + reach.before < block && way > reach.way_before) break;
+        way += piece_length(path.points, first);
+    }
+    for (double way = 0.0; last < path.points.size() && last - end < reach.most; ++last) {
+        if (path.points[last].block > block + reach.behind && way > reach.way_behind) break;
+        way += piece_length(path.points, last);
+    }
+    if (first == last) return {};
+    std::vector<PathPoint> near(path.points.begin() + static_cast<std::ptrdiff_t>(first),
+                                path.points.begin() + static_cast<std::ptrdiff_t>(last));
+    near.front().begins = true;
+    return tool_path(std::move(near));
 }
 
 core::Aabb bounds_of_block(const ToolPath& path, uint32_t block) {

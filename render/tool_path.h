@@ -44,6 +44,17 @@ ToolPath tool_path(std::vector<PathPoint> points);
 /// decrease along the path.
 std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block);
 
+/// How much of a path is near a block: so many blocks before and behind it, and as many more as it
+/// takes to see so much of the way.
+struct PathReach {
+    uint32_t before = 30, behind = 8; // blocks
+    double way_before = 150.0, way_behind = 40.0;
+    size_t most = 1000; // points on either side
+};
+
+/// The part of a path near a block, whether the block moves or not.
+ToolPath path_near(const ToolPath& path, uint32_t block, const PathReach& reach);
+
 /// The box of a block's pieces; empty when it has none.
 core::Aabb bounds_of_block(const ToolPath& path, uint32_t block);
 

@@ -14,8 +14,6 @@ namespace app {
 namespace {
 
 constexpr size_t stock_triangles = 6000, body_triangles = 4000;
-constexpr uint32_t blocks_before = 30, blocks_behind = 8; // of whose path is shown
-constexpr size_t most_points = 400;
 
 const char* name_of(render::BodyRole role) {
     constexpr const char* names[] = {"fixture", "clamp", "machine", "flutes", "shank",
@@ -67,25 +65,20 @@ std::string json_of(const Stretch& stretch) {
                        stretch.current, fmt::join(stretch.places, ","));
 }
 
-/// The way of the tip some blocks before and behind one.
+/// The way of the tip, with the pieces of a block by themselves.
 std::string path_json(const render::ToolPath& path, uint32_t block) {
-    const auto first = std::lower_bound(
-        path.points.begin(), path.points.end(), block > blocks_before ? block - blocks_before : 0,
-        [](const render::PathPoint& point, uint32_t from) { return point.block < from; });
     std::vector<std::string> pieces;
     Stretch stretch;
-    size_t count = 0;
-    for (auto point = first; point != path.points.end(); ++point) {
-        if (point->block > block + blocks_behind || ++count > most_points) break;
-        const bool is_current = point->block == block;
-        const bool changes = stretch.rapid != point->rapid || stretch.current != is_current;
-        if (point->begins || changes) {
+    for (const render::PathPoint& point : path.points) {
+        const bool is_current = point.block == block;
+        const bool changes = stretch.rapid != point.rapid || stretch.current != is_current;
+        if (point.begins || changes) {
             if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
             std::vector<std::string> places;
-            if (!point->begins && !stretch.places.empty()) places = {stretch.places.back()};
-            stretch = {point->rapid, is_current, std::move(places)};
+            if (!point.begins && !stretch.places.empty()) places = {stretch.places.back()};
+            stretch = {point.rapid, is_current, std::move(places)};
         }
-        stretch.places.push_back(numbers(core::Vec3(point->place)));
+        stretch.places.push_back(numbers(core::Vec3(point.place)));
     }
     if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
     return fmt::format("[{}]", fmt::join(pieces, ","));

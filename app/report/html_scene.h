@@ -12,8 +12,8 @@ namespace app {
 /// Writes scenes for the 3D view of a page. What several of them share is written once.
 class SceneWriter {
 public:
-    /// A JSON object: bodies with their places, the path near the current block, the witness, the
-    /// camera. Bodies of the machine are left out, unless they are one of the pair.
+    /// A JSON object: bodies with their places, the path, the current block's by itself, the
+    /// witness, the camera. Bodies of the machine are left out, unless they are one of the pair.
     ///
     /// Frame: that of the stock, mm.
     std::string add(const render::Scene& scene, const render::Camera& camera);

@@ -64,6 +64,15 @@ struct Stage {
                                        render::work_bounds(viewer::scene_of(model)));
         model.camera = viewer::witness_camera(model, picture_size);
     }
+
+    /// What is seen there, with as much of the path as tells how the tool gets there.
+    render::Scene scene() const {
+        render::Scene scene = viewer::scene_of(model);
+        if (scene.path && scene.current_block)
+            scene.path = std::make_shared<render::ToolPath>(
+                render::path_near(*scene.path, *scene.current_block, {}));
+        return scene;
+    }
 };
 
 void add_views(Stage& stage, const CheckRun& run, ReportViews& views) {
@@ -74,7 +83,7 @@ void add_views(Stage& stage, const CheckRun& run, ReportViews& views) {
     for (const size_t block : blocks_to_show(run, most_views)) {
         if (block >= stage.model.rows.size()) continue;
         stage.go_to(block);
-        const render::Scene scene = viewer::scene_of(stage.model);
+        const render::Scene scene = stage.scene();
         BlockView view{.block = block, .scene = writer.add(scene, stage.model.camera)};
         if (camera && std::find(cards.begin(), cards.end(), block) != cards.end()) {
             auto picture = camera->picture(stage.model, scene);

@@ -171,6 +171,42 @@ TEST(ToolPath, FindsThePointsOfABlock) {
     EXPECT_NEAR(path.bounds.max.x, 499.0, 1e-6);
 }
 
+/// A step of a millimetre along X for each block.
+ToolPath steps(uint32_t count) {
+    std::vector<PathPoint> points;
+    for (uint32_t i = 0; i < count; ++i)
+        points.push_back({.place = {static_cast<float>(i), 0, 0}, .block = i});
+    return tool_path(std::move(points));
+}
+
+std::pair<uint32_t, uint32_t> ends(const ToolPath& path) {
+    return {path.points.front().block, path.points.back().block};
+}
+
+TEST(ToolPath, KeepsWhatIsNearABlock) {
+    using Ends = std::pair<uint32_t, uint32_t>;
+    const ToolPath path = steps(1000);
+    // With the place from which the first of so many blocks goes.
+    const PathReach blocks{.before = 30, .behind = 8, .way_before = 0, .way_behind = 0};
+    EXPECT_EQ(ends(path_near(path, 500, blocks)), Ends(469, 508));
+    EXPECT_TRUE(path_near(path, 500, blocks).points[0].begins);
+    const PathReach way{.before = 0, .behind = 0, .way_before = 99.5, .way_behind = 9.5};
+    EXPECT_EQ(ends(path_near(path, 500, way)), Ends(400, 510));
+    const PathReach all{.before = 5000, .behind = 5000, .most = 7};
+    EXPECT_EQ(ends(path_near(path, 500, all)), Ends(493, 507));
+    EXPECT_EQ(ends(path_near(path, 0, blocks)), Ends(0, 8));
+    EXPECT_EQ(ends(path_near(path, 999, blocks)), Ends(968, 999));
+    EXPECT_TRUE(path_near(tool_path({}), 0, {}).points.empty());
+}
+
+TEST(ToolPath, KeepsWhatIsNearABlockThatDoesNotMove) {
+    std::vector<PathPoint> points = steps(20).points;
+    std::erase_if(points, [](const PathPoint& point) { return point.block == 10; });
+    const ToolPath near = path_near(tool_path(points), 10,
+                                    {.before = 2, .behind = 2, .way_before = 0, .way_behind = 0});
+    EXPECT_EQ(ends(near), (std::pair<uint32_t, uint32_t>(7, 12)));
+}
+
 core::Leg leg(const core::AxisValues& from, const core::AxisValues& to) {
     return {.places = {from, to}};
 }
