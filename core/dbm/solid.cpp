@@ -157,9 +157,12 @@ SolidMesh solid_mesh(Mesh mesh) {
     return {std::make_shared<const Mesh>(std::move(mesh)), std::move(bvh), std::move(points)};
 }
 
+Aabb bounds(const SolidMesh& solid) {
+    return !solid.bvh || solid.bvh->nodes.empty() ? Aabb{} : solid.bvh->nodes[0].box;
+}
+
 bool holds(const SolidMesh& solid, const Vec3& point) {
-    if (solid.bvh->nodes.empty() || !overlaps(solid.bvh->nodes[0].box, {point, point}))
-        return false;
+    if (!overlaps(bounds(solid), {point, point})) return false;
     const Mesh over = triangles_over(solid, {point.x, point.x, point.y, point.y});
     return matter_on_line(over, 2, point.x, point.y).contains(point.z);
 }
@@ -167,7 +170,7 @@ bool holds(const SolidMesh& solid, const Vec3& point) {
 Aabb bounds(const Solid& solid) {
     return std::visit(Overloaded{[](const SolidBox& b) { return b.box; },
                                  [](const SolidCylinder& c) { return bounds_of(c); },
-                                 [](const SolidMesh& m) { return m.mesh->bounds(); }},
+                                 [](const SolidMesh& m) { return bounds(m); }},
                       solid.shape);
 }
 

@@ -30,6 +30,9 @@ struct SolidMesh {
 
 SolidMesh solid_mesh(Mesh mesh);
 
+/// The box of its triangles, which is known.
+Aabb bounds(const SolidMesh& solid);
+
 /// Whether the point lies inside the mesh; either answer for a point on its surface.
 bool holds(const SolidMesh& solid, const Vec3& point);
 

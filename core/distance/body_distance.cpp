@@ -42,7 +42,7 @@ Separation between_meshes(const SolidMesh& a, const SolidMesh& b, const Transfor
 
 Aabb bounds(const ExactBody& body) {
     if (const auto* shape = std::get_if<ConvexShape>(&body)) return bounds(*shape);
-    return std::get<SolidMesh>(body).mesh->bounds();
+    return bounds(std::get<SolidMesh>(body));
 }
 
 Separation separation(const ConvexShape& shape, const ExactBody& body, const SeparationGoal& goal) {
