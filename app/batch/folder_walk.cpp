@@ -43,9 +43,13 @@ private:
         found.folders.push_back(folder);
         core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
         std::error_code failure;
+        std::vector<fs::directory_entry> entries;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
              at.increment(failure))
-            if (at->path().filename().string().front() != '.') sort_in(*at);
+            if (at->path().filename().string().front() != '.') entries.push_back(*at);
+        // By which of two links a folder is entered must not depend on the disk's own order.
+        std::sort(entries.begin(), entries.end());
+        for (const fs::directory_entry& entry : entries) sort_in(entry);
         if (failure) found.unreadable.push_back(unreadable_folder(folder, failure));
     }
 

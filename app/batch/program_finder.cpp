@@ -73,8 +73,12 @@ private:
     bool take_file(const std::string& file, const std::string& project) {
         const auto [known, is_new] = looked_into_.try_emplace(identities_.of(file));
         Look& look = known->second;
-        // A search that began below a project takes its say from nobody.
-        if (look.place && !project.empty()) found.programs[*look.place].project = project;
+        if (look.place) {
+            FoundProgram& program = found.programs[*look.place];
+            // What a search finds that began below its project is to be checked in any case.
+            if (program.project.empty() != project.empty()) program.is_named = true;
+            if (!project.empty()) program.project = project;
+        }
         if (!is_new) return look.may_be_program;
         core::note_look({core::FileQuestion::kind, file, {}, {}});
         auto why = why_no_program(file);

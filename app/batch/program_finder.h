@@ -12,7 +12,7 @@ namespace app {
 struct FoundProgram {
     std::string path;
     std::string project;   // the project file that has a say in its folder; empty: nobody's
-    bool is_named = false; // by its own name, and not only found
+    bool is_named = false; // by its own name, or by a search that began below the project
 };
 
 /// What words of a command line, or of a project, stand for.
@@ -26,7 +26,7 @@ struct FoundPrograms {
 /// The programs that words stand for, relative to a folder (empty: the working folder): a file is
 /// taken as it is; a folder is searched with all folders in it; a pattern names files. What was
 /// searched for is looked into, and skipped when it is no NC program. It belongs to the nearest
-/// project file above it, as far up as the search began; a file that is named belongs to nobody.
+/// project file above it, as far up as the search that reached highest began.
 FoundPrograms find_programs(const std::vector<std::string>& words,
                             const std::filesystem::path& folder = {});
 

@@ -10,6 +10,7 @@
 
 #include "app/batch/build_version.h"
 #include "app/batch/shard_file.h"
+#include "app/batch/store_file.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"
@@ -63,13 +64,14 @@ SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
     return work;
 }
 
-/// The share of an earlier run must not be taken for that of a run that was killed. What is no
+/// The share of an earlier run must not be taken for that of a run that was killed, or could not
+/// begin. What is no
 /// share is somebody's file: whether it may be replaced is seen when it is written.
 core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets) {
         if (target.format != "shard" || !is_shard_file(target.path)) continue;
         std::error_code failure;
-        if (!std::filesystem::remove(target.path, failure))
+        if (!std::filesystem::remove(place_of(target.path), failure))
             return tl::unexpected<core::Error>(
                 {core::ErrorCode::io, {}, "cannot be replaced: " + failure.message(), target.path});
     }
@@ -157,9 +159,9 @@ ExitCode all_failed(const std::vector<core::Error>& errors) {
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
               const std::vector<ReportTarget>& targets, BatchStore& store, Watch& watch) {
     const Stopwatch time;
-    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     ReadFiles read;
     read.add(store.path());
+    for (const std::string& path : stores_beside(store.path())) read.add(path);
     auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
     for (const CheckJob& job : plan->jobs) {
@@ -188,6 +190,7 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
 } // namespace
 
 ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
+    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
     if (const auto allowed = refuse_single_options(options); !allowed)
         return failed(allowed.error());
     auto asked = job_of(options.what);

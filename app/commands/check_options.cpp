@@ -1,20 +1,11 @@
 #include "app/commands/check_options.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
+
+#include "app/commands/output.h"
 
 namespace app {
 namespace {
-
-/// Whether two paths lead to one file, that may not be there yet.
-bool are_one(const std::string& a, const std::string& b) {
-    const auto place = [](const std::string& path) {
-        std::error_code ignored;
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
-    };
-    return place(a) == place(b);
-}
 
 tl::unexpected<core::Error> refused(const std::string& why) {
     return core::fail(core::ErrorCode::invalid_value, why);
@@ -35,7 +26,7 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
     for (size_t i = 0; i < outputs.size(); ++i) {
         targets[i].path = outputs[i];
         for (size_t k = 0; k < i; ++k)
-            if (are_one(targets[k].path, targets[i].path))
+            if (place_of(targets[k].path) == place_of(targets[i].path))
                 return refused(fmt::format("two reports would go to {}", targets[i].path));
     }
     return targets;

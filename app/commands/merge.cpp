@@ -9,6 +9,7 @@
 #include "app/batch/shard_merge.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/output.h"
+#include "app/commands/progress.h"
 #include "core/base/file_reads.h"
 
 namespace app {
@@ -75,6 +76,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
 }
 
 core::Result<ExitCode> merge(const Options& options) {
+    outlive_readers();
     ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets,
                targets_of(options.formats, options.outputs));

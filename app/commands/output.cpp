@@ -58,10 +58,11 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     auto state = std::make_unique<State>();
     if (path.empty()) return OutputStream(std::move(state));
     state->path = path;
+    const std::filesystem::path target = place_of(path);
     std::error_code failure;
-    const std::filesystem::path target = std::filesystem::weakly_canonical(path, failure);
-    if (failure) return refused(path, "cannot be written: " + failure.message());
     const auto kind = std::filesystem::status(target, failure).type();
+    if (kind == std::filesystem::file_type::none)
+        return refused(path, "cannot be written: " + failure.message());
     if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
     const bool replace = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
@@ -102,6 +103,15 @@ core::Result<void> OutputStream::give_up() {
     while (const size_t count = std::fread(piece.data(), 1, piece.size(), state.file.get()))
         if (!write_all(stdout, {piece.data(), count})) return standard_output_failed();
     return std::fflush(stdout) == 0 ? core::Result<void>{} : standard_output_failed();
+}
+
+std::filesystem::path place_of(const std::filesystem::path& path) {
+    constexpr int most_links = 40; // as the system
+    std::error_code ignored;
+    std::filesystem::path place = std::filesystem::absolute(path, ignored);
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(place, ignored); ++i)
+        place = place.parent_path() / std::filesystem::read_symlink(place, ignored);
+    return std::filesystem::weakly_canonical(place, ignored);
 }
 
 core::Result<void> check_output(const std::string& output,

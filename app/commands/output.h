@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -16,6 +17,9 @@ namespace app {
 ///
 /// Errors: io, with the path.
 core::Result<void> write_output(const std::string& path, const std::string& text);
+
+/// Where a file is, or will be once it is written: whole, behind all links.
+std::filesystem::path place_of(const std::filesystem::path& path);
 
 /// Refuses an output file that is one of the files that are read.
 ///

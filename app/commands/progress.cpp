@@ -59,8 +59,10 @@ void stop_on_interrupt() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
     // nohup has said that the check is to outlive its terminal.
     if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-    std::signal(SIGPIPE, SIG_IGN);
+    outlive_readers();
 }
+
+void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool is_interrupted() { return interrupted_at != 0; }
 

@@ -7,9 +7,12 @@
 namespace app {
 
 /// From now on Ctrl-C, and what a scheduler or a closed terminal sends, asks a check to stop, once;
-/// the next one, half a second later or more, ends the process. A reader of our output that goes
-/// away ends nothing: writing fails, and reports that go elsewhere are written all the same.
+/// the next one, half a second later or more, ends the process. Outlives readers, too.
 void stop_on_interrupt();
+
+/// From now on a reader of our output that goes away ends nothing: writing fails, and reports that
+/// go elsewhere are written all the same.
+void outlive_readers();
 
 /// Whether something did.
 bool is_interrupted();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "app/commands/device_arguments.h"
 #include "app/commands/film_writer.h"
 #include "app/commands/output.h"
+#include "app/commands/read_files.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/studio.h"
 
@@ -161,13 +163,30 @@ core::Result<void> shoot_film(const Options& options, const render::Viewport& si
     return {};
 }
 
+/// A picture takes the place of no other file than a picture: it may be a mesh that is read later.
+core::Result<void> check_replaced(const std::string& output) {
+    constexpr std::string_view signature = "\x89PNG";
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(output, ignored)) return {};
+    std::string bytes(signature.size(), '\0');
+    std::ifstream(output, std::ios::binary)
+        .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (bytes == signature || std::filesystem::file_size(output, ignored) == 0) return {};
+    return tl::unexpected<core::Error>(
+        {core::ErrorCode::invalid_value,
+         {},
+         "is there and is no picture: give -o the name of another file",
+         output});
+}
+
 core::Result<void> shoot(const Options& options) {
+    ReadFiles read;
     FEELER_TRY(const CheckJob job, job_of(options.what));
     FEELER_TRY(const render::Viewport size, size_in(options.size));
-    if (auto safe = check_output(options.output,
-                                 {options.what.program, options.what.setup, options.device.file});
-        !safe)
-        return safe;
+    for (const std::string& path : {job.program, job.setup, options.device.file}) read.add(path);
+    if (auto safe = read.check(options.output); !safe) return safe;
+    if (!options.from && !options.to)
+        if (auto safe = check_replaced(options.output); !safe) return safe;
     const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
     FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
     if (const auto opened = studio->open(job); !opened) return opened;

@@ -35,7 +35,9 @@ protected:
 
 TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
     ASSERT_EQ(feeler({"check", lib()}).status, 0);
-    for (const char* name : {"lib/feeler.toml", "lib/O2000.nc", "lib/.feeler/results.db"}) {
+    fs::copy(folder / "lib/.feeler/results.db", folder / "lib/.feeler/results-1of2.db");
+    for (const char* name : {"lib/feeler.toml", "lib/O2000.nc", "lib/.feeler/results.db",
+                             "lib/.feeler/results-1of2.db"}) {
         const std::string before = bytes_of(folder / name);
         const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / name});
         EXPECT_EQ(ran.status, 2) << name;
@@ -59,12 +61,39 @@ TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
     }
 }
 
+TEST_F(BatchSurvival, TakesNoPictureInPlaceOfAnotherFile) {
+    for (const std::string name : {"lib/call.nc", "lib/O2000.nc"}) {
+        const std::string before = bytes_of(folder / name);
+        const Ran ran = feeler({"shot", folder / "lib/call.nc", "-o", folder / name});
+        EXPECT_EQ(ran.status, 2) << name;
+        EXPECT_EQ(bytes_of(folder / name), before) << name;
+    }
+    folder.write("shot.png", "");
+    for (int i = 0; i < 2; ++i)
+        EXPECT_EQ(feeler({"shot", folder / "lib/call.nc", "-o", folder / "shot.png"}).status, 0);
+}
+
 TEST_F(BatchSurvival, RefusesTwoReportsInOneFile) {
     const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / "report", "--format",
                             "csv", "-o", folder / "lib/../report"});
     EXPECT_EQ(ran.status, 2);
     EXPECT_THAT(ran.err, HasSubstr("two reports would go to"));
     EXPECT_FALSE(fs::exists(folder / "report"));
+}
+
+TEST_F(BatchSurvival, FollowsLinksToReportsThatAreNotThereYet) {
+    fs::create_directory(folder / "reports");
+    fs::create_symlink("reports/a.json", folder / "latest");
+    fs::create_symlink("latest", folder / "link");
+    const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / "link"});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(fs::is_regular_file(folder / "reports/a.json"));
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    fs::remove(folder / "reports/a.json");
+    const Ran twice = feeler({"check", lib(), "--format", "json", "-o", folder / "link", "--format",
+                              "csv", "-o", folder / "reports/a.json"});
+    EXPECT_EQ(twice.status, 2);
+    EXPECT_THAT(twice.err, HasSubstr("two reports would go to"));
 }
 
 TEST_F(BatchSurvival, ReplacesItsOwnOldReportBesideThePrograms) {

@@ -219,6 +219,39 @@ TEST_F(Merge, FindsNoOldShareOfAMachineThatSawNoPrograms) {
     EXPECT_FALSE(fs::exists(share(1)));
 }
 
+TEST_F(Merge, FindsNoOldShareOfARunThatCannotBegin) {
+    for (const Words& more :
+         {Words{"--search-path", folder / "not mounted"}, Words{"--blocks", "1-2"}}) {
+        check_share(1, 2);
+        ASSERT_TRUE(fs::exists(share(1)));
+        EXPECT_EQ(check_share(1, 2, more).status, 2) << more[0];
+        EXPECT_FALSE(fs::exists(share(1))) << more[0];
+    }
+}
+
+TEST_F(Merge, FindsNoOldShareBehindALink) {
+    fs::create_directory(folder / "far");
+    fs::create_symlink("far/1.share", share(1));
+    check_share(1, 2);
+    ASSERT_TRUE(fs::exists(folder / "far/1.share"));
+    EXPECT_EQ(check_share(1, 2, {"--search-path", folder / "not mounted"}).status, 2);
+    EXPECT_FALSE(fs::exists(folder / "far/1.share"));
+    check_share(1, 2);
+    EXPECT_TRUE(fs::is_symlink(share(1)));
+    EXPECT_TRUE(fs::exists(folder / "far/1.share"));
+}
+
+TEST_F(Merge, WritesItsFilesThoughNobodyReadsTheScreen) {
+    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    const std::string all = folder / "all.json";
+    // Whoever reads the screen has gone before there is anything on it.
+    const Ran ran = test_support::run(
+        {"bash", "-c", "(sleep 0.3; \"$@\") | true; exit ${PIPESTATUS[0]}", "_", FEELER_BINARY,
+         "merge", "--format", "json", "-o", all, "--format", "text", share(1), share(2)});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_TRUE(fs::exists(all));
+}
+
 TEST_F(Merge, LeavesAFileThatIsNoShareUntilItIsReplaced) {
     folder.write("notes", "mine\n");
     fs::create_directory(folder / "empty");

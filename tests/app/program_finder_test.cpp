@@ -115,6 +115,18 @@ TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
     EXPECT_THAT(find({"**/*.nc"}).programs, ElementsAre("a/one.nc"));
 }
 
+TEST_F(ProgramFinder, EntersAFolderByTheFirstOfItsLinksWhateverTheDiskListsFirst) {
+    const ScopedFolder other;
+    other.write("far.nc", good);
+    // Disks list names by hashes, the latest first, or in their order: some of these differ.
+    const std::vector<std::string> names = {"m", "c", "x", "a", "k", "z", "b"};
+    for (const std::string& name : names) {
+        fs::create_directory(folder / name);
+        fs::create_directory_symlink(other.path(), folder / (name + "/link"));
+    }
+    EXPECT_THAT(find({"."}).programs, ElementsAre("a/link/far.nc"));
+}
+
 TEST_F(ProgramFinder, FollowsALinkOutOfTheFolder) {
     const ScopedFolder other;
     other.write("far.nc", good);

@@ -190,6 +190,16 @@ TEST_F(NestedProject, KeepsItsSayThoughALaterSearchBeginsBelowIt) {
     EXPECT_THAT(jobs(plan({"job/sub", "**/*.nc"})), Contains(as_it_says));
 }
 
+TEST_F(NestedProject, LeavesToOtherWordsWhatItDoesNotName) {
+    const std::string found_below = "job/sub/c.nc  0";
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"job/sub"}, {".", "job/sub"}, {"job/sub", "."}, {"job/sub/*.nc", "**/*.nc"}}) {
+        const BatchPlan found = plan(words);
+        EXPECT_THAT(jobs(found), Contains(found_below)) << words[0];
+        EXPECT_THAT(skips(found), testing::Not(Contains("job/sub/c.nc"))) << words[0];
+    }
+}
+
 TEST_F(NestedProject, HasTheOnlySayInItsFolderThoughOthersReachIntoIt) {
     for (const std::string name : {"A", "B"}) {
         write(name + "/" + name + ".nc", good);
