@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/sim/block_run.h"
+#include "core/sim/bound_text.h"
 #include "core/sim/low_retract.h"
 #include "core/sim/pair_entry.h"
 #include "core/sim/singular.h"
@@ -35,9 +36,10 @@ void BlockRun::check_limits(const Motion& motion) {
         const double beyond = std::max(below, above);
         if (beyond <= resolution) continue;
         find("over-travel",
-             fmt::format("{} goes to {:.3f} in machine coordinates, {:.3f} {} beyond its limit.",
-                         axis_letters[i], below > above ? range.min[i] : range.max[i], beyond,
-                         is_rotary(i) ? "degrees" : "mm"),
+             fmt::format("{} goes to {} in machine coordinates, {} {} beyond its limit.",
+                         axis_letters[i],
+                         below > above ? at_least(range.min[i]) : at_most(range.max[i]),
+                         at_most(beyond), is_rotary(i) ? "degrees" : "mm"),
              i == 2         ? "Move the work, or use another tool length or work offset."
              : is_rotary(i) ? "Turn the work, or reach the same place from the other side."
                             : "Move the work, or use another work offset.");

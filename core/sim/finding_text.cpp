@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/bound_text.h"
+
 namespace core {
 namespace {
 
@@ -29,9 +31,8 @@ std::string way_out(const PairClearance& pair, double missing) {
     for (int i = 1; i < 3; ++i)
         if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
     // Rounded up: what is printed has to do.
-    const double along =
-        1e-3 * std::ceil(1e3 * (missing * length / std::abs(away[axis]) - resolution));
-    return fmt::format("{:.3f} mm more room towards {}{}", along, "XYZ"[axis],
+    const std::string along = at_most(missing * length / std::abs(away[axis]));
+    return fmt::format("{} mm more room towards {}{}", along, "XYZ"[axis],
                        away[axis] > 0.0 ? '+' : '-');
 }
 
@@ -90,15 +91,6 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
 }
 
-/// One number where both are the same to what is printed, else both.
-std::string range(double low, double high, int digits) {
-    if (high - low < 0.002) return fmt::format("{:.{}f}", high, digits);
-    return fmt::format("{:.{}f} to {:.{}f}", low, digits, high, digits);
-}
-
-/// So many that what is kept is not printed as what must be, nor what is missing as nothing.
-int digits_for(double missing) { return missing < 0.0015 ? 6 : 3; }
-
 /// Whose rapid it is.
 const char* words_for_rapid(MoveWithin within) {
     switch (within) {
@@ -140,18 +132,18 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
         return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
         return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
-    const double missing = pair.allowance.distance - pair.upper;
-    const int digits = digits_for(missing);
+    const double keep = pair.allowance.distance;
+    const int digits = digits_below(pair.upper, keep);
     if (pair.verdict == Verdict::violation)
-        return fmt::format("{} {} passes {} at {} mm; {:.3f} mm must be kept, {} mm are missing.",
-                           kind, part, body, range(pair.lower, pair.upper, digits),
-                           pair.allowance.distance,
-                           range(missing, pair.allowance.distance - pair.lower, digits));
-    if (pair.allowance.distance <= resolution)
+        return fmt::format("{} {} passes {} at {} mm; {} mm must be kept, {} mm are missing.", kind,
+                           part, body, bounds_text(pair.lower, pair.upper, " to ", digits),
+                           at_most(keep),
+                           missing_text(keep - pair.upper, keep - pair.lower, " to ", digits));
+    if (keep <= resolution)
         return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
                            kind, part, body);
-    return fmt::format("{} {} may be as near to {} as {:.3f} mm; {:.3f} mm must be kept.", kind,
-                       part, body, pair.lower, pair.allowance.distance);
+    return fmt::format("{} {} may be as near to {} as {} mm; {} mm must be kept.", kind, part, body,
+                       clearance_at_least(pair.lower), at_most(keep));
 }
 
 /// "The flutes run", "the holder runs".
@@ -176,16 +168,16 @@ std::string change_message(const PairClearance& pair, ToolNumber tool, const std
     if (pair.verdict == Verdict::collision)
         return fmt::format("Tool {} is changed in where its {} {} in {}.", number, part,
                            many ? "stand" : "stands", body);
+    const double keep = pair.allowance.distance;
     if (pair.verdict == Verdict::violation)
         return fmt::format(
-            "Tool {} is changed in where its {} {} only {} mm from {}; {:.3f} mm "
-            "must be kept.",
-            number, part, many ? "are" : "is",
-            range(pair.lower, pair.upper, digits_for(pair.allowance.distance - pair.upper)), body,
-            pair.allowance.distance);
-    return fmt::format("Tool {} is changed in where its {} may be as near to {} as {:.3f} mm; "
-                       "{:.3f} mm must be kept.",
-                       number, part, body, pair.lower, pair.allowance.distance);
+            "Tool {} is changed in where its {} {} only {} mm from {}; {} mm must be kept.", number,
+            part, many ? "are" : "is",
+            bounds_text(pair.lower, pair.upper, " to ", digits_below(pair.upper, keep)), body,
+            at_most(keep));
+    return fmt::format("Tool {} is changed in where its {} may be as near to {} as {} mm; {} mm "
+                       "must be kept.",
+                       number, part, body, clearance_at_least(pair.lower), at_most(keep));
 }
 
 /// Whatever it is called, a collision is never passed over.

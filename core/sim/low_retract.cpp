@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/bound_text.h"
+
 namespace core {
 namespace {
 
@@ -139,8 +141,9 @@ std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<Pair
     finding.message =
         near->verdict == Verdict::clear
             ? fmt::format("The retract before this rapid is low: on the way the {} pass over the "
-                          "{} by {:.2f} mm only.",
-                          finding.pair[0], finding.pair[1], near->upper)
+                          "{} by {} mm only.",
+                          finding.pair[0], finding.pair[1],
+                          bounds_text(near->lower, near->upper, " to ", 2))
             : fmt::format("The retract before this rapid is lower than what stands between its "
                           "ends: {} is in the way of the {}.",
                           finding.pair[1], finding.pair[0]);

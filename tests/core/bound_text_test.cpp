@@ -1,0 +1,109 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/sim/bound_text.h"
+#include "core/sim/finding_text.h"
+#include "tests/support/random_setup.h"
+
+namespace core {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(BoundText, ShowsNoLowerBoundLargerThanItIs) {
+    EXPECT_EQ(at_least(1.9996), "1.999");
+    EXPECT_EQ(at_least(2.0000000001), "2.000");
+    EXPECT_EQ(at_least(-0.0004), "-0.001");
+    EXPECT_EQ(at_least(0.0004), "0.000");
+    EXPECT_EQ(at_least(49.6, 0), "49");
+    EXPECT_EQ(at_least(0.29, 2), "0.29") << "29 cents are less than that in binary";
+    EXPECT_EQ(at_least(1234.5678, 9), "1234.567800000");
+}
+
+TEST(BoundText, ShowsNoUpperBoundSmallerThanItIs) {
+    EXPECT_EQ(at_most(1.9996), "2.000");
+    EXPECT_EQ(at_most(2.0001), "2.001");
+    EXPECT_EQ(at_most(-0.0004), "0.000") << "and not -0.000";
+    EXPECT_EQ(at_most(0.1 + 0.2, 1), "0.3");
+    EXPECT_EQ(at_most(1e-7), "0.000");
+}
+
+TEST(BoundText, TakesRoundingForNothing) {
+    EXPECT_EQ(at_least(1.9999999999), "2.000");
+    EXPECT_EQ(at_most(2.0000000001), "2.000");
+    EXPECT_EQ(at_least(1.999999), "1.999")
+        << "what is less by more than half the resolution is not";
+    EXPECT_EQ(at_most(2.000001), "2.001");
+}
+
+TEST(BoundText, NeverShowsWhatIsTooNearAsWhatMustBeKept) {
+    test_support::Dice dice{std::mt19937(20261122)};
+    size_t ties = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const double keep =
+            dice.chance(0.5) ? std::round(dice.between(0.0, 9e3)) * 1e-3 : dice.between(0.0, 9.0);
+        const double upper = keep - 1.001e-6 - std::pow(10.0, dice.between(-12.0, -2.0));
+        for (const int digits : {0, 1, 2, 3, 6}) {
+            const double near = units_below(upper, digits), far = units_above(keep, digits);
+            ASSERT_LT(near, far) << upper << " of " << keep << " with " << digits;
+            ties += far - near == 1.0;
+        }
+        const int digits = digits_below(upper, keep);
+        EXPECT_LT(units_above(upper, digits), units_above(keep, digits)) << upper << " of " << keep;
+    }
+    EXPECT_GT(ties, 20'000U) << "as near to each other as they can be";
+}
+
+TEST(BoundText, IsOneNumberWhereBothBoundsAre) {
+    EXPECT_EQ(bounds_text(1.9996, 1.9996, "-"), "1.999");
+    EXPECT_EQ(bounds_text(1.9996, 2.0024, " to "), "1.999 to 2.003");
+    EXPECT_EQ(bounds_text(-2e-6, 0.0, "-"), "0.000");
+    EXPECT_EQ(missing_text(0.0004, 0.0004, "-"), "0.001");
+    EXPECT_EQ(missing_text(0.0004, 0.1004, "-"), "0.000-0.101");
+    EXPECT_EQ(bounds_below(1.9, 1.9996, 2.0, "-"), "1.900-1.999600");
+    EXPECT_EQ(bounds_below(1.9, 2.0004, 2.0, "-"), "1.900-2.001");
+}
+
+TEST(BoundText, HasSoManyFigures) {
+    EXPECT_EQ(at_most_figures(0.0151, 2), "0.016");
+    EXPECT_EQ(at_most_figures(0.0100000001, 2), "0.01");
+    EXPECT_EQ(at_most_figures(0.0999, 2), "0.1");
+    EXPECT_EQ(at_most_figures(1234.5, 2), "1235");
+    EXPECT_EQ(at_most_figures(20.0, 3), "20");
+    EXPECT_EQ(at_most_figures(0.0, 3), "0");
+}
+
+TEST(BoundText, ShowsNoClearanceBelowNothing) {
+    EXPECT_EQ(clearance_at_least(-0.0004), "0.000");
+    EXPECT_EQ(clearance_at_least(1.9996), "1.999");
+}
+
+Finding near_miss(double lower, double upper, double keep) {
+    PairClearance pair;
+    pair.allowance.distance = keep;
+    pair.lower = lower;
+    pair.upper = upper;
+    pair.verdict = judge_distance(pair.allowance, lower, upper);
+    return finding_of({}, pair, {.motion = BlockMotion::feed}, {});
+}
+
+TEST(FindingText, ShowsWhatIsKeptBelowWhatMustBe) {
+    EXPECT_THAT(near_miss(1.2346, 1.2346, 2.0).message,
+                HasSubstr("at 1.234 mm; 2.000 mm must be kept, 0.766 mm are missing"));
+    EXPECT_THAT(near_miss(1.9996, 1.9996, 2.0).message,
+                HasSubstr("at 1.999600 mm; 2.000 mm must be kept, 0.000400 mm are missing"));
+    EXPECT_THAT(near_miss(1.9, 1.9996, 2.0).message,
+                HasSubstr("at 1.900000 to 1.999600 mm; 2.000 mm must be kept"));
+    EXPECT_THAT(near_miss(2.0002, 2.0002, 2.0004).message, HasSubstr("2.001 mm must be kept"));
+}
+
+TEST(FindingText, SaysHowNearItMayBeWithoutComingNearerThanThat) {
+    EXPECT_THAT(near_miss(1.9996, 2.5, 2.0).message,
+                HasSubstr("as near to the stock as 1.999 mm; 2.000 mm must be kept"));
+    EXPECT_THAT(near_miss(1.999998, 2.5, 2.0).message, HasSubstr("as 1.999 mm; 2.000 mm must be"));
+}
+
+} // namespace
+} // namespace core
