@@ -14,6 +14,7 @@
 #include "app/commands/read_files.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/studio.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -105,8 +106,8 @@ std::string caption_of(const ViewModel& model, size_t block, const std::vector<s
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", i + 1, model.findings[i].rule);
     text += fmt::format("  \xC2\xB7  block {}, line {}", block, row.line);
     if (row.has_pair())
-        text += fmt::format("  \xC2\xB7  {:.2f} mm  {} \xE2\x80\x93 {}", *row.lower, row.part,
-                            row.body);
+        text += fmt::format("  \xC2\xB7  {} mm  {} \xE2\x80\x93 {}",
+                            core::clearance_at_least(*row.lower, 2), row.part, row.body);
     return text;
 }
 

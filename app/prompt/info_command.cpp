@@ -8,6 +8,7 @@
 #include "app/report/text_layout.h"
 #include "app/session/value_text.h"
 #include "core/base/nearest_name.h"
+#include "core/sim/bound_text.h"
 #include "gcode/dialect.h"
 
 namespace app {
@@ -100,10 +101,11 @@ CommandResult show_block(PromptState& state, const std::string&) {
     text +=
         fmt::format("    begins at {:.2f} s, removes {:.1f} mm3\n", result.time, result.removed);
     for (const core::PairClearance& pair : result.pairs)
-        text += fmt::format("    {} / {}: {:.3f} to {} mm, {} mm to keep, {}\n",
+        text += fmt::format("    {} / {}: {} to {} mm, {} mm to keep, {}\n",
                             core::part_name(setup, pair.pair), core::body_name(setup, pair.pair),
-                            pair.lower, pair.found() ? fmt::format("{:.3f}", pair.upper) : "...",
-                            number_text(pair.allowance.distance), core::name_of(pair.verdict));
+                            core::clearance_at_least(pair.lower),
+                            pair.found() ? core::at_most(pair.upper) : "...",
+                            pair.allowance.distance, core::name_of(pair.verdict));
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include "app/prompt/location.h"
 #include "app/prompt/place_text.h"
 #include "app/report/text_layout.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -40,10 +41,11 @@ std::string clearance_column(const PromptState& state, size_t block) {
         text = "?";
     else if (result.deciding) {
         const core::PairClearance& pair = result.pairs[*result.deciding];
-        text =
-            pair.found() ? fmt::format("{:.3f}", pair.upper) : fmt::format(">{:.1f}", pair.lower);
+        text = pair.found() ? core::clearance_at_least(pair.lower)
+                            : ">" + core::clearance_at_least(pair.lower, 1);
     } else {
-        text = fmt::format(">{:.0f}", least_clearance(state.session.setup_at(block), result));
+        const double least = least_clearance(state.session.setup_at(block), result);
+        text = ">" + core::clearance_at_least(least, 0);
     }
     return text + (result.verdict == core::Verdict::clear && result.checked ? "  " : " !");
 }

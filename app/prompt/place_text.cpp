@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/report/text_layout.h"
-#include "app/session/value_text.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -26,10 +26,10 @@ std::string nearness_text(const core::Setup& setup, const core::BlockResult& res
     std::string text = fmt::format("{} to {}: {}", core::part_name(setup, pair->pair),
                                    core::body_name(setup, pair->pair), distance);
     const double keep = pair->allowance.distance;
-    if (keep > 0.0) text += fmt::format(", {} mm to keep", number_text(keep));
-    const double missing = keep - pair->upper;
-    if (result.verdict != core::Verdict::clear && missing > 0.0)
-        text += fmt::format(", {:.3f} mm short", missing);
+    if (keep > 0.0) text += fmt::format(", {} mm to keep", keep);
+    if (result.verdict != core::Verdict::clear && keep > pair->upper)
+        text +=
+            ", " + core::missing_text(keep - pair->upper, keep - pair->lower, "-") + " mm short";
     return text;
 }
 
@@ -107,12 +107,11 @@ std::string clearance_text(const core::Setup& setup, const core::BlockResult& re
     const core::PairClearance* pair = deciding_pair(result);
     if (!pair) {
         const double least = least_clearance(setup, result);
-        return least >= setup.search_limit ? fmt::format("more than {:g} mm", least)
-                                           : fmt::format("at least {:.3f} mm", least);
+        if (least >= setup.search_limit) return fmt::format("more than {} mm", least);
+        return fmt::format("at least {} mm", core::clearance_at_least(least));
     }
-    if (!pair->found()) return fmt::format("at least {:.3f} mm", pair->lower);
-    if (pair->upper - pair->lower < 0.0005) return fmt::format("{:.3f} mm", pair->upper);
-    return fmt::format("{:.3f}-{:.3f} mm", pair->lower, pair->upper);
+    if (!pair->found()) return fmt::format("at least {} mm", core::clearance_at_least(pair->lower));
+    return core::bounds_below(pair->lower, pair->upper, pair->allowance.distance, "-") + " mm";
 }
 
 std::string finding_text(const core::Finding& finding, size_t indent) {

@@ -22,8 +22,8 @@ constexpr const char* column_names =
 /// From `tightest_line` to `body`.
 std::string tightest_cells(const std::optional<Tightest>& tightest) {
     if (!tightest) return ",,,,,";
-    return fmt::format("{},{:.6f},{},{:.6f},{},{}", tightest->line, tightest->lower,
-                       tightest->upper ? fmt::format("{:.6f}", *tightest->upper) : std::string(),
+    return fmt::format("{},{},{},{},{},{}", tightest->line, tightest->lower,
+                       tightest->upper ? fmt::format("{}", *tightest->upper) : std::string(),
                        tightest->allowance, csv_cell(tightest->pair[0]),
                        csv_cell(tightest->pair[1]));
 }

@@ -29,12 +29,11 @@ std::string cell_of(const std::vector<std::string>& rules) {
 std::string clearance_cells(const CheckRun& run, const core::BlockResult& result) {
     constexpr const char* nothing = ",,,,,,,,,,,";
     if (result.motion == core::BlockMotion::none) return nothing;
-    if (!result.deciding)
-        return fmt::format("{:.6f}", least_clearance(run.setup, result)) + nothing;
+    if (!result.deciding) return fmt::format("{}", least_clearance(run.setup, result)) + nothing;
     const core::PairClearance& pair = result.pairs[*result.deciding];
-    std::string cells = fmt::format("{:.6f},", pair.lower);
-    if (pair.found()) cells += fmt::format("{:.6f}", pair.upper);
-    cells += fmt::format(",{:.6f},{},{}", pair.allowance.distance,
+    std::string cells = fmt::format("{},", pair.lower);
+    if (pair.found()) cells += fmt::format("{}", pair.upper);
+    cells += fmt::format(",{},{},{}", pair.allowance.distance,
                          csv_cell(core::part_name(run.setup, pair.pair)),
                          csv_cell(core::body_name(run.setup, pair.pair)));
     if (!pair.found()) return cells + ",,,,,,,";

@@ -10,6 +10,7 @@
 #include "app/report/text_layout.h"
 #include "app/setup/utf8_text.h"
 #include "app/version.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -20,8 +21,8 @@ constexpr size_t few = 12; // blocks of a kind, unless all are wanted
 
 std::string clearance_text(const BlockMeasure& block) {
     if (!block.margin) return "not known";
-    if (!block.upper) return fmt::format(">= {:.3f}", block.lower);
-    return fmt::format("{:.3f}", *block.upper);
+    if (!block.upper) return ">= " + core::clearance_at_least(block.lower);
+    return core::bounds_below(block.lower, *block.upper, block.allowance, "-");
 }
 
 std::string pair_text(const BlockMeasure& block) {

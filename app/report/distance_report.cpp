@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/sim/bound_text.h"
+
 namespace app {
 namespace {
 
@@ -37,10 +39,11 @@ std::string text_distance(const BodyPairDistance& found, const std::string& a, c
     if (found.upper == 0.0)
         text += "  distance      0: they touch or overlap\n";
     else
-        text += fmt::format("  distance      {:.6f} mm, certainly between {:.9f} and {:.9f}\n",
-                            found.upper, found.lower, found.upper);
-    text += fmt::format("  scan points   {:.6f} mm apart at least, of {} and {} points\n",
-                        found.distance, found.points_a, found.points_b);
+        text +=
+            fmt::format("  distance      {:.6f} mm, certainly between {} and {}\n", found.upper,
+                        core::clearance_at_least(found.lower, 9), core::at_most(found.upper, 9));
+    text += fmt::format("  scan points   {} mm apart at least, of {} and {} points\n",
+                        core::at_least(found.distance, 6), found.points_a, found.points_b);
     text += fmt::format("  nearest       ({:.4f}, {:.4f}, {:.4f}) and ({:.4f}, {:.4f}, {:.4f})",
                         found.on_a.x, found.on_a.y, found.on_a.z, found.on_b.x, found.on_b.y,
                         found.on_b.z);

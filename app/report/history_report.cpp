@@ -13,6 +13,7 @@
 #include "app/report/text_layout.h"
 #include "app/setup/utf8_text.h"
 #include "app/version.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -40,8 +41,9 @@ std::string nearest_text(const ProgramResult& result) {
     if (!result.tightest) return "nothing came near";
     const Tightest& tightest = *result.tightest;
     return fmt::format("{} mm {} / {}, line {}",
-                       tightest.upper ? fmt::format("{:.3f}", *tightest.upper)
-                                      : fmt::format(">= {:.3f}", tightest.lower),
+                       tightest.upper ? core::bounds_below(tightest.lower, *tightest.upper,
+                                                           tightest.allowance, "-")
+                                      : ">= " + core::clearance_at_least(tightest.lower),
                        tightest.pair[0], tightest.pair[1], tightest.line);
 }
 

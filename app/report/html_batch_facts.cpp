@@ -14,6 +14,7 @@
 #include "app/report/rule_tally.h"
 #include "app/report/skipped_group.h"
 #include "app/report/text_layout.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -67,9 +68,9 @@ std::string tightest_html(const BatchResult& batch) {
     return fmt::format("{}{:.3f} mm: clearance {}, {} mm to keep, {} / {}, <button type=\"button\" "
                        "class=\"link\" data-program=\"{}\">{}, line {}</button>",
                        tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
-                       bounds_text(tightest.lower, tightest.upper), mm_at_most(tightest.allowance),
-                       html_text(tightest.pair[0]), html_text(tightest.pair[1]), at,
-                       html_text(name), tightest.line);
+                       bounds_text(tightest.lower, tightest.upper),
+                       core::at_most(tightest.allowance), html_text(tightest.pair[0]),
+                       html_text(tightest.pair[1]), at, html_text(name), tightest.line);
 }
 
 std::string findings_text(const BatchResult& batch) {

@@ -7,6 +7,7 @@
 #include "app/report/html_bounds.h"
 #include "app/report/html_text.h"
 #include "app/report/text_layout.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -43,7 +44,7 @@ std::string picture_of(const CheckRun& run, const std::string& rule, size_t bloc
 }
 
 std::string clearance_of(const FindingStretch& stretch) {
-    return stretch.clearance ? " \xC2\xB7 " + mm_at_least(*stretch.clearance) + " mm"
+    return stretch.clearance ? " \xC2\xB7 " + core::clearance_at_least(*stretch.clearance) + " mm"
                              : std::string();
 }
 
@@ -114,8 +115,8 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
            + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
                          "\xC2\xB7 {1}, {2} mm to keep</button> <code>{3}</code></p>"
                          "</article>\n",
-                         block, bounds_text(pair.lower, upper), mm_at_most(pair.allowance.distance),
-                         html_text(trimmed(nearest->text)));
+                         block, bounds_text(pair.lower, upper),
+                         core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));
 }
 
 } // namespace

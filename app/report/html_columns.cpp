@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/report/html_text.h"
-#include "core/sim/verdict.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 
@@ -44,15 +44,11 @@ int64_t TextTable::index_of(const std::string& text) {
     return at->second;
 }
 
-int64_t um_below(double mm) {
-    return static_cast<int64_t>(std::floor(1e3 * (mm + core::resolution)));
-}
+int64_t um_below(double mm) { return static_cast<int64_t>(core::units_below(mm, 3)); }
 
 int64_t clearance_um(double lower) { return std::max<int64_t>(um_below(lower), 0); }
 
-int64_t um_above(double mm) {
-    return static_cast<int64_t>(std::ceil(1e3 * (mm - core::resolution)));
-}
+int64_t um_above(double mm) { return static_cast<int64_t>(core::units_above(mm, 3)); }
 
 int64_t steps_of(double value, double step) { return std::llround(value / step); }
 

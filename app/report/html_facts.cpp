@@ -10,6 +10,7 @@
 #include "app/report/text_layout.h"
 #include "app/report/text_report.h"
 #include "app/session/part_check.h"
+#include "core/sim/bound_text.h"
 #include "core/sim/path.h"
 #include "core/sim/timing.h"
 
@@ -32,7 +33,7 @@ std::string tightest_text(const CheckRun& run) {
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
     const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
     return fmt::format("{}, {} mm to keep: {} / {} in block {}, line {}",
-                       bounds_text(pair.lower, upper), mm_at_most(pair.allowance.distance),
+                       bounds_text(pair.lower, upper), core::at_most(pair.allowance.distance),
                        core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
                        core::value_of(block->block), block->line);
 }
@@ -84,7 +85,7 @@ std::string html_bound_terms(const CheckRun& run) {
                     "matter that may be between them; {} squares were worked out afresh at a finer "
                     "mesh size to decide a verdict.",
                     run.statistics.refined));
-    rows += term("chord", fmt::format("{:.4f} mm", core::chord_error(h)),
+    rows += term("chord", core::at_most(core::chord_error(h), 4) + " mm",
                  "Arcs are cut and checked as chords within this of them.");
     rows += term("path tolerance", fmt::format("{} mm", core::default_blend_tolerance),
                  "A control may round corners by this where the program does not say how. "
@@ -96,7 +97,7 @@ std::string html_bound_terms(const CheckRun& run) {
     rows += term("search limit", fmt::format("{} mm", run.setup.search_limit),
                  "Nothing farther away is measured.");
     if (const auto widest = widest_interval(run))
-        rows += term("widest interval", mm_at_most(*widest) + " mm",
+        rows += term("widest interval", core::at_most(*widest) + " mm",
                      "The most by which lower and upper bound of a deciding pair differ in any "
                      "block.");
     return rows;

@@ -7,6 +7,7 @@
 
 #include "app/report/text_layout.h"
 #include "app/session/part_check.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -56,17 +57,15 @@ std::string findings_text(const CheckRun& run) {
 }
 
 std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
-    if (!result.checked) return fmt::format("{:>15}", "not known");
+    if (!result.checked) return "not known";
     if (!result.deciding) {
         const double least = least_clearance(run.setup, result);
-        if (least >= run.setup.search_limit)
-            return fmt::format("{:>15}", fmt::format("> {:.0f}", least));
-        return fmt::format("{:>15}", fmt::format(">= {:.3f}", least));
+        if (least >= run.setup.search_limit) return "> " + core::clearance_at_least(least, 0);
+        return ">= " + core::clearance_at_least(least);
     }
     const core::PairClearance& pair = result.pairs[*result.deciding];
-    if (!pair.found()) return fmt::format("{:>15}", fmt::format(">= {:.3f}", pair.lower));
-    if (pair.upper - pair.lower < 0.0005) return fmt::format("{:>15.3f}", pair.upper);
-    return fmt::format("{:>7.3f}-{:<7.3f}", pair.lower, pair.upper);
+    if (!pair.found()) return ">= " + core::clearance_at_least(pair.lower);
+    return core::bounds_below(pair.lower, pair.upper, pair.allowance.distance, "-");
 }
 
 std::string blocks_text(const CheckRun& run) {
@@ -80,7 +79,7 @@ std::string blocks_text(const CheckRun& run) {
             pair = fmt::format("{} / {}", core::part_name(run.setup, near.pair),
                                core::body_name(run.setup, near.pair));
         }
-        text += fmt::format("{:>5} {:<5} {:>4} {} {:<17} {:<9} {}\n", block.line,
+        text += fmt::format("{:>5} {:<5} {:>4} {:>15} {:<17} {:<9} {}\n", block.line,
                             core::name_of(result.motion),
                             result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
                             clearance_text(run, result), clipped(pair, 17),
@@ -115,9 +114,9 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
         const std::string heading = "  tightest   ";
         const std::string tightest = fmt::format(
-            "line {}: {} / {}, {} mm, {:.3f} mm to keep", block->line,
+            "line {}: {} / {}, {} mm, {} mm to keep", block->line,
             core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
-            trimmed(clearance_text(run, block->result)), pair.allowance.distance);
+            clearance_text(run, block->result), core::at_most(pair.allowance.distance));
         text += heading + wrapped(tightest, heading.size()).substr(heading.size());
     }
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/bound_text.h"
+
 namespace app {
 namespace {
 
@@ -25,9 +27,10 @@ core::PairClearance clearance_of(const AskedPair& asked, double search_limit) {
 std::string nearness(const AskedPair& asked) {
     if (asked.allowance.distance <= core::resolution) return "run into each other";
     if (asked.may_overlap)
-        return fmt::format("meet; {:.3f} mm must be kept", asked.allowance.distance);
-    return fmt::format("may be as near as {:.3f} mm; {:.3f} mm must be kept", asked.lower,
-                       asked.allowance.distance);
+        return fmt::format("meet; {} mm must be kept", core::at_most(asked.allowance.distance));
+    return fmt::format("may be as near as {} mm; {} mm must be kept",
+                       core::clearance_at_least(asked.lower),
+                       core::at_most(asked.allowance.distance));
 }
 
 /// The worst pair that was refused; null if none was.

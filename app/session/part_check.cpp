@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/geom/mesh_bytes.h"
+#include "core/sim/bound_text.h"
 #include "core/sim/finding_text.h"
 
 namespace app {
@@ -22,8 +23,8 @@ core::Finding finding_of(const core::DeviationRegion& region) {
         fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over some {:.1f} mm2",
                     region.place.x, region.place.y, region.place.z, region.area);
     finding.message =
-        gouge ? fmt::format("{:.3f} mm of the part are missing {}.", region.amount, where)
-              : fmt::format("{:.3f} mm more than the part are left {}.", region.amount, where);
+        fmt::format("{} mm {} {}.", core::at_most(region.amount),
+                    gouge ? "of the part are missing" : "more than the part are left", where);
     if (gouge)
         finding.cure = region.block
                            ? "Look at the path, the tool's sizes and the offsets of this block."
@@ -75,13 +76,13 @@ void check_part(CheckRun& run) {
 }
 
 std::string facts_of(const core::PartComparison& comparison, double tolerance) {
-    return fmt::format("missing up to {:.3f} mm, left over up to {:.3f} mm; {} beyond {} mm; "
-                       "measured every {:.2g} mm",
-                       comparison.largest_gouge, comparison.largest_excess,
-                       comparison.regions.size() == 1
-                           ? "1 region"
-                           : fmt::format("{} regions", comparison.regions.size()),
-                       tolerance, comparison.between_samples);
+    return fmt::format(
+        "missing up to {} mm, left over up to {} mm; {} beyond {} mm; "
+        "measured every {} mm",
+        core::at_most(comparison.largest_gouge), core::at_most(comparison.largest_excess),
+        comparison.regions.size() == 1 ? "1 region"
+                                       : fmt::format("{} regions", comparison.regions.size()),
+        tolerance, core::at_most_figures(comparison.between_samples, 2));
 }
 
 core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path) {
@@ -105,8 +106,8 @@ core::Result<std::string> comparison_file(const CheckRun& run, const std::string
          fmt::format("yellow to red: part missing, {} to {} mm and more", tolerance,
                      5.0 * tolerance),
          fmt::format("cyan to blue: left over, {} to {} mm and more", tolerance, 5.0 * tolerance),
-         fmt::format("colours are the worst beside each corner; measured every {:.2g} mm",
-                     run.comparison->between_samples)},
+         fmt::format("colours are the worst beside each corner; measured every {} mm",
+                     core::at_most_figures(run.comparison->between_samples, 2))},
         colours);
 }
 

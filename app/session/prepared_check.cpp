@@ -11,6 +11,7 @@
 #include "app/session/timing_notes.h"
 #include "core/base/file_reads.h"
 #include "core/sim/allowance.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -35,9 +36,8 @@ core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcod
 
 /// What every check of this version takes for granted.
 void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
-    run.assumptions.push_back(
-        fmt::format("arcs are cut and checked as chords within {:.4f} mm of them",
-                    core::chord_error(setup.mesh_size)));
+    run.assumptions.push_back(fmt::format("arcs are cut and checked as chords within {} mm of them",
+                                          core::at_most(core::chord_error(setup.mesh_size), 4)));
     for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
         "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geom/mesh_bytes.h"
+#include "core/sim/bound_text.h"
 
 namespace app {
 namespace {
@@ -38,9 +39,9 @@ std::string facts_of(const SavedStock& saved) {
     if (saved.moves > 0 || saved.triangles == 0)
         return fmt::format("{}: the raw stock and {} moves; a set-up takes it as [stock] model",
                            saved.file, saved.moves);
-    std::string text =
-        fmt::format("{}: {} triangles, within {:.2g} mm of the model's points, lines {} mm apart",
-                    saved.file, saved.triangles, saved.error, saved.mesh_size);
+    std::string text = fmt::format(
+        "{}: {} triangles, within {} mm of the model's points, lines {} mm apart", saved.file,
+        saved.triangles, core::at_most_figures(saved.error, 2), saved.mesh_size);
     if (saved.lost > 0)
         text += fmt::format("; {} points on thinner details are missing", saved.lost);
     return text;
@@ -58,14 +59,14 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
     if (form == MeshForm::stl) {
         file.bytes = core::stl_bytes(
             surface.mesh,
-            fmt::format("feeler stock, mm; error {:.2g} at points, lines {:.4g} apart",
-                        file.facts.error, file.facts.mesh_size));
+            fmt::format("feeler stock, mm; error {} at points, lines {:.4g} apart",
+                        core::at_most_figures(file.facts.error, 2), file.facts.mesh_size));
         return file;
     }
     std::vector<std::string> comments = {
         "what is left of the stock, by feeler; mm, in the frame of the stock",
-        fmt::format("error: the points of the model lie within {:.3g} mm of this surface",
-                    file.facts.error),
+        fmt::format("error: the points of the model lie within {} mm of this surface",
+                    core::at_most_figures(file.facts.error, 3)),
         fmt::format("between scan lines {} mm apart the surface is interpolated",
                     file.facts.mesh_size)};
     if (surface.lost > 0)

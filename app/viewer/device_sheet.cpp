@@ -73,7 +73,7 @@ std::string exact_words(const ViewModel& model, const Subject& subject) {
     const BlockRow& row = model.row();
     if (!row.is_known || !row.lower) return verdict;
     return fmt::format("{}, {}{} {}", verdict, row.upper ? "" : "> ",
-                       length_text(model, *row.lower, row.upper ? 2 : 0), length_unit(model));
+                       length_at_least(model, *row.lower, row.upper ? 2 : 0), length_unit(model));
 }
 
 /// How the exact engine stands to the answer.

@@ -40,8 +40,8 @@ std::string place_text(const ViewModel& model, const FindingStretch& stretch) {
 
 /// What is left, or what is missing where nothing is known to be left.
 std::string worst_text(const ViewModel& model, const FindingStretch& stretch) {
-    if (stretch.clearance) return length_text(model, *stretch.clearance);
-    if (stretch.shortfall > 0.0) return "short " + length_text(model, stretch.shortfall);
+    if (stretch.clearance) return length_at_least(model, *stretch.clearance);
+    if (stretch.shortfall > 0.0) return "short " + length_at_most(model, stretch.shortfall);
     return {};
 }
 

@@ -19,7 +19,7 @@ void draw_number(Frame& frame) {
     text(frame.fonts.small, frame.look.color(Role::dim), "CLEARANCE");
     std::string number = "\xE2\x80\x94";
     if (row.is_known && row.lower)
-        number = (row.upper ? "" : ">") + length_text(model, *row.lower, row.upper ? 2 : 0);
+        number = (row.upper ? "" : ">") + length_at_least(model, *row.lower, row.upper ? 2 : 0);
     const ImVec2 at = ImGui::GetCursorPos();
     text(frame.fonts.big, frame.look.of(row, Role::text), number);
     if (!row.lower || !row.is_known) return;
@@ -41,12 +41,12 @@ std::string sentence_of(const ViewModel& model, const BlockRow& row) {
     if (!row.is_judged) return "nothing can be said of this motion";
     if (!row.upper) return "nothing is nearer than the search goes";
     const std::string unit = length_unit(model);
-    const std::string allowance = "allowance " + length_text(model, *row.allowance) + " " + unit;
+    const std::string allowance = "allowance " + length_at_most(model, *row.allowance) + " " + unit;
     if (row.verdict == core::Verdict::collision) return allowance + " \xC2\xB7 collision";
     const double margin = *row.lower - *row.allowance;
     if (margin >= -core::resolution)
-        return allowance + " \xC2\xB7 " + length_text(model, margin) + " " + unit + " to spare";
-    return allowance + " \xC2\xB7 short by " + length_text(model, -margin) + " " + unit;
+        return allowance + " \xC2\xB7 " + length_at_least(model, margin) + " " + unit + " to spare";
+    return allowance + " \xC2\xB7 short by " + length_at_most(model, -margin) + " " + unit;
 }
 
 /// Violation, near, clear in proportion, up to six times the allowance, and where the block is.
@@ -90,8 +90,8 @@ void draw_pair(Frame& frame) {
                   fmt::format("{:.0f} % of block",
                               std::clamp(100.0 * row.witness_time / row.duration, 0.0, 100.0)));
     value_row(frame, "Proven",
-              fmt::format("{} \xE2\x80\xA6 {} {}", length_text(frame.model, *row.lower, 3),
-                          length_text(frame.model, *row.upper, 3), length_unit(frame.model)));
+              fmt::format("{} \xE2\x80\xA6 {} {}", length_at_least(frame.model, *row.lower, 3),
+                          length_at_most(frame.model, *row.upper, 3), length_unit(frame.model)));
     if (ImGui::Button("Look at it", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
         frame.perform(Command::frame_witness);
     tip(frame, tip_of(Command::frame_witness));

@@ -57,9 +57,9 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
 std::string clearance_text(const ViewModel& model, const BlockRow& row) {
     if (row.is_known && !row.is_judged && moves(row)) return "?";
     if (!row.is_known || !row.lower) return {};
-    if (!row.upper) return ">" + length_text(model, *row.lower, 0);
+    if (!row.upper) return ">" + length_at_least(model, *row.lower, 0);
     // The lower one is proven; where the two differ visibly the sign says so.
-    return length_text(model, *row.lower);
+    return length_at_least(model, *row.lower);
 }
 
 void draw_background(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,

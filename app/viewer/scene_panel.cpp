@@ -122,7 +122,7 @@ void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
 
 std::string words_of(const ViewModel& model, const BlockRow& row) {
     if (row.verdict == core::Verdict::collision) return "collision";
-    return length_text(model, *row.lower) + " " + length_unit(model);
+    return length_at_least(model, *row.lower) + " " + length_unit(model);
 }
 
 /// An end of an axis, on which a click looks along it.

@@ -87,7 +87,7 @@ void draw_allowance(Frame& frame, ImDrawList& list, const Bars& bars, double all
     for (float x = bars.area.x; x < bars.area.x + bars.area.width; x += frame.px(8))
         list.AddLine({x, y}, {std::min(x + frame.px(4.5), bars.area.x + bars.area.width), y}, color,
                      1.2F);
-    const std::string words = "allowance " + length_text(frame.model, allowance);
+    const std::string words = "allowance " + length_at_most(frame.model, allowance);
     ImFont* const font = frame.fonts.small;
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
     const ImVec2 at(bars.area.x + frame.px(6), y - size.y - frame.px(1));
@@ -146,7 +146,8 @@ void show_hovered(Frame& frame, size_t block) {
     text(frame.fonts.mono, frame.look.color(Role::dim), row.text);
     if (row.lower && row.is_known)
         text(frame.fonts.text, frame.look.of(row, Role::text),
-             fmt::format("{} {} {}", length_text(frame.model, *row.lower), length_unit(frame.model),
+             fmt::format("{} {} {}", length_at_least(frame.model, *row.lower),
+                         length_unit(frame.model),
                          row.part.empty() ? "" : row.part + " \xE2\x80\x93 " + row.body));
     if (const std::string slack = slack_words(frame.model, block); !slack.empty()) {
         const bool stops = stops_machine(answer_of(frame.model.device.study.get(), block));

@@ -6,9 +6,20 @@
 #include <fmt/format.h>
 
 #include "app/viewer/navigation.h"
+#include "core/sim/bound_text.h"
 
 namespace app::viewer {
 namespace {
+
+/// A length in the unit that is shown.
+struct ShownLength {
+    double value = 0.0;
+    int decimals = 0;
+
+    ShownLength(const ViewModel& model, double mm, int decimals_of_mm)
+        : value(model.settings.inch ? mm / 25.4 : mm),
+          decimals(model.settings.inch ? decimals_of_mm + 2 : decimals_of_mm) {}
+};
 
 /// What was said of one program says nothing of another.
 void forget_place(ViewModel& model) {
@@ -213,10 +224,18 @@ std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optio
 }
 
 std::string length_text(const ViewModel& model, double mm, int decimals) {
-    const double factor = model.settings.inch ? 1.0 / 25.4 : 1.0;
-    const double value = mm * factor;
-    return fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value,
-                       model.settings.inch ? decimals + 2 : decimals);
+    const ShownLength shown(model, mm, decimals);
+    return fmt::format("{:.{}f}", shown.value == 0.0 ? 0.0 : shown.value, shown.decimals);
+}
+
+std::string length_at_least(const ViewModel& model, double mm, int decimals) {
+    const ShownLength shown(model, mm, decimals);
+    return core::clearance_at_least(shown.value, shown.decimals);
+}
+
+std::string length_at_most(const ViewModel& model, double mm, int decimals) {
+    const ShownLength shown(model, mm, decimals);
+    return core::at_most(shown.value, shown.decimals);
 }
 
 const char* length_unit(const ViewModel& model) { return model.settings.inch ? "in" : "mm"; }

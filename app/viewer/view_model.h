@@ -149,6 +149,12 @@ std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optio
 
 /// A length as it is shown: mm or inch, without its unit.
 std::string length_text(const ViewModel& model, double mm, int decimals = 2);
+
+/// A lower bound of a clearance in the same way: never more than it is, and never below 0.
+std::string length_at_least(const ViewModel& model, double mm, int decimals = 2);
+
+/// An upper bound, or what must be kept: never less than it is.
+std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);
 const char* length_unit(const ViewModel& model);
 
 } // namespace app::viewer

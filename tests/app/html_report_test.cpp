@@ -133,10 +133,6 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
 }
 
 TEST(HtmlBounds, ShowNoLowerBoundLargerThanItIs) {
-    EXPECT_EQ(mm_at_least(1.9999), "1.999");
-    EXPECT_EQ(mm_at_least(2.0), "2.000");
-    EXPECT_EQ(mm_at_least(-0.0000011), "0.000");
-    EXPECT_EQ(mm_at_most(2.0001), "2.001");
     EXPECT_EQ(bounds_text(1.9996, {}), "1.999 mm or more");
     EXPECT_EQ(bounds_text(1.9996, 1.9996), "1.999 mm");
     EXPECT_EQ(bounds_text(1.9996, 2.0024), "1.999 to 2.003 mm");

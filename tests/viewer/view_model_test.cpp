@@ -85,5 +85,17 @@ TEST(ViewModel, MarksABlockByTheWorstOfItsFindings) {
     EXPECT_EQ(model.offending, std::vector<size_t>{5});
 }
 
+TEST(LengthText, RoundsLowerBoundsDownAndWhatMustBeKeptUp) {
+    ViewModel model;
+    EXPECT_EQ(length_at_least(model, 1.9996), "1.99");
+    EXPECT_EQ(length_at_least(model, 49.6, 0), "49");
+    EXPECT_EQ(length_at_least(model, -0.0004), "0.00");
+    EXPECT_EQ(length_at_least(model, 2.0), "2.00");
+    EXPECT_EQ(length_at_most(model, 2.0004), "2.01");
+    model.settings.inch = true;
+    EXPECT_EQ(length_at_least(model, 25.3999), "0.9999");
+    EXPECT_EQ(length_at_most(model, 25.4), "1.0000");
+}
+
 } // namespace
 } // namespace viewer_test

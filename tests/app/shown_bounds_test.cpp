@@ -1,0 +1,137 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/batch/program_diff.h"
+#include "app/prompt/place_text.h"
+#include "app/report/batch_report.h"
+#include "app/report/csv_report.h"
+#include "app/report/diff_report.h"
+#include "app/report/distance_report.h"
+#include "app/report/history_report.h"
+#include "app/report/text_report.h"
+
+namespace app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// A run whose deciding pairs all have these bounds.
+CheckRun with_bounds(double lower, double upper, double keep) {
+    const std::string folder = std::string(FEELER_SOURCE_DIR) + "/assets/";
+    CheckRun run = *run_check({.program = folder + "programs/clamped_plate_low.nc",
+                               .setup = folder + "setups/clamped_plate.toml",
+                               .detail = core::Detail::deciding_pair});
+    for (CheckedBlock& block : run.blocks) {
+        if (!block.result.deciding) continue;
+        core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+        pair.lower = lower;
+        pair.upper = upper;
+        pair.allowance.distance = keep;
+    }
+    return run;
+}
+
+ProgramResult with_tightest(double lower, std::optional<double> upper, double keep) {
+    return {.program = "a.nc",
+            .tightest = Tightest{.line = 7,
+                                 .pair = {"holder", "clamp-1"},
+                                 .lower = lower,
+                                 .upper = upper,
+                                 .allowance = keep}};
+}
+
+std::string history_of(const ProgramResult& result) {
+    KeptVersion version;
+    version.result = result;
+    return history_text("a.nc", {version});
+}
+
+std::string diff_of_bounds(double lower, std::optional<double> upper, double keep) {
+    ProgramDiff diff;
+    ChangedBlock changed;
+    changed.after = {.line = 7,
+                     .text = "G0",
+                     .pair = {"holder", "clamp-1"},
+                     .lower = lower,
+                     .upper = upper,
+                     .allowance = keep,
+                     .margin = lower - keep};
+    changed.before = changed.after;
+    diff.nearer.push_back(changed);
+    return diff_text(diff, true);
+}
+
+TEST(TextReport, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    const auto text = [](double lower, double upper, double keep) {
+        return text_report(with_bounds(lower, upper, keep), {.blocks = true});
+    };
+    EXPECT_THAT(text(1.9996, 1.9996, 2.0), HasSubstr(" 1.999 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9996, 1.9996, 2.0), HasSubstr("          1.999 "));
+    EXPECT_THAT(text(1.9006, 2.0024, 2.0), HasSubstr(" 1.900-2.003 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9006, 2.0024, 2.0), HasSubstr("    1.900-2.003 "));
+    EXPECT_THAT(text(1.9, 1.9996, 2.0), HasSubstr(" 1.900-1.999600 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(2.0000000001, 2.0000000001, 2.0), HasSubstr(" 2.000 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(2.0002, 2.0002, 2.0004), HasSubstr(" 2.000 mm, 2.001 mm to keep"));
+    EXPECT_THAT(text(-0.0004, 0.0, 2.0), HasSubstr(" 0.000 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9996, core::infinity, 2.0), HasSubstr(" >= 1.999 "));
+}
+
+TEST(TextReport, SaysNoMoreThanTheSearchWentThrough) {
+    CheckRun run = with_bounds(1.0, 1.0, 2.0);
+    for (CheckedBlock& block : run.blocks) {
+        block.result.deciding.reset();
+        block.result.pairs.clear();
+        block.result.checked = true;
+    }
+    run.setup.search_limit = 49.6;
+    EXPECT_THAT(text_report(run, {.blocks = true}), HasSubstr("> 49 "));
+}
+
+TEST(Csv, HasBoundsToTheLastBit) {
+    const double lower = 1.9999999000000002, upper = 2.0 - 1e-9, keep = 2.0;
+    const std::string whole = csv_report(with_bounds(lower, upper, keep));
+    EXPECT_THAT(whole, HasSubstr(",1.9999999000000002,1.999999999,2,"));
+    const std::string row = batch_csv_report({.programs = {with_tightest(lower, upper, keep)}});
+    EXPECT_THAT(row, HasSubstr(",7,1.9999999000000002,1.999999999,2,holder,clamp-1,"));
+}
+
+TEST(HistoryText, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    EXPECT_THAT(history_of(with_tightest(1.9996, 1.9996, 2.0)), HasSubstr(" 1.999 mm holder"));
+    EXPECT_THAT(history_of(with_tightest(1.9006, 2.0024, 2.0)), HasSubstr(" 1.900-2.003 mm"));
+    EXPECT_THAT(history_of(with_tightest(1.9, 1.9996, 2.0)), HasSubstr(" 1.900-1.999600 mm"));
+    EXPECT_THAT(history_of(with_tightest(49.9996, {}, 2.0)), HasSubstr(" >= 49.999 mm"));
+}
+
+TEST(DiffText, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    EXPECT_THAT(diff_of_bounds(1.9996, 1.9996, 2.0), HasSubstr(" 1.999 -> 1.999 mm"));
+    EXPECT_THAT(diff_of_bounds(1.9006, 2.0024, 2.0), HasSubstr("-> 1.900-2.003 mm"));
+    EXPECT_THAT(diff_of_bounds(1.9, 1.9996, 2.0), HasSubstr("-> 1.900-1.999600 mm"));
+    EXPECT_THAT(diff_of_bounds(49.9996, {}, 2.0), HasSubstr("-> >= 49.999 mm"));
+}
+
+TEST(DistanceText, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    BodyPairDistance found;
+    found.distance = 5.0000009;
+    found.lower = 4.9999999956;
+    found.upper = 5.0000000014;
+    const std::string text = text_distance(found, "a.stl", "b.stl", false);
+    EXPECT_THAT(text, HasSubstr(" 5.000000 mm, certainly between 4.999999995 and 5.000000002"));
+    EXPECT_THAT(text, HasSubstr(" 5.000000 mm apart at least"));
+}
+
+TEST(Prompt, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    const auto text = [](double lower, double upper, double keep) {
+        const CheckRun run = with_bounds(lower, upper, keep);
+        for (const CheckedBlock& block : run.blocks)
+            if (block.result.deciding) return clearance_text(run.setup, block.result);
+        return std::string("none");
+    };
+    EXPECT_EQ(text(1.9996, 1.9996, 2.0), "1.999 mm");
+    EXPECT_EQ(text(1.9006, 2.0024, 2.0), "1.900-2.003 mm");
+    EXPECT_EQ(text(1.9, 1.9996, 2.0), "1.900-1.999600 mm");
+    EXPECT_EQ(text(49.9996, core::infinity, 2.0), "at least 49.999 mm");
+}
+
+} // namespace
+} // namespace app
