@@ -282,9 +282,9 @@ std::string coprocessor_csv(const CoprocessorResult& result) {
             const std::string cell = value.is_null() ? ""
                                      : value.is_number_float()
                                          ? fmt::format("{:.9f}", value.get<double>())
-                                     : value.is_string() ? value.get<std::string>()
+                                     : value.is_string() ? csv_cell(value.get<std::string>())
                                                          : value.dump();
-            row += (row.empty() ? "" : ",") + csv_cell(cell);
+            row += (row.empty() ? "" : ",") + cell;
         }
         text += row + "\r\n";
     }

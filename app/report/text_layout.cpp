@@ -1,6 +1,7 @@
 #include "app/report/text_layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -63,10 +64,34 @@ std::string line_ranges(std::vector<uint32_t> lines) {
     return text;
 }
 
+namespace {
+
+/// Whether a spreadsheet takes a cell for a formula, or looks for one behind its first character.
+/// The last four are = + - @ at full width, which some count as the same.
+bool is_formula(std::string_view cell) {
+    constexpr std::array<std::string_view, 12> beginnings = {"=",
+                                                             "+",
+                                                             "-",
+                                                             "@",
+                                                             "\t",
+                                                             "\r",
+                                                             "\n",
+                                                             std::string_view("\0", 1),
+                                                             "\xEF\xBC\x9D",
+                                                             "\xEF\xBC\x8B",
+                                                             "\xEF\xBC\x8D",
+                                                             "\xEF\xBC\xA0"};
+    return std::any_of(beginnings.begin(), beginnings.end(),
+                       [&](std::string_view beginning) { return cell.starts_with(beginning); });
+}
+
+} // namespace
+
 std::string csv_cell(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    const std::string cell = is_formula(text) ? "'" + text : text;
+    if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
     std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + "\"";
 }
 

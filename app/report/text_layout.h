@@ -21,7 +21,9 @@ std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
 /// "4, 7-9, 12"; after a dozen ranges, only where they end.
 std::string line_ranges(std::vector<uint32_t> lines);
 
-/// A cell of comma-separated values, quoted where it has to be.
+/// A text, such as a name or a block, as a cell of comma-separated values: quoted where it has to
+/// be, and with an apostrophe before what a spreadsheet would take for a formula and carry out.
+/// Numbers need none of that.
 std::string csv_cell(const std::string& text);
 
 /// "1 error", "2 errors".

@@ -289,6 +289,23 @@ TEST(BatchReport, HasARowForEachProgram) {
     EXPECT_EQ(cells, (std::vector<size_t>{20, 20, 20, 20, 20}));
 }
 
+TEST(BatchReport, HasNoCellThatASpreadsheetCarriesOut) {
+    const BatchResult batch{
+        .programs = {{.program = "=1+1.nc",
+                      .setup = "+vise.toml",
+                      .error = KeptError{.file = "@a.nc", .line = 3, .message = "is wrong"},
+                      .tightest = Tightest{.line = 7,
+                                           .pair = {"-holder", "=clamp"},
+                                           .lower = -2e-6,
+                                           .upper = 0.0}}},
+        .unchecked = {"-late.nc"}};
+    const std::string rows = batch_csv_report(batch);
+    EXPECT_THAT(rows, HasSubstr("\r\n'=1+1.nc,'+vise.toml,"));
+    EXPECT_THAT(rows, HasSubstr(",7,-2e-06,0,0,'-holder,'=clamp,"));
+    EXPECT_THAT(rows, HasSubstr(",'@a.nc:3: is wrong\r\n"));
+    EXPECT_THAT(rows, HasSubstr("\r\n'-late.nc,"));
+}
+
 TEST(BatchText, HasTheMessageOfTheWorstOfARuleAndEachLineOnce) {
     ProgramResult program{.program = "a.nc",
                           .findings = {near_miss("G0 X5.", 7), near_miss("G0", 7)}};

@@ -6,6 +6,7 @@
 #include "app/commands/progress.h"
 #include "app/report/csv_report.h"
 #include "app/report/json_report.h"
+#include "app/report/text_layout.h"
 #include "app/report/text_report.h"
 
 namespace app {
@@ -101,6 +102,39 @@ TEST(Csv, HasARowForEachBlockWithTheNumbersOfJson) {
         }
     }
     EXPECT_TRUE(has_finding);
+}
+
+TEST(Csv, HasNoTextThatASpreadsheetCarriesOut) {
+    for (const std::string text : {"=1+1", "+1", "-1", "@SUM(A1)", "\tG0", "\uFF1D1"})
+        EXPECT_EQ(csv_cell(text), "'" + text);
+    EXPECT_EQ(csv_cell("\r=1"), "\"'\r=1\"");
+    EXPECT_EQ(csv_cell("=HYPERLINK(\"x\",\"y\")"), "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\"");
+    for (const std::string text : {"", "G0 X-1", "#1=2", "(=1)", "'=1", " a"})
+        EXPECT_EQ(csv_cell(text), text);
+}
+
+TEST(Csv, LeavesNumbersNumbersBesideTextsThatWouldBeFormulas) {
+    CheckRun run = clamped_plate(core::Detail::deciding_pair);
+    CheckedBlock& block = run.blocks.back();
+    for (CheckedBlock& each : run.blocks)
+        if (each.result.deciding) block.result = each.result;
+    ASSERT_TRUE(block.result.deciding);
+    core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+    pair.on_tool.x = -12.5;
+    pair.pair = {.part = core::PartKind::flutes, .fixture = 0};
+    run.setup.fixtures[0].name = "@vise";
+    block.file = "-sub.nc";
+    block.text = "=cmd|' /C calc'!A0";
+    const auto rows = lines_of(csv_report(run));
+    const auto names = cells_of(rows[0]), cells = cells_of(rows.back());
+    const auto cell = [&](const std::string& name) {
+        return cells[static_cast<size_t>(std::find(names.begin(), names.end(), name)
+                                         - names.begin())];
+    };
+    EXPECT_EQ(cell("file"), "'-sub.nc");
+    EXPECT_EQ(cell("text"), "'=cmd|' /C calc'!A0");
+    EXPECT_EQ(cell("body"), "'@vise");
+    EXPECT_EQ(cell("part_x"), "-12.500000");
 }
 
 TEST(VerdictOnly, FindsTheSameAsAFullCheck) {
