@@ -12,6 +12,7 @@
 #include "app/commands/line_reader.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/report/text_layout.h"
 
 namespace app {
 namespace {
@@ -29,7 +30,7 @@ struct Options {
 };
 
 void print(const std::string& text, FILE* to = stdout) {
-    std::fputs(text.c_str(), to);
+    std::fputs(printable(text).c_str(), to);
     std::fflush(to);
 }
 

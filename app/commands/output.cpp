@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/report/text_layout.h"
 #include "app/report/text_report.h"
 
 namespace app {
@@ -146,7 +147,7 @@ ExitCode failed(const core::Error& error) {
 }
 
 void print_note(const std::string& text) {
-    std::fputs(text.c_str(), stderr);
+    std::fputs(printable(text).c_str(), stderr);
     std::fflush(stderr);
 }
 

@@ -52,7 +52,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Prints to standard error; what cannot be written there is lost.
+/// Prints to standard error, without control characters; what cannot be written there is lost.
 void print_error(const core::Error& error);
 void print_note(const std::string& text);
 

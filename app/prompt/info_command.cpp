@@ -111,8 +111,8 @@ CommandResult show_block(PromptState& state, const std::string&) {
 
 CommandResult show_program(PromptState& state, const std::string&) {
     const CheckRun& record = state.session.record();
-    std::string text =
-        fmt::format("{}, dialect {}\n", record.program_file, gcode::dialect(record.dialect).name);
+    std::string text = fmt::format("{}, dialect {}\n", trimmed(record.program_file),
+                                   gcode::dialect(record.dialect).name);
     text += fmt::format(
         "{} known ({:.0f} % of the program), {}\n", counted(record.blocks.size(), "block"),
         100.0 * state.session.recorded_share(), counted(record.findings.size(), "finding"));

@@ -99,7 +99,7 @@ Condition::Subject subject_of(const PromptState& state) {
 
 std::string line_text(const CheckedBlock& block) {
     if (block.file.empty()) return fmt::format("line {}", block.line);
-    return fmt::format("line {} of {}", block.line, file_name(block.file));
+    return fmt::format("line {} of {}", block.line, trimmed(file_name(block.file)));
 }
 
 std::string clearance_text(const core::Setup& setup, const core::BlockResult& result) {

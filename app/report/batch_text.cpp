@@ -55,7 +55,7 @@ std::string findings_text(const ProgramResult& result, const BatchStyle& style) 
     for (const auto& [key, group] : groups) {
         const KeptFinding& worst = *group.worst;
         std::string line = fmt::format("{} {}", core::name_of(worst.severity), worst.rule);
-        if (!worst.file.empty()) line += " in " + worst.file;
+        if (!worst.file.empty()) line += " in " + trimmed(worst.file);
         if (!group.lines.empty())
             line += fmt::format(", line{} {}", group.lines.size() == 1 ? "" : "s",
                                 line_ranges({group.lines.begin(), group.lines.end()}));
@@ -164,7 +164,7 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     if (style.quiet && status_of(result) == 0) return {};
     const Outcome outcome = outcome_of(result);
     const std::string word = fmt::format("{:<10}", name_of(outcome));
-    std::string text = coloured(word, colour_of(outcome), style) + " " + trimmed(result.program);
+    std::string text = " " + trimmed(result.program);
     const std::string counts = counts_text(result);
     if (!counts.empty()) text += ": " + counts;
     text += "\n";
@@ -172,7 +172,7 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     text += findings_text(result, style);
     for (size_t i = 0; style.verbose && i < result.assumptions.size(); ++i)
         text += wrapped("assumed: " + result.assumptions[i], 11, 2);
-    return text;
+    return coloured(word, colour_of(outcome), style) + printable(text);
 }
 
 std::string batch_summary(const BatchResult& batch, double seconds, const BatchStyle& style) {
@@ -183,7 +183,7 @@ std::string batch_summary(const BatchResult& batch, double seconds, const BatchS
     const std::string verdicts = verdicts_text(batch);
     text += (verdicts.empty() ? verdicts : ": " + verdicts) + "\n" + rules_text(batch);
     if (seconds >= 0.0) text += slowest_text(batch);
-    return text + missing_text(batch, style);
+    return printable(text + missing_text(batch, style));
 }
 
 std::string batch_text(const BatchResult& batch, const BatchStyle& style) {

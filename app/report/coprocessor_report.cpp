@@ -191,8 +191,8 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     const DeviceFigures f = figures(result);
     const EngineAgreement both = agreement(result.run);
     std::string text = fmt::format("{}: beside a coprocessor, {} elements of {} threads, {} MHz\n",
-                                   result.run.check.program_file, device.elements, device.threads,
-                                   device.clock_mhz);
+                                   trimmed(result.run.check.program_file), device.elements,
+                                   device.threads, device.clock_mhz);
     const auto add = [&](const std::string& heading, const std::string& words) {
         const std::string head = fmt::format("  {:<11}", heading);
         text += head + wrapped(words, head.size()).substr(head.size());
@@ -221,7 +221,7 @@ std::string coprocessor_text(const CoprocessorResult& result) {
                                "its clear blocks refused, {} cannot be asked",
                                core::name_of(result.run.check.verdict), both.missed,
                                both.false_alarms, both.not_asked));
-    return text;
+    return printable(text);
 }
 
 std::string coprocessor_json(const CoprocessorResult& result) {

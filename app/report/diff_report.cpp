@@ -26,7 +26,7 @@ std::string clearance_text(const BlockMeasure& block) {
 }
 
 std::string pair_text(const BlockMeasure& block) {
-    return block.pair[0].empty() ? "" : fmt::format("{} / {}", block.pair[0], block.pair[1]);
+    return block.pair[0].empty() ? "" : trimmed(block.pair[0]) + " / " + trimmed(block.pair[1]);
 }
 
 /// "3.200 -> 0.120 mm, 3.080 nearer, holder / clamp-1". Between two pairs of bodies, which may have
@@ -54,7 +54,7 @@ std::string block_text(const ChangedBlock& changed) {
     const BlockMeasure &was = changed.before, &is = changed.after;
     std::string line = was.line == is.line ? fmt::format("line {}", is.line)
                                            : fmt::format("line {} -> {}", was.line, is.line);
-    if (!is.file.empty()) line += " of " + is.file;
+    if (!is.file.empty()) line += " of " + trimmed(is.file);
     std::string text = fmt::format("  {:<18} {}\n", line, clipped(trimmed(is.text), 56));
     text += "      " + change_text(changed);
     if (was.verdict != is.verdict)
@@ -80,7 +80,8 @@ std::string findings_text(const char* title, const std::vector<KeptFinding>& fin
 }
 
 std::string name_of_version(const ProgramResult& result) {
-    return result.setup.empty() ? result.program : result.program + " with " + result.setup;
+    return trimmed(result.setup.empty() ? result.program
+                                        : result.program + " with " + result.setup);
 }
 
 Json block_json(const BlockMeasure& block) {
@@ -129,7 +130,7 @@ std::string diff_text(const ProgramDiff& diff, bool all) {
                         duration_text(diff.after.cycle_time));
     text += fmt::format("{} -> {}\n", verdict_text(diff.before.verdict),
                         verdict_text(diff.after.verdict));
-    return text;
+    return printable(text);
 }
 
 std::string diff_json(const ProgramDiff& diff) {

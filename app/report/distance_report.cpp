@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/report/text_layout.h"
 #include "core/sim/bound_text.h"
 
 namespace app {
@@ -35,7 +36,7 @@ std::string json_distance(const BodyPairDistance& found) {
 
 std::string text_distance(const BodyPairDistance& found, const std::string& a, const std::string& b,
                           bool swept) {
-    std::string text = fmt::format("{} to {}\n", a, b);
+    std::string text = fmt::format("{} to {}\n", trimmed(a), trimmed(b));
     if (found.upper == 0.0)
         text += "  distance      0: they touch or overlap\n";
     else
@@ -54,7 +55,7 @@ std::string text_distance(const BodyPairDistance& found, const std::string& a, c
     text += fmt::format("  seconds       model {:.3f}, tree {:.3f}, query {:.6f}, exact {:.6f}\n",
                         found.model_seconds, found.build_seconds, found.query_seconds,
                         found.exact_seconds);
-    return text;
+    return printable(text);
 }
 
 } // namespace app

@@ -11,7 +11,7 @@ std::string finding_line(const KeptFinding& finding) {
     std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
     if (finding.line == 0) return text;
     text += fmt::format(", line {}", finding.line);
-    if (!finding.file.empty()) text += " of " + finding.file;
+    if (!finding.file.empty()) text += " of " + trimmed(finding.file);
     return text + ": " + clipped(trimmed(finding.text), 40);
 }
 

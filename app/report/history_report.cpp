@@ -44,7 +44,7 @@ std::string nearest_text(const ProgramResult& result) {
                        tightest.upper ? core::bounds_below(tightest.lower, *tightest.upper,
                                                            tightest.allowance, "-")
                                       : ">= " + core::clearance_at_least(tightest.lower),
-                       tightest.pair[0], tightest.pair[1], tightest.line);
+                       trimmed(tightest.pair[0]), trimmed(tightest.pair[1]), tightest.line);
 }
 
 std::string findings_text(const ProgramResult& result) {
@@ -83,7 +83,7 @@ std::string version_text(const KeptVersion& kept, const KeptVersion* earlier) {
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
                         duration_text(result.cycle_time), findings_text(result));
     text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
-                        kept.setup.empty() ? "set-up inferred" : "set-up " + kept.setup,
+                        kept.setup.empty() ? "set-up inferred" : "set-up " + trimmed(kept.setup),
                         kept.version.substr(0, kept.version.find(' ')));
     return earlier ? text + change_text(change_between(earlier->result, result)) : text;
 }
@@ -99,10 +99,11 @@ Json change_json(const ProgramChange& change) {
 } // namespace
 
 std::string history_text(const std::string& program, const std::vector<KeptVersion>& versions) {
-    std::string text = fmt::format("{}: {}\n", program, counted(versions.size(), "version"));
+    std::string text =
+        fmt::format("{}: {}\n", trimmed(program), counted(versions.size(), "version"));
     for (size_t i = 0; i < versions.size(); ++i)
         text += "\n" + version_text(versions[i], before(versions, i));
-    return text;
+    return printable(text);
 }
 
 std::string history_json(const std::string& program, const std::vector<KeptVersion>& versions) {

@@ -7,11 +7,39 @@
 
 #include <fmt/format.h>
 
+#include "app/setup/utf8_text.h"
+
 namespace app {
 
-std::string trimmed(std::string_view text) {
+namespace {
+
+/// Bytes of the control character that stands at a place: of the first 32, of DEL, and of those
+/// beyond it, which are two bytes in UTF-8. 0: there is none.
+size_t control_at(std::string_view text, size_t at) {
+    const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(at) < ' ' || byte(at) == 0x7F) return 1;
+    const bool is_pair = byte(at) == 0xC2 && at + 1 < text.size();
+    return is_pair && byte(at + 1) >= 0x80 && byte(at + 1) < 0xA0 ? 2 : 0;
+}
+
+/// The same with a blank in place of each control character but those that are to stay.
+std::string without_controls(std::string_view text, std::string_view stay) {
     std::string result;
-    for (const char c : text) result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    for (size_t i = 0; i < text.size();) {
+        const size_t length = control_at(text, i);
+        const bool is_control = length > 0 && stay.find(text[i]) == std::string_view::npos;
+        result += is_control ? ' ' : text[i];
+        i += is_control ? length : 1;
+    }
+    return result;
+}
+
+} // namespace
+
+std::string printable(std::string_view text) { return without_controls(utf8_text(text), "\n"); }
+
+std::string trimmed(std::string_view text) {
+    const std::string result = without_controls(text, "");
     const size_t first = result.find_first_not_of(' ');
     if (first == std::string::npos) return {};
     return result.substr(first, result.find_last_not_of(' ') - first + 1);

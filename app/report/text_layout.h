@@ -9,8 +9,11 @@
 
 namespace app {
 
-/// Without white space at both ends and with no control characters.
+/// Without white space at both ends and with no control characters, and so in one line.
 std::string trimmed(std::string_view text);
+
+/// A report as it may reach a terminal: in UTF-8, and with no control characters but line ends.
+std::string printable(std::string_view text);
 
 /// At most `width` bytes, `...` where something is missing; characters of UTF-8 stay whole.
 std::string clipped(const std::string& text, size_t width);

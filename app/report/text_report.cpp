@@ -82,7 +82,7 @@ std::string blocks_text(const CheckRun& run) {
         text += fmt::format("{:>5} {:<5} {:>4} {:>15} {:<17} {:<9} {}\n", block.line,
                             core::name_of(result.motion),
                             result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
-                            clearance_text(run, result), clipped(pair, 17),
+                            clearance_text(run, result), clipped(trimmed(pair), 17),
                             core::name_of(result.verdict), clipped(trimmed(block.text), 19));
     }
     return text + "\n";
@@ -164,7 +164,7 @@ std::string outcome_text(const CheckRun& run) {
 std::string text_report(const CheckRun& run, const TextOptions& options) {
     std::string text = findings_text(run);
     if (options.blocks) text += blocks_text(run);
-    return text + summary_text(run, options.told);
+    return printable(text + summary_text(run, options.told));
 }
 
 std::string error_text(const core::Error& error) {

@@ -1,0 +1,106 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/batch/program_diff.h"
+#include "app/report/batch_text.h"
+#include "app/report/diff_report.h"
+#include "app/report/distance_report.h"
+#include "app/report/history_report.h"
+#include "app/report/text_layout.h"
+#include "app/report/text_report.h"
+
+namespace app {
+namespace {
+
+using testing::HasSubstr;
+
+/// Sets the title of a terminal, begins a line, and colours it, by seven and by eight bits.
+const std::string hostile = "a\x1b]0;x\x07\n\x7f\xc2\x9b"
+                            "31m\x9b"
+                            "31m\r\tb.nc";
+const std::string harmless = "a ]0;x    31m 31m  b.nc";
+
+/// The control characters of a text but line ends, also those that are two bytes in UTF-8.
+size_t controls_in(const std::string& text) {
+    size_t count = 0;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        count += (byte < ' ' && byte != '\n') || byte == 0x7F;
+        count +=
+            byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    }
+    return count;
+}
+
+/// That a report names the file in one line, and sends nothing to the terminal.
+void expect_harmless(const std::string& text) {
+    EXPECT_THAT(text, HasSubstr(harmless));
+    EXPECT_EQ(controls_in(text), 0U) << text;
+}
+
+ProgramResult hostile_result() {
+    return {.program = hostile,
+            .setup = hostile,
+            .findings = {{.rule = "near-miss",
+                          .severity = core::Severity::error,
+                          .line = 7,
+                          .file = hostile,
+                          .text = hostile,
+                          .message = hostile,
+                          .pair = {hostile, hostile}}},
+            .tightest = Tightest{.line = 7, .pair = {hostile, hostile}, .upper = 0.0}};
+}
+
+TEST(Printable, KeepsLineEndsAndTextsOfAnyLanguage) {
+    EXPECT_EQ(printable("Gehäuse µ\n\n"), "Gehäuse µ\n\n");
+    EXPECT_EQ(printable("Geh\xe4use"), "Gehäuse") << "what is no UTF-8 is Latin-1";
+    EXPECT_EQ(printable("a\r\nb\x1b[2J"), "a \nb [2J");
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m\x9b"
+                        "31m"),
+              " 31m 31m");
+}
+
+TEST(HistoryText, SendsNothingToTheTerminal) {
+    KeptVersion before, after;
+    before.setup = after.setup = hostile;
+    before.result = after.result = hostile_result();
+    before.result.findings.clear();
+    expect_harmless(history_text(hostile, {before, after}));
+}
+
+TEST(DiffText, SendsNothingToTheTerminal) {
+    ProgramDiff diff;
+    diff.before = diff.after = hostile_result();
+    diff.change.new_findings = diff.after.findings;
+    ChangedBlock changed;
+    changed.after = {.line = 7, .file = hostile, .text = hostile, .pair = {hostile, hostile}};
+    changed.before = changed.after;
+    changed.before.pair = {"holder", "clamp-1"};
+    diff.nearer.push_back(changed);
+    expect_harmless(diff_text(diff, true));
+}
+
+TEST(DistanceText, SendsNothingToTheTerminal) {
+    expect_harmless(text_distance({}, hostile, hostile, false));
+}
+
+TEST(TextReport, SendsNothingToTheTerminal) {
+    CheckRun run;
+    run.program_file = hostile;
+    run.findings.push_back({.rule = "near-miss", .message = hostile, .cure = hostile});
+    run.assumptions = {hostile};
+    expect_harmless(text_report(run, {.blocks = true}));
+}
+
+TEST(BatchText, SendsNothingToTheTerminalButItsOwnColours) {
+    BatchResult batch;
+    batch.programs = {hostile_result()};
+    batch.unchecked = {hostile};
+    batch.skipped = {{hostile, hostile}};
+    expect_harmless(batch_text(batch, {.verbose = true}));
+    EXPECT_EQ(controls_in(program_text(batch.programs[0], {.colour = true})), 2U);
+}
+
+} // namespace
+} // namespace app
