@@ -224,13 +224,14 @@ private:
 
 BatchResult run_batch(const BatchPlan& plan, const BatchLimits& limits, const BatchHooks& hooks) {
     BatchResult batch{.programs = {}, .unchecked = {}, .skipped = plan.skipped};
-    for (SkippedFile& file : batch.skipped) file = {utf8_text(file.path), utf8_text(file.why)};
+    for (SkippedFile& file : batch.skipped)
+        file = {shown_name(file.path, batch.file_bytes), utf8_text(file.why)};
     auto results = BatchRunner(plan.jobs, limits, hooks).run();
     for (size_t i = 0; i < results.size(); ++i) {
         if (results[i])
             batch.programs.push_back(*std::move(results[i]));
         else
-            batch.unchecked.push_back(utf8_text(plan.jobs[i].program));
+            batch.unchecked.push_back(shown_name(plan.jobs[i].program, batch.file_bytes));
     }
     for (const core::Error& error : plan.failures) {
         CheckJob nothing;

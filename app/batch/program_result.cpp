@@ -26,11 +26,12 @@ uint32_t column_of(const core::Error& error) {
     return static_cast<uint32_t>(characters_in(text.substr(starts[line - 1], column - 1))) + 1;
 }
 
-KeptError kept(const core::Error& error) {
-    return {utf8_text(error.file), error.where.line, column_of(error), utf8_text(error.message)};
+KeptError kept(const core::Error& error, FileBytes& bytes) {
+    return {shown_name(error.file, bytes), error.where.line, column_of(error),
+            utf8_text(error.message)};
 }
 
-KeptFinding kept(const core::Finding& finding, const CheckRun& run) {
+KeptFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
     KeptFinding made{.rule = finding.rule,
                      .severity = finding.severity,
                      .message = utf8_text(finding.message),
@@ -41,7 +42,7 @@ KeptFinding kept(const core::Finding& finding, const CheckRun& run) {
     const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
     made.block = core::value_of(*finding.block);
     made.line = block.line;
-    made.file = utf8_text(block.file);
+    made.file = shown_name(block.file, bytes);
     made.text = utf8_text(block.text);
     return made;
 }
@@ -144,13 +145,15 @@ ProgramResult result_from(const Json& json) {
         result.tightest = tightest_from(tightest);
     for (const Json& finding : list_from(json.at("findings")))
         result.findings.push_back(finding_from(finding));
+    if (json.contains("file_bytes")) result.file_bytes = file_bytes_from(json.at("file_bytes"));
     return result;
 }
 
 } // namespace
 
 ProgramResult result_of(const CheckRun& run, const std::string& setup) {
-    ProgramResult result{.program = utf8_text(run.program_file),
+    FileBytes bytes;
+    ProgramResult result{.program = shown_name(run.program_file, bytes),
                          .setup = utf8_text(setup),
                          .sha256 = run.sha256,
                          .dialect = std::string(gcode::dialect(run.dialect).name),
@@ -161,19 +164,24 @@ ProgramResult result_of(const CheckRun& run, const std::string& setup) {
                          .removed = run.removed,
                          .tightest = tightest_of(run),
                          .seconds = run.times.read + run.times.model + run.times.check};
-    if (run.stopped) result.error = kept(*run.stopped);
+    if (run.stopped) result.error = kept(*run.stopped, bytes);
     for (const std::string& assumption : run.assumptions)
         result.assumptions.push_back(utf8_text(assumption));
-    for (const core::Finding& finding : run.findings) result.findings.push_back(kept(finding, run));
+    for (const core::Finding& finding : run.findings)
+        result.findings.push_back(kept(finding, run, bytes));
+    result.file_bytes = std::move(bytes);
     return result;
 }
 
 ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
-    return {.program = utf8_text(job.program),
-            .setup = utf8_text(job.setup),
-            .sha256 = sha256_of_file(job.program),
-            .engine = name_of(job.engine),
-            .error = kept(error)};
+    FileBytes bytes;
+    ProgramResult result{.program = shown_name(job.program, bytes),
+                         .setup = utf8_text(job.setup),
+                         .sha256 = sha256_of_file(job.program),
+                         .engine = name_of(job.engine),
+                         .error = kept(error, bytes)};
+    result.file_bytes = std::move(bytes);
+    return result;
 }
 
 int status_of(const ProgramResult& result) {
@@ -201,6 +209,7 @@ std::string json_of(const ProgramResult& result) {
                  {"assumptions", result.assumptions},
                  {"findings", Json::array()}};
     for (const KeptFinding& finding : result.findings) json["findings"].push_back(json_of(finding));
+    if (!result.file_bytes.empty()) json["file_bytes"] = json_of(result.file_bytes);
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

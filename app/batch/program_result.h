@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/file_bytes.h"
 #include "app/session/check_run.h"
 
 namespace app {
@@ -60,7 +61,8 @@ struct ProgramResult {
     double cycle_time = 0.0; // seconds
     double removed = 0.0;    // mm3
     std::optional<Tightest> tightest;
-    double seconds = 0.0; // of wall time that the check took
+    double seconds = 0.0;      // of wall time that the check took
+    FileBytes file_bytes = {}; // of the names of files in it that are no UTF-8
 
     bool operator==(const ProgramResult&) const = default;
 };

@@ -78,7 +78,9 @@ bool quotes_paths(const ProgramResult& result, const CheckJob& job,
 }
 
 ProgramResult renamed(ProgramResult result, const CheckJob& job) {
-    const std::string before = std::exchange(result.program, utf8_text(job.program));
+    const std::string before = std::exchange(result.program, std::string());
+    result.file_bytes.erase(before);
+    result.program = shown_name(job.program, result.file_bytes);
     if (result.error && result.error->file == before) result.error->file = result.program;
     result.setup = utf8_text(job.setup);
     return result;

@@ -66,9 +66,11 @@ size_t index_of(const std::string& rule) {
     return static_cast<size_t>(found - rules.begin()) + behind;
 }
 
-/// A place in a file; the first line where none is known, as code hosts show nothing else.
-Json location_json(const std::string& file, uint32_t line, uint32_t column) {
-    const std::string uri = uri_of(file);
+/// A place in a file; the first line where none is known, as code hosts show nothing else. The
+/// bytes of the name are those on the disk.
+Json location_json(const std::string& file, const FileBytes& bytes, uint32_t line,
+                   uint32_t column) {
+    const std::string uri = uri_of(name_shown_as(file, bytes));
     Json artifact = {{"uri", uri}};
     if (!uri.starts_with("file:")) artifact["uriBaseId"] = "%SRCROOT%";
     return {
@@ -80,12 +82,13 @@ Json location_json(const std::string& file, uint32_t line, uint32_t column) {
 Json finding_json(const ProgramResult& program, const KeptFinding& finding, size_t before) {
     const std::string& file = finding.file.empty() ? program.program : finding.file;
     const std::string cure = finding.cure.empty() ? "" : " " + finding.cure;
-    Json json = {{"ruleId", finding.rule},
-                 {"ruleIndex", index_of(finding.rule)},
-                 {"level", level_of(finding.severity)},
-                 {"message", {{"text", finding.message + cure}}},
-                 {"locations", Json::array({location_json(file, finding.line, 1)})},
-                 {"partialFingerprints", {{"feeler/v1", fingerprint_of(finding, before)}}}};
+    Json json = {
+        {"ruleId", finding.rule},
+        {"ruleIndex", index_of(finding.rule)},
+        {"level", level_of(finding.severity)},
+        {"message", {{"text", finding.message + cure}}},
+        {"locations", Json::array({location_json(file, program.file_bytes, finding.line, 1)})},
+        {"partialFingerprints", {{"feeler/v1", fingerprint_of(finding, before)}}}};
     json["properties"] = {{"program", program.program}, {"shortfall", finding.shortfall}};
     if (finding.block) json["properties"]["block"] = *finding.block;
     return json;
@@ -99,17 +102,17 @@ Json error_json(const ProgramResult& program) {
         {"level", "error"},
         {"message", {{"text", error.message}}},
         {"locations", Json::array({location_json(error.file.empty() ? program.program : error.file,
-                                                 error.line, error.column)})},
+                                                 program.file_bytes, error.line, error.column)})},
         {"partialFingerprints",
          {{"feeler/v1", sha256_of(std::string(not_run) + "\n" + error.message)}}}};
 }
 
-Json unchecked_json(const std::string& program) {
+Json unchecked_json(const std::string& program, const FileBytes& bytes) {
     return {{"ruleId", not_checked},
             {"ruleIndex", index_of(not_checked)},
             {"level", "error"},
             {"message", {{"text", "This program was not checked."}}},
-            {"locations", Json::array({location_json(program, 1, 1)})},
+            {"locations", Json::array({location_json(program, bytes, 1, 1)})},
             {"partialFingerprints", {{"feeler/v1", sha256_of(not_checked)}}}};
 }
 
@@ -166,7 +169,7 @@ Json results_json(const BatchResult& batch, const std::vector<bool>& is_told) {
         if (program.error && is_told[next++]) results.push_back(error_json(program));
     }
     for (const std::string& program : batch.unchecked)
-        if (is_told[next++]) results.push_back(unchecked_json(program));
+        if (is_told[next++]) results.push_back(unchecked_json(program, batch.file_bytes));
     return results;
 }
 
@@ -182,18 +185,19 @@ Json notification_json(const std::string& level, const std::string& text, const 
 
 /// A note for each file that was skipped; one for all of many that were for the same reason, as
 /// code hosts refuse what is too long.
-void add_skipped(Json& notes, const std::vector<SkippedFile>& skipped) {
+void add_skipped(Json& notes, const BatchResult& batch) {
     constexpr size_t few = 100;
-    for (const SkippedGroup& group : skipped_groups(skipped)) {
+    for (const SkippedGroup& group : skipped_groups(batch.skipped)) {
         const size_t count = group.files.size();
         const bool each = count <= few;
         if (!each)
             notes.push_back(notification_json(
                 "note", fmt::format("this and {} more were skipped: {}", count - 1, group.why),
-                location_json(group.files[0], 1, 1)));
+                location_json(group.files[0], batch.file_bytes, 1, 1)));
         for (size_t i = 0; each && i < count; ++i)
-            notes.push_back(notification_json("note", "was skipped: " + group.why,
-                                              location_json(group.files[i], 1, 1)));
+            notes.push_back(
+                notification_json("note", "was skipped: " + group.why,
+                                  location_json(group.files[i], batch.file_bytes, 1, 1)));
     }
 }
 
@@ -212,12 +216,12 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_told)
             notes.push_back(
                 notification_json("error", error.message,
                                   location_json(error.file.empty() ? program.program : error.file,
-                                                error.line, error.column)));
+                                                program.file_bytes, error.line, error.column)));
         }
     for (const std::string& program : batch.unchecked)
-        notes.push_back(
-            notification_json("error", "was not checked", location_json(program, 1, 1)));
-    add_skipped(notes, batch.skipped);
+        notes.push_back(notification_json("error", "was not checked",
+                                          location_json(program, batch.file_bytes, 1, 1)));
+    add_skipped(notes, batch);
     return {{"executionSuccessful", status_of(batch) != 2},
             {"exitCode", status_of(batch)},
             {"toolExecutionNotifications", notes}};

@@ -109,6 +109,23 @@ TEST(Sarif, PutsFindingsOnTheirLines) {
     EXPECT_FALSE(in_subprogram["artifactLocation"].contains("uriBaseId"));
 }
 
+TEST(Sarif, NamesFilesByTheirBytes) {
+    const test_support::ScopedFolder folder;
+    const std::string program = folder.write("Geh\xe4use.nc", "G21 G90\nT1 M6\nG1 X5. F100.\nQ\n");
+    CheckJob job;
+    job.program = program;
+    const core::Error wrong{core::ErrorCode::syntax, {}, "is wrong", program};
+    BatchResult batch;
+    batch.programs = {failed_result(job, wrong)};
+    EXPECT_THAT(batch.programs[0].program, testing::EndsWith("/Geh\xc3\xa4use.nc")) << "as a text";
+    EXPECT_EQ(*result_from_json(json_of(batch.programs[0])), batch.programs[0]);
+    batch.unchecked = {shown_name("sp\xe4t.nc", batch.file_bytes)};
+    const std::string report = sarif_report(batch, "/lib");
+    EXPECT_THAT(report, HasSubstr("/Geh%E4use.nc\""));
+    EXPECT_THAT(report, HasSubstr("\"sp%E4t.nc\""));
+    EXPECT_THAT(report, Not(HasSubstr("%C3")));
+}
+
 TEST(Sarif, TellsOfWhatWasNotRunToItsEnd) {
     const json run = sarif()["runs"][0];
     EXPECT_EQ(run["results"][4]["ruleId"], "not-run-to-its-end");
