@@ -56,9 +56,12 @@ void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
     for (const Shard& shard : shards) {
         for (const PlannedProgram& program : shard.programs) read.add(program.name);
         for (const ProgramResult& result : shard.results) {
-            read.add(result.setup);
-            if (result.error) read.add(result.error->file);
-            for (const KeptFinding& finding : result.findings) read.add(finding.file);
+            const auto add = [&](const std::string& name) {
+                read.add(name_shown_as(name, result.file_bytes));
+            };
+            for (const std::string& name : {result.program, result.setup}) add(name);
+            if (result.error) add(result.error->file);
+            for (const KeptFinding& finding : result.findings) add(finding.file);
         }
     }
 }
