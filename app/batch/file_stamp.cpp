@@ -28,6 +28,7 @@ FileStamp stamp_of(const std::string& path) {
     if (::stat(path.c_str(), &status) != 0) return {};
     return {.is_there = true,
             .is_folder = S_ISDIR(status.st_mode),
+            .is_file = S_ISREG(status.st_mode),
             .device = static_cast<uint64_t>(status.st_dev),
             .number = static_cast<uint64_t>(status.st_ino),
             .size = static_cast<uint64_t>(status.st_size),

@@ -9,6 +9,7 @@ namespace app {
 struct FileStamp {
     bool is_there = false;
     bool is_folder = false;
+    bool is_file = false; // that has bytes to be read
     uint64_t device = 0, number = 0, size = 0;
     int64_t modified = 0, changed = 0; // nanoseconds since 1970
 

@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// That what has no other look is what it is: it may become a file or another folder, by a link.
+void note_presence(const fs::path& path) {
+    core::note_look({core::FileQuestion::presence, path.string(), {}, {}});
+}
+
 /// Enters folders one after the other, links last.
 class Walk {
 public:
@@ -57,9 +62,10 @@ private:
         std::error_code failure;
         if (!entry.is_directory(failure))
             found.sort_in(entry.path());
-        else if (entry.is_symlink(failure))
+        else if (entry.is_symlink(failure)) {
+            note_presence(entry.path());
             linked_.push_back(entry.path());
-        else if (is_new(entry.path()))
+        } else if (is_new(entry.path()))
             real_.push_back(entry.path());
     }
 
@@ -72,6 +78,7 @@ private:
 void FolderWalk::sort_in(const fs::path& path) {
     std::error_code failure, ignored;
     const fs::file_status status = fs::status(path, failure);
+    if (!fs::is_regular_file(status)) note_presence(path);
     const auto cannot = [&] {
         unreadable.push_back(
             {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});

@@ -22,7 +22,8 @@ struct FolderWalk {
     std::vector<core::Error> unreadable;        // folders, and what cannot be looked at
     std::vector<std::filesystem::path> folders; // that were entered, sorted
 
-    /// Takes in what has a name: a file, or why it is none; folders are left to the caller.
+    /// Takes in what has a name: a file, or why it is none; folders are left to the caller. Tells
+    /// of a look at what is no file: it may become one.
     void sort_in(const std::filesystem::path& path);
 };
 

@@ -66,13 +66,13 @@ private:
     }
 
     void go_on(const fs::path& path, size_t i) {
-        std::error_code ignored;
         const bool is_last = i + 1 == parts_.size();
-        if (fs::is_directory(path, ignored)) {
+        const auto what = core::presence_of(path);
+        if (what == "folder") {
             if (!is_last) expand(path, i + 1);
-        } else if (is_last || !fs::is_regular_file(path, ignored)) {
+        } else if (is_last || what != "file") {
             // What a pattern spells out and is not there is no news: nobody has seen its name.
-            if (is_glob(parts_[i]) || core::is_there(path)) found_.sort_in(path);
+            if (is_glob(parts_[i]) || what) found_.sort_in(path);
         }
     }
 

@@ -54,13 +54,15 @@ WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& a
     look.was_fresh = is_fresh(look.stamp);
     const bool is_known = before.stamp == look.stamp && !before.was_fresh;
     if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
-    if (asked.kind && look.stamp.is_there && !look.stamp.is_folder)
+    if (asked.kind && look.stamp.is_file) // a pipe would never answer
         look.kind = is_known ? before.kind : kind_of(path);
     return look;
 }
 
 bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
-    if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder) return true;
+    if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder
+        || a.stamp.is_file != b.stamp.is_file)
+        return true;
     // Of a folder only the names count: also what does not concern anybody changes its times. But
     // it may be another one, by a link.
     if (a.stamp.is_folder && (a.stamp.number != b.stamp.number || a.stamp.device != b.stamp.device))

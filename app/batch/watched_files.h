@@ -34,7 +34,7 @@ public:
     Change look_again();
 
 private:
-    /// What was asked for; that there is something of its name is always.
+    /// What was asked for; whether there is a file, a folder or else of its name is always.
     struct Asked {
         bool bytes = false;
         bool names = false; // in a folder

@@ -1,6 +1,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "app/batch/folder_walk.h"
 #include "app/batch/program_finder.h"
@@ -154,6 +155,52 @@ TEST_F(WatchedFilesTest, SeeALinkToAFolderThatIsSwapped) {
     EXPECT_EQ(changed(), Names{});
     fs::remove(folder / "current");
     fs::create_directory_symlink("two", folder / "current");
+    EXPECT_EQ(changed(), Names{"current"});
+}
+
+TEST_F(WatchedFilesTest, SeeLinksThatLedNowhereLeadToAFileOrAFolder) {
+    fs::create_directory(folder / "parts");
+    for (const char* name : {"file", "folder"})
+        fs::create_symlink(folder / name, folder / ("parts/to-" + std::string(name)));
+    for (const std::string word : {"parts", "parts/to-*", "*/to-file", "*/to-folder/x.nc"}) {
+        WatchedFiles each;
+        const core::FileListening listening(
+            [&each](const core::FileLook& look) { each.note(look); });
+        find_programs({folder / word});
+        EXPECT_TRUE(each.look_again().paths.empty()) << word;
+        fs::create_directory(folder / "folder");
+        folder.write("file", "G0 X1\n");
+        EXPECT_FALSE(each.look_again().paths.empty()) << word;
+        fs::remove(folder / "file");
+        fs::remove(folder / "folder");
+    }
+}
+
+TEST_F(WatchedFilesTest, SeeAFileInThePlaceOfAPipeOrAFolder) {
+    const std::string pipe = folder / "b.nc";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    fs::create_directory(folder / "c.nc");
+    watch([&] {
+        find_programs({folder.path()});
+        find_programs({folder / "?.nc"});
+    });
+    EXPECT_EQ(changed(), Names{});
+    fs::remove(pipe);
+    folder.write("b.nc", "G0 X2\n");
+    EXPECT_EQ(changed(), Names{"b.nc"});
+    fs::remove(folder / "c.nc");
+    folder.write("c.nc", "G0 X3\n");
+    EXPECT_EQ(changed(), (Names{"b.nc", "c.nc"}));
+}
+
+TEST_F(WatchedFilesTest, SeeALinkToAFolderThatWasEnteredByAnotherNameLeadElsewhere) {
+    fs::create_directories(folder / "parts/one");
+    fs::create_directory(folder / "two");
+    fs::create_directory_symlink("one", folder / "parts/current");
+    watch([&] { walk_folder(folder / "parts"); });
+    EXPECT_EQ(changed(), Names{});
+    fs::create_directory_symlink("../two", folder / "parts/next");
+    fs::rename(folder / "parts/next", folder / "parts/current");
     EXPECT_EQ(changed(), Names{"current"});
 }
 
