@@ -1,24 +1,21 @@
 #include "app/batch/file_stamp.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <sys/stat.h>
 
 namespace app {
 namespace {
 
-/// Between reading a file and looking at its time; the clock of files has ticks of some ms.
-constexpr int64_t fresh = 50'000'000; // ns
-constexpr int64_t fresh_by_seconds = 2'500'000'000;
+using namespace std::chrono_literals;
 
 int64_t nanoseconds(const timespec& time) {
     return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
-int64_t now() {
-    using namespace std::chrono;
-    return duration_cast<std::chrono::nanoseconds>(system_clock::now().time_since_epoch()).count();
+/// An older file that was put in the place of another keeps the time of its bytes.
+std::chrono::nanoseconds last_change(const FileStamp& stamp) {
+    return std::chrono::nanoseconds(std::max(stamp.modified, stamp.changed));
 }
 
 } // namespace
@@ -36,11 +33,15 @@ FileStamp stamp_of(const std::string& path) {
             .changed = nanoseconds(status.st_ctim)};
 }
 
+std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
+    // Between reading a file and looking at its time; the clock of files has ticks of some ms.
+    const bool has_whole_seconds = last_change(stamp) % 1s == 0ns; // or two of them, as FAT does
+    return has_whole_seconds ? 2500ms : 50ms;
+}
+
 bool is_fresh(const FileStamp& stamp) {
-    // An older file that was put in the place of another keeps the time of its bytes.
-    const int64_t last = std::max(stamp.modified, stamp.changed);
-    const bool has_whole_seconds = last % 1'000'000'000 == 0; // or two of them, as FAT does
-    return stamp.is_there && last > now() - (has_whole_seconds ? fresh_by_seconds : fresh);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return stamp.is_there && last_change(stamp) > now - tick_of(stamp);
 }
 
 } // namespace app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -19,8 +20,12 @@ struct FileStamp {
 /// That of what a path leads to.
 FileStamp stamp_of(const std::string& path);
 
+/// How long after it was written a file may be written again without another time.
+std::chrono::nanoseconds tick_of(const FileStamp& stamp);
+
 /// Whether it was written so short a time ago that it may have been written again without another
-/// time: what was read just now may be older than the stamp.
+/// time: what was read just now may be older than the stamp. Always of a time to come, as a clock
+/// that is ahead gives it: when that was nobody knows.
 bool is_fresh(const FileStamp& stamp);
 
 } // namespace app

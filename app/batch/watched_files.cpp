@@ -48,10 +48,22 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
     return names;
 }
 
+/// A time to come is fresh until it comes: here it counts how long it has been seen.
+bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& stamp) {
+    if (!is_fresh(stamp)) {
+        fresh_.erase(path);
+        return false;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    Seen& seen = fresh_.try_emplace(path, Seen{stamp, now}).first->second;
+    if (seen.stamp != stamp) seen = {stamp, now};
+    return now - seen.since <= tick_of(stamp);
+}
+
 WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& asked,
-                                         const Look& before) const {
+                                         const Look& before) {
     Look look{stamp_of(path)};
-    look.was_fresh = is_fresh(look.stamp);
+    look.was_fresh = may_be_rewritten(path, look.stamp);
     const bool is_known = before.stamp == look.stamp && !before.was_fresh;
     if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
     if (asked.kind && look.stamp.is_file) // a pipe would never answer
@@ -96,8 +108,9 @@ WatchedFiles::Change WatchedFiles::look_again() {
             (place.asked.names ? change.are_names_settled : change.are_files_settled) = false;
         place.latest = std::move(look);
         const bool was_written = place.asked.bytes && place.first.was_fresh;
-        if (was_written || differ(place.asked, place.latest, place.first))
-            change.paths.push_back(path);
+        const bool differs = differ(place.asked, place.latest, place.first);
+        if (was_written || differs) change.paths.push_back(path);
+        if (was_written && !differs && place.latest.was_fresh) change.are_files_settled = false;
     }
     return change;
 }

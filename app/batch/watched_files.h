@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <mutex>
 #include <string>
@@ -22,15 +23,19 @@ public:
 
     size_t size() const { return places_.size(); }
 
+    /// Forgets the places, for another check.
+    void begin_again() { places_.clear(); }
+
     struct Change {
         std::vector<std::string> paths; // that are not as they were, sorted
         // Nothing has moved since the call before: no file, no name in a folder.
         bool are_files_settled = true, are_names_settled = true;
     };
 
-    /// How the places are now. One that was written just when it was read counts as changed: nobody
-    /// knows which of its contents was seen. Costs a look at the disk for each, and what was asked
-    /// for again of folders and files that were written.
+    /// How the places are now. One that was written just when it was read counts as changed, once
+    /// for each time that it has: nobody knows which of its contents was seen. It has settled when
+    /// it could not be written again without another time. Costs a look at the disk for each, and
+    /// what was asked for again of folders and files that were written.
     Change look_again();
 
 private:
@@ -51,14 +56,20 @@ private:
         Asked asked;
         Look first, latest;
     };
+    struct Seen {
+        FileStamp stamp;
+        std::chrono::steady_clock::time_point since{};
+    };
 
-    Look look_at(const std::string& path, const Asked& asked, const Look& before) const;
+    Look look_at(const std::string& path, const Asked& asked, const Look& before);
+    bool may_be_rewritten(const std::string& path, const FileStamp& stamp);
     bool is_own(const std::string& path) const;
     std::string names_of(const std::string& folder) const;
     static bool differ(const Asked& asked, const Look& a, const Look& b);
 
     std::vector<std::string> own_;
     std::map<std::string, Place> places_; // by path
+    std::map<std::string, Seen> fresh_;   // likewise; of earlier checks, too
     std::mutex mutex_;
 };
 

@@ -74,8 +74,9 @@ void say(const std::string& text) {
 ExitCode watch(const std::vector<std::string>& own,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
+    WatchedFiles files(own);
     while (true) {
-        WatchedFiles files(own);
+        files.begin_again();
         ExitCode code{};
         {
             const core::FileListening listening(

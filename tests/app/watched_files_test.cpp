@@ -111,6 +111,36 @@ TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
     EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
 }
 
+TEST_F(WatchedFilesTest, CountATimeToComeOnce) {
+    const auto look = [&] { core::file_bytes(folder / "a.nc"); };
+    const auto in_an_hour = fs::file_time_type::clock::now() + std::chrono::hours(1);
+    for (const auto seconds : {0, 1}) {
+        fs::last_write_time(folder / "a.nc", in_an_hour + std::chrono::seconds(seconds));
+        files.begin_again();
+        watch(look);
+        EXPECT_EQ(changed(), Names{"a.nc"}) << "nobody knows when it was written";
+        let_it_rest();
+        files.begin_again();
+        watch(look);
+        EXPECT_EQ(changed(), Names{});
+    }
+    folder.write("a.nc", "G0 X9\n");
+    EXPECT_EQ(changed(), Names{"a.nc"});
+}
+
+TEST_F(WatchedFilesTest, AreNotSettledWhileAFileMayBeWrittenWithoutAnotherTime) {
+    folder.write("a.nc", "G0 X2\n");
+    const auto in_an_hour = fs::file_time_type::clock::now() + std::chrono::hours(1);
+    fs::last_write_time(folder / "a.nc",
+                        std::chrono::time_point_cast<std::chrono::seconds>(in_an_hour));
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    let_it_rest();
+    EXPECT_FALSE(files.look_again().are_files_settled) << "its clock has whole seconds";
+    folder.write("a.nc", "G0 X9\n");
+    files.look_again();
+    EXPECT_TRUE(files.look_again().are_files_settled) << "what has changed is checked at once";
+}
+
 TEST_F(WatchedFilesTest, AreSettledOnceNothingMovesAnyMore) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
     EXPECT_TRUE(files.look_again().are_files_settled);
