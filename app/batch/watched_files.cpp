@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "app/batch/file_kind.h"
 #include "gcode/program_folder.h"
@@ -22,6 +23,15 @@ std::string kind_of(const std::string& path) {
     const auto why = why_no_program(path);
     if (!why) return "?";
     return why->value_or("");
+}
+
+/// Those that lead to one file come down to the first.
+std::vector<std::string> each_once(const std::vector<std::string>& paths) {
+    std::vector<std::string> once;
+    std::set<std::string> seen;
+    for (const std::string& path : paths)
+        if (seen.insert(whole_path(path)).second) once.push_back(path);
+    return once;
 }
 
 } // namespace
@@ -112,6 +122,7 @@ WatchedFiles::Change WatchedFiles::look_again() {
         if (was_written || differs) change.paths.push_back(path);
         if (was_written && !differs && place.latest.was_fresh) change.are_files_settled = false;
     }
+    change.paths = each_once(change.paths);
     return change;
 }
 

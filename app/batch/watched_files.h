@@ -27,7 +27,7 @@ public:
     void begin_again() { places_.clear(); }
 
     struct Change {
-        std::vector<std::string> paths; // that are not as they were, sorted
+        std::vector<std::string> paths; // that are not as they were, sorted; each file once
         // Nothing has moved since the call before: no file, no name in a folder.
         bool are_files_settled = true, are_names_settled = true;
     };

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <map>
 #include <thread>
 
 #include <fmt/chrono.h>
@@ -51,12 +52,20 @@ std::vector<std::string> wait_for_change(WatchedFiles& files) {
     }
 }
 
+std::string name_of(const std::string& place) {
+    const std::filesystem::path path(place);
+    return (path.has_filename() ? path.filename() : path).string();
+}
+
+/// Their names, with the folder where two would be called the same.
 std::string names_of(const std::vector<std::string>& paths) {
     constexpr size_t most = 3;
+    std::map<std::string, size_t> counts;
+    for (const std::string& path : paths) ++counts[name_of(path)];
     std::vector<std::string> names;
     for (size_t i = 0; i < std::min(paths.size(), most); ++i) {
-        const std::filesystem::path path(paths[i]);
-        names.push_back((path.has_filename() ? path.filename() : path).string());
+        const std::string name = name_of(paths[i]);
+        names.push_back(counts[name] > 1 ? paths[i] : name);
     }
     std::string text = fmt::format("{}", fmt::join(names, ", "));
     if (paths.size() > most) text += fmt::format(" and {} more", paths.size() - most);

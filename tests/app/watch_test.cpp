@@ -105,6 +105,20 @@ TEST_F(Watch, SaysOnlyWhatWasCheckedAgainOfMany) {
     EXPECT_FALSE(std::filesystem::exists(folder / ".feeler"));
 }
 
+TEST_F(Watch, SaysTheFolderOfWhatIsCalledAsAnother) {
+    for (const std::string name : {"one", "two"}) {
+        fs::create_directory(folder / name);
+        folder.write(name + "/a.nc", fine);
+        folder.write(name + "/a.toml", setup("42"));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    Terminal terminal = watching({folder.path(), "--no-cache"});
+    pass(terminal);
+    for (const std::string name : {"one", "two"}) folder.write(name + "/a.nc", near);
+    EXPECT_THAT(pass(terminal), HasSubstr(folder / "one/a.nc, " + folder / "two/a.nc changed"));
+    EXPECT_EQ(end(terminal), 1);
+}
+
 TEST_F(Watch, SaysAgainWhatCameBack) {
     Terminal terminal = watching({folder.path(), "--cache", folder / "kept.db"});
     pass(terminal);

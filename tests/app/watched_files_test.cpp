@@ -242,6 +242,20 @@ TEST_F(WatchedFilesTest, SeeANameBehindTimesThatWerePutBack) {
     EXPECT_EQ(changed(), Names{folder.path().filename()});
 }
 
+TEST_F(WatchedFilesTest, NameAFileOnceHoweverItWasCalled) {
+    fs::create_symlink("a.nc", folder / "link.nc");
+    const std::string beside = (folder.path() / "." / "a.nc").string();
+    const std::string relative = fs::relative(folder / "a.nc");
+    watch([&] {
+        for (const std::string& path : {folder / "a.nc", beside, relative, folder / "link.nc"})
+            core::file_bytes(path);
+    });
+    folder.write("a.nc", "G0 X1\nG1 X5\n");
+    EXPECT_EQ(changed(), Names{"a.nc"});
+    fs::remove(folder / "a.nc");
+    EXPECT_EQ(changed(), (Names{"a.nc", "link.nc"})) << "a link to nothing is no name of it";
+}
+
 TEST_F(WatchedFilesTest, KeepTheFirstLookOfSeveral) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
     folder.write("a.nc", "G0 X1\nG1 X5\n");
