@@ -39,8 +39,8 @@ CheckJob job_of(const ChosenProgram& chosen, const CheckJob& asked) {
 
 bool is_one_program(const std::vector<std::string>& words) {
     if (words.size() != 1 || !project_of(words[0]).empty()) return false;
+    if (core::is_folder(words[0])) return false;
     std::error_code ignored;
-    if (fs::is_directory(words[0], ignored)) return false;
     return !is_glob(words[0]) || fs::exists(fs::symlink_status(words[0], ignored));
 }
 

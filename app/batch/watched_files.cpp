@@ -37,8 +37,16 @@ std::vector<std::string> each_once(const std::vector<std::string>& paths) {
 } // namespace
 
 WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
-    for (const std::string& path : own)
-        if (!path.empty()) own_.push_back(whole_path(path));
+    for (const std::string& path : own) add_own(path);
+}
+
+void WatchedFiles::add_own(const std::string& path) {
+    if (path.empty()) return;
+    own_.insert(whole_path(path));
+    // Of a link to it also the name: that is all there is while it leads nowhere.
+    const fs::path place(path);
+    const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+    own_.insert(whole_path(folder.string()) / place.filename());
 }
 
 bool WatchedFiles::is_own(const std::string& path) const {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ class WatchedFiles {
 public:
     /// `own`: what the check itself writes; that changes nothing.
     explicit WatchedFiles(const std::vector<std::string>& own = {});
+
+    /// As `own`, known later.
+    void add_own(const std::string& path);
 
     /// Told of a look as it is taken. Several threads may tell.
     void note(const core::FileLook& look);
@@ -67,7 +71,7 @@ private:
     std::string names_of(const std::string& folder) const;
     static bool differ(const Asked& asked, const Look& a, const Look& b);
 
-    std::vector<std::string> own_;
+    std::set<std::string> own_;
     std::map<std::string, Place> places_; // by path
     std::map<std::string, Seen> fresh_;   // likewise; of earlier checks, too
     std::mutex mutex_;

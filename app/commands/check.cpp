@@ -136,7 +136,9 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& told) {
     ReadFiles read;
-    auto job = job_of(options.what);
+    CheckArguments what = options.what;
+    what.program = options.programs[0];
+    auto job = job_of(what);
     if (!job) return failed(job.error());
     read.add(job->program);
     read.add(job->setup);
@@ -177,17 +179,31 @@ core::Result<void> check_share(const CheckOptions& options) {
                       "which share that is");
 }
 
-ExitCode check(CheckOptions& options) {
+bool is_batch(const CheckOptions& options) {
+    return options.share || !is_one_program(options.programs);
+}
+
+ExitCode check(const CheckOptions& options) {
     const auto targets = targets_of(options.formats, options.outputs);
     if (!targets) return failed(targets.error());
     if (auto fits = check_share(options); !fits) return failed(fits.error());
-    if (options.share || !is_one_program(options.programs)) return check_batch(options, *targets);
-    options.what.program = options.programs[0];
+    BatchPass many; // once there is a batch: what was no folder may become one
+    const auto prepare = [&](bool is_many) -> core::Result<void> {
+        if (!is_many || many) return {};
+        FEELER_TRY(many, batch_pass(options, *targets));
+        return {};
+    };
+    if (auto ready = prepare(is_batch(options)); !ready) return failed(ready.error());
     std::vector<std::string> told;
-    if (!options.watch) return check_one(options, *targets, told);
-    std::vector<std::string> own = paths_of(*targets);
-    own.insert(own.end(), {options.stock, options.comparison});
-    return watch(own, [&](WatchedFiles&) { return check_one(options, *targets, told); });
+    const auto pass = [&](WatchedFiles* files) {
+        const bool is_many = is_batch(options);
+        if (auto ready = prepare(is_many); !ready) return failed(ready.error());
+        return is_many ? many(files) : check_one(options, *targets, told);
+    };
+    if (!options.watch) return pass(nullptr);
+    std::vector<std::string> outputs = paths_of(*targets);
+    outputs.insert(outputs.end(), {options.stock, options.comparison});
+    return watch(outputs, [&](WatchedFiles& files) { return pass(&files); });
 }
 
 void add_report_options(CLI::App& command, CheckOptions& options) {

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -15,7 +16,6 @@
 #include "app/commands/batch_store.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
-#include "app/commands/watch.h"
 #include "app/session/stopwatch.h"
 
 namespace app {
@@ -189,27 +189,24 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
 
 } // namespace
 
-ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets) {
-    if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
+core::Result<BatchPass> batch_pass(const CheckOptions& options,
+                                   const std::vector<ReportTarget>& targets) {
+    if (auto ready = forget_old_share(targets); !ready) return tl::unexpected(ready.error());
     if (const auto allowed = refuse_single_options(options); !allowed)
-        return failed(allowed.error());
-    auto asked = job_of(options.what);
-    if (!asked) return failed(asked.error());
-    asked->engine = options.engine;
-    asked->detail = detail_of(options);
+        return tl::unexpected(allowed.error());
+    FEELER_TRY(CheckJob asked, job_of(options.what));
+    asked.engine = options.engine;
+    asked.detail = detail_of(options);
     stop_on_interrupt();
-    BatchStore store(options);
-    Watch state;
-    if (!options.watch) return pass(options, *asked, targets, store, state);
-    std::vector<std::string> own = paths_of(targets);
-    own.push_back(store.path());
-    return watch(own, [&](WatchedFiles& files) {
-        store.begin_again();
-        state.files = &files;
-        const ExitCode code = pass(options, *asked, targets, store, state);
+    const auto store = std::make_shared<BatchStore>(options);
+    return [&options, &targets, asked, store, state = Watch()](WatchedFiles* files) mutable {
+        if (files) files->add_own(store->path());
+        store->begin_again();
+        state.files = files;
+        const ExitCode code = pass(options, asked, targets, *store, state);
         state.is_again = true;
         return code;
-    });
+    };
 }
 
 } // namespace app

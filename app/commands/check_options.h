@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/batch/share.h"
+#include "app/batch/watched_files.h"
 #include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 
@@ -12,7 +14,7 @@ namespace app {
 
 /// The options of `feeler check`, as words of a command line.
 struct CheckOptions {
-    CheckArguments what; // its program: the only one, if `programs` is one name
+    CheckArguments what; // without a program
     std::vector<std::string> programs;
     std::vector<std::string> formats, outputs;
     std::string stock, comparison, cache;
@@ -44,9 +46,13 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
 
 core::Detail detail_of(const CheckOptions& options);
 
-/// Checks many programs, says a line for each, and writes the reports; with --watch again whenever
-/// something changes, and then a line for each program that was checked again.
-ExitCode check_batch(const CheckOptions& options, const std::vector<ReportTarget>& targets);
+/// Checks many programs, says a line for each, and writes the reports. When it is called again it
+/// says a line for each program that was checked again. Null: nothing is watched.
+using BatchPass = std::function<ExitCode(WatchedFiles*)>;
+
+/// The check that was asked for, of many programs. `options` and `targets` live as long as it.
+core::Result<BatchPass> batch_pass(const CheckOptions& options,
+                                   const std::vector<ReportTarget>& targets);
 
 /// The files that targets name.
 std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets);

@@ -80,10 +80,10 @@ void say(const std::string& text) {
 
 } // namespace
 
-ExitCode watch(const std::vector<std::string>& own,
+ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
-    WatchedFiles files(own);
+    WatchedFiles files(outputs);
     while (true) {
         files.begin_again();
         ExitCode code{};

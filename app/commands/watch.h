@@ -10,9 +10,9 @@
 namespace app {
 
 /// Runs a check, and again whenever something on disk that it looked at changes, until Ctrl-C.
-/// `pass` is told where to note the looks that are taken on other threads than its own; `own` is
-/// what it writes. Returns what the last pass did.
-ExitCode watch(const std::vector<std::string>& own,
+/// `pass` is told where to note the looks that are taken on other threads than its own; `outputs`
+/// are the reports and results that it writes. Returns what the last pass did.
+ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass);
 
 } // namespace app

@@ -154,6 +154,20 @@ TEST_F(Watch, SeesALinkThatIsSwappedAlsoBehindKnownResults) {
     }
 }
 
+TEST_F(Watch, SeesAFolderWhereNothingWas) {
+    Terminal terminal = watching({folder / "later"});
+    EXPECT_THAT(pass(terminal), HasSubstr("No such file"));
+    fs::create_directory(folder / "new");
+    folder.write("new/plate.nc", near);
+    folder.write("new/plate.toml", setup("42"));
+    fs::rename(folder / "new", folder / "later");
+    EXPECT_THAT(pass(terminal), HasSubstr("later/plate.nc: 3 errors"));
+    fs::remove_all(folder / "later");
+    folder.write("later", fine);
+    pass(terminal);
+    EXPECT_EQ(end(terminal), 0);
+}
+
 TEST_F(Watch, KeepsNothingWhereNothingIsToBeKept) {
     fs::create_directory(folder / "here");
     const std::string home = fs::current_path();
