@@ -103,18 +103,29 @@ bool say_memory(double bytes) {
     return true;
 }
 
-/// Writes the reports; false if one could not be. A run that did not come to its end goes to
-/// standard output: a file would look like a whole one. SARIF and JUnit say so themselves.
+/// Whether a report of a run that did not come to its end is not written: it would look like a
+/// whole one, and the old one stays. While files are watched that is of another version: a report
+/// that says how it ended takes its place. SARIF and JUnit always do.
+bool is_kept_back(const CheckOptions& options, const ReportTarget& target, const CheckRun& run) {
+    if (!run.stopped || target.path.empty() || is_of_results(target.format)) return false;
+    return !options.watch || target.format == "csv";
+}
+
+/// Writes the reports; false if one could not be. In place of those that are kept back there is a
+/// text on standard output.
 bool write_reports(const CheckOptions& options, const Checked& checked,
                    const std::vector<ReportTarget>& targets) {
-    bool all = true, is_said = false;
-    for (const ReportTarget& target : targets) {
-        const bool is_lost = checked.run.stopped && !is_of_results(target.format);
-        if (is_lost && std::exchange(is_said, true)) continue;
-        const auto written = write_output(is_lost ? std::string() : target.path,
-                                          report(options, target, checked), checked.read);
-        if (!written) print_error(written.error());
-        all = all && written.has_value();
+    std::vector<ReportTarget> written;
+    for (const ReportTarget& target : targets)
+        if (!is_kept_back(options, target, checked.run)) written.push_back(target);
+    const bool is_on_screen = std::any_of(written.begin(), written.end(),
+                                          [](const auto& target) { return target.path.empty(); });
+    if (written.size() < targets.size() && !is_on_screen) written.push_back({"text", {}});
+    bool all = true;
+    for (const ReportTarget& target : written) {
+        const auto done = write_output(target.path, report(options, target, checked), checked.read);
+        if (!done) print_error(done.error());
+        all = all && done.has_value();
     }
     return all;
 }

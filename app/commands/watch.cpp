@@ -11,6 +11,7 @@
 #include <fmt/chrono.h>
 #include <fmt/ranges.h>
 
+#include "app/commands/pass_outputs.h"
 #include "app/commands/progress.h"
 #include "app/report/text_layout.h"
 
@@ -84,14 +85,17 @@ ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
     WatchedFiles files(outputs);
+    PassOutputs written(outputs);
     while (true) {
         files.begin_again();
+        written.begin_pass();
         ExitCode code{};
         {
             const core::FileListening listening(
                 [&files](const core::FileLook& look) { files.note(look); });
             code = pass(files);
         }
+        written.end_pass();
         if (is_interrupted()) return code;
         say(fmt::format("feeler: watching {}; Ctrl-C ends it\n", counted(files.size(), "place")));
         const std::vector<std::string> changed = wait_for_change(files);

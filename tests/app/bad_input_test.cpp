@@ -153,6 +153,17 @@ TEST_F(BadInput, OfAnUnknownCodeReportsWhatCameBeforeIt) {
     expect_folder_untouched();
 }
 
+TEST_F(BadInput, OfAnUnknownCodeShowsNoPageOnTheScreen) {
+    folder.write("bad.nc", "G21 G90 G54\nT1 M6\nG0 G43 H1 Z60.\nG0 X5. G777\n");
+    files = folder.names().size();
+    for (const char* form : {"html", "json", "csv"}) {
+        const Ran ran = check("bad.nc", "good.toml", {"--format", form});
+        EXPECT_EQ(ran.status, 2);
+        EXPECT_EQ(ran.out.rfind(folder / "bad.nc: STOPPED", 0), 0U) << ran.out.substr(0, 200);
+        expect_folder_untouched();
+    }
+}
+
 TEST_F(BadInput, OfAMeshSizeThatMemoryWouldNotHold) {
     for (const char* size : {"0.001", "1e-9", "1e-300"})
         expect_refused(check("good.nc", "good.toml", {"--mesh-size", size}),

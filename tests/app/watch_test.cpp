@@ -154,6 +154,48 @@ TEST_F(Watch, SeesALinkThatIsSwappedAlsoBehindKnownResults) {
     }
 }
 
+TEST_F(Watch, SaysInTheReportsThatTheProgramStopped) {
+    Terminal terminal = watching({folder / "plate.nc", "--format", "html", "-o", folder / "r.html",
+                                  "--format", "csv", "-o", folder / "r.csv"});
+    pass(terminal);
+    EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("CLEAR"));
+    EXPECT_THAT(bytes_of(folder / "r.csv"), HasSubstr("clear"));
+    folder.write("plate.nc", program({"X-20. Y50.", "Z-3.", "G777"}));
+    const std::string seen = pass(terminal);
+    EXPECT_THAT(seen, HasSubstr("STOPPED")) << "what was checked before, in place of the rows";
+    EXPECT_THAT(seen, Not(HasSubstr("<html"))) << "nobody wants to read that";
+    EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("STOPPED"));
+    EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("G777"));
+    EXPECT_THAT(seen, HasSubstr("r.csv: told of an earlier version, and is taken away"));
+    EXPECT_FALSE(fs::exists(folder / "r.csv"));
+    folder.write("plate.nc", fine);
+    pass(terminal);
+    EXPECT_TRUE(fs::exists(folder / "r.csv"));
+    EXPECT_EQ(end(terminal), 0);
+}
+
+TEST_F(Watch, TakesAwayWhatTellsOfAnEarlierVersion) {
+    const std::string report = folder.write("r.json", "of another day\n");
+    const std::string project = folder.write("feeler.toml", "[rules]\nnone\n");
+    folder.write("plate.toml", "[stock");
+    for (const std::string word : {"plate.nc", "."}) {
+        folder.write("r.json", "of another day\n");
+        Terminal terminal =
+            watching({folder / word, "--format", "json", "-o", report, "--no-cache"});
+        pass(terminal);
+        EXPECT_EQ(bytes_of(report), "of another day\n") << "the watch has not written it";
+        folder.write("plate.toml", setup("42"));
+        folder.write("feeler.toml", "[[program]]\nfiles = \".\"\n");
+        pass(terminal);
+        EXPECT_THAT(bytes_of(report), HasSubstr("clear")) << word;
+        folder.write("plate.toml", "[stock");
+        folder.write("feeler.toml", "[rules]\nnone\n");
+        EXPECT_THAT(pass(terminal), HasSubstr("is taken away"));
+        EXPECT_FALSE(fs::exists(report)) << word;
+        EXPECT_EQ(end(terminal), 2);
+    }
+}
+
 TEST_F(Watch, SeesAFolderWhereNothingWas) {
     Terminal terminal = watching({folder / "later"});
     EXPECT_THAT(pass(terminal), HasSubstr("No such file"));
