@@ -11,6 +11,7 @@
 #include <fmt/chrono.h>
 #include <fmt/ranges.h>
 
+#include "app/batch/watch_pace.h"
 #include "app/commands/pass_outputs.h"
 #include "app/commands/progress.h"
 #include "app/report/text_layout.h"
@@ -18,12 +19,8 @@
 namespace app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = WatchPace::Clock;
 using namespace std::chrono_literals;
-
-/// A twentieth of the time goes into looking at most, however many files there are.
-constexpr int idle_share = 20;
-constexpr auto least_wait = 200ms;
 
 void wait(Clock::duration duration) {
     const Clock::time_point end = Clock::now() + duration;
@@ -31,25 +28,15 @@ void wait(Clock::duration duration) {
         std::this_thread::sleep_for(std::min<Clock::duration>(50ms, end - Clock::now()));
 }
 
-/// What has changed, once whoever writes it has finished; empty after Ctrl-C. Names that come and
-/// go without end, and a file that is written for long, are not waited for.
+/// What has changed, once it is to be checked; empty after Ctrl-C.
 std::vector<std::string> wait_for_change(WatchedFiles& files) {
-    Clock::duration pause = least_wait;
-    Clock::time_point since = Clock::now(); // there has been a change
+    WatchPace pace(Clock::now());
     while (true) {
-        wait(pause);
+        wait(pace.pause());
         if (is_interrupted()) return {};
         const Clock::time_point begin = Clock::now();
         WatchedFiles::Change change = files.look_again();
-        pause = std::max<Clock::duration>(least_wait, idle_share * (Clock::now() - begin));
-        if (change.paths.empty()) {
-            since = Clock::now();
-            continue;
-        }
-        const Clock::duration waited = begin - since;
-        const bool are_names_settled = change.are_names_settled || waited > 2s;
-        if ((change.are_files_settled && are_names_settled) || waited > 30s)
-            return std::move(change.paths);
+        if (pace.is_time(change, begin, Clock::now() - begin)) return std::move(change.paths);
     }
 }
 
