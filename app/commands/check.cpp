@@ -5,6 +5,7 @@
 
 #include "app/batch/batch_job.h"
 #include "app/batch/batch_result.h"
+#include "app/batch/project_owner.h"
 #include "app/commands/check_options.h"
 #include "app/commands/number_range.h"
 #include "app/commands/output.h"
@@ -143,24 +144,42 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
     return ExitCode::failed;
 }
 
+core::Result<CheckJob> one_job(const CheckOptions& options) {
+    CheckArguments what = options.what;
+    what.program = options.programs[0];
+    FEELER_TRY(CheckJob job, job_of(what));
+    job.detail = detail_of(options);
+    job.engine = options.engine;
+    job.needs_surface = !options.stock.empty() || !options.comparison.empty();
+    job.before_model = say_memory;
+    job.is_stopped = is_interrupted;
+    return job;
+}
+
+/// No project is asked about a program that is named itself. Where its set-up is inferred, and
+/// there is a project that may know better, that is said.
+void say_project(const CheckJob& job) {
+    std::error_code ignored;
+    if (!job.setup.empty() || !std::filesystem::is_regular_file(job.program, ignored)) return;
+    const std::string project = ProjectOwners().of(place_of(job.program).parent_path(), "/");
+    if (!project.empty())
+        print_note(fmt::format("feeler: {} is not asked about a program that is named itself: "
+                               "check its folder to go by it\n",
+                               project));
+}
+
 /// `told`: the assumptions that are on the screen; those of this check come in their place.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& told) {
     ReadFiles read;
-    CheckArguments what = options.what;
-    what.program = options.programs[0];
-    auto job = job_of(what);
+    auto job = one_job(options);
     if (!job) return failed(job.error());
     read.add(job->program);
     read.add(job->setup);
     if (const auto safe = check_files(options, targets, read); !safe) return failed(safe.error());
+    say_project(*job);
     stop_on_interrupt();
     ProgressLine line;
-    job->detail = detail_of(options);
-    job->engine = options.engine;
-    job->needs_surface = !options.stock.empty() || !options.comparison.empty();
-    job->before_model = say_memory;
-    job->is_stopped = is_interrupted;
     job->after_block = [&line](const CheckProgress& progress) {
         line.show(progress);
         return !is_interrupted();

@@ -203,6 +203,7 @@ core::Result<BatchPass> batch_pass(const CheckOptions& options,
         if (files) files->add_own(store->path());
         store->begin_again();
         state.files = files;
+        if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
         const ExitCode code = pass(options, asked, targets, *store, state);
         state.is_again = true;
         return code;

@@ -136,6 +136,20 @@ TEST_F(Batch, ReadsAProjectInAFolder) {
     EXPECT_EQ(wrong.out, "");
 }
 
+TEST_F(Batch, SaysThatAProjectAboveIsNotAskedAboutAProgramThatIsNamed) {
+    folder.write("feeler.toml", "[[program]]\nfiles = \"*.nc\"\n");
+    fs::create_directory(folder / "sub");
+    for (const std::string name : {"new.nc", "sub/new.nc"}) {
+        folder.write(name, near);
+        EXPECT_THAT(check({folder / name}).err,
+                    HasSubstr("feeler.toml is not asked about a program that is named itself"));
+        EXPECT_THAT(check({folder / name, "--setup", folder / "near.toml"}).err,
+                    Not(HasSubstr("feeler.toml")));
+    }
+    EXPECT_THAT(check({folder / "near.nc"}).err, Not(HasSubstr("is not asked"))); // set-up beside
+    EXPECT_THAT(check({all()}).err, Not(HasSubstr("is not asked")));
+}
+
 TEST_F(Batch, WritesEachFormatToItsFile) {
     const Ran ran =
         check({all(), "--format", "sarif", "-o", folder / "a.sarif", "--format", "junit", "-o",
