@@ -154,7 +154,7 @@ ProgramResult result_from(const Json& json) {
 ProgramResult result_of(const CheckRun& run, const std::string& setup) {
     FileBytes bytes;
     ProgramResult result{.program = shown_name(run.program_file, bytes),
-                         .setup = utf8_text(setup),
+                         .setup = shown_name(setup, bytes),
                          .sha256 = run.sha256,
                          .dialect = std::string(gcode::dialect(run.dialect).name),
                          .engine = name_of(run.engine),
@@ -176,7 +176,7 @@ ProgramResult result_of(const CheckRun& run, const std::string& setup) {
 ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
     FileBytes bytes;
     ProgramResult result{.program = shown_name(job.program, bytes),
-                         .setup = utf8_text(job.setup),
+                         .setup = shown_name(job.setup, bytes),
                          .sha256 = sha256_of_file(job.program),
                          .engine = name_of(job.engine),
                          .error = kept(error, bytes)};

@@ -79,10 +79,10 @@ bool quotes_paths(const ProgramResult& result, const CheckJob& job,
 
 ProgramResult renamed(ProgramResult result, const CheckJob& job) {
     const std::string before = std::exchange(result.program, std::string());
-    result.file_bytes.erase(before);
+    for (const std::string& old : {before, result.setup}) result.file_bytes.erase(old);
     result.program = shown_name(job.program, result.file_bytes);
     if (result.error && result.error->file == before) result.error->file = result.program;
-    result.setup = utf8_text(job.setup);
+    result.setup = shown_name(job.setup, result.file_bytes);
     return result;
 }
 

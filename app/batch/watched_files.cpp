@@ -49,6 +49,12 @@ void WatchedFiles::add_own(const std::string& path) {
     own_.insert(whole_path(folder.string()) / place.filename());
 }
 
+bool WatchedFiles::reads(const std::string& path) const {
+    const FileStamp file = stamp_of(path);
+    return std::any_of(own_reads_.begin(), own_reads_.end(),
+                       [&](const std::string& own) { return stamp_of(own) == file; });
+}
+
 bool WatchedFiles::is_own(const std::string& path) const {
     if (own_.empty()) return false;
     const std::string whole = whole_path(path);
@@ -105,8 +111,12 @@ void WatchedFiles::note(const core::FileLook& look) {
     using enum core::FileQuestion;
     const bool is_named = look.question == in_folder;
     const std::string path = is_named ? (fs::path(look.path) / look.name).string() : look.path;
-    if (path.empty() || is_own(path)) return;
+    if (path.empty()) return;
     const std::lock_guard lock(mutex_);
+    if (is_own(path)) {
+        if (look.question == content || is_named) own_reads_.insert(path);
+        return;
+    }
     const auto [found, is_new] = places_.try_emplace(path);
     Place& place = found->second;
     const Asked before = place.asked;

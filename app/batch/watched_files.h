@@ -27,8 +27,14 @@ public:
 
     size_t size() const { return places_.size(); }
 
+    /// Whether what is in this file of the check's own was asked for, by whatever name.
+    bool reads(const std::string& path) const;
+
     /// Forgets the places, for another check.
-    void begin_again() { places_.clear(); }
+    void begin_again() {
+        places_.clear();
+        own_reads_.clear();
+    }
 
     struct Change {
         std::vector<std::string> paths; // that are not as they were, sorted; each file once
@@ -71,7 +77,7 @@ private:
     std::string names_of(const std::string& folder) const;
     static bool differ(const Asked& asked, const Look& a, const Look& b);
 
-    std::set<std::string> own_;
+    std::set<std::string> own_, own_reads_;
     std::map<std::string, Place> places_; // by path
     std::map<std::string, Seen> fresh_;   // likewise; of earlier checks, too
     std::mutex mutex_;

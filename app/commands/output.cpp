@@ -3,7 +3,9 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,6 +15,10 @@
 
 namespace app {
 namespace {
+
+// What this process has written; as with its signals there is one of it.
+std::mutex written_guard;
+std::map<std::string, FileStamp> written_stamps; // by path
 
 struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -59,16 +65,17 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     auto state = std::make_unique<State>();
     if (path.empty()) return OutputStream(std::move(state));
     state->path = path;
-    const std::filesystem::path target = place_of(path);
     std::error_code failure;
-    const auto kind = std::filesystem::status(target, failure).type();
-    if (kind == std::filesystem::file_type::none)
-        return refused(path, "cannot be written: " + failure.message());
+    const auto kind = std::filesystem::status(path, failure).type();
+    const std::filesystem::path target = place_of(path);
+    if (kind == std::filesystem::file_type::none || target.empty())
+        return refused(path, "cannot be written: "
+                                 + (failure ? failure.message() : "nobody knows where it is"));
     if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
     const bool replace = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
     const std::string fresh =
-        replace ? fmt::format("{}.{}.new", target.string(), ::getpid()) : target.string();
+        replace ? fmt::format("{}.{}.new", target.string(), ::getpid()) : path;
     state->file.reset(std::fopen(fresh.c_str(), replace ? "wb+" : "wb"));
     if (!state->file) return refused(path, "cannot be written: no such folder, or no permission");
     state->fresh = fresh;
@@ -93,7 +100,15 @@ core::Result<void> OutputStream::finish() {
     std::filesystem::rename(state.fresh, state.target, failure);
     if (failure) return state.failed();
     state.fresh.clear();
+    const std::scoped_lock lock(written_guard);
+    written_stamps[state.path] = stamp_of(state.path);
     return {};
+}
+
+FileStamp written_stamp(const std::string& path) {
+    const std::scoped_lock lock(written_guard);
+    const auto written = written_stamps.find(path);
+    return written == written_stamps.end() ? FileStamp{} : written->second;
 }
 
 core::Result<void> OutputStream::give_up() {

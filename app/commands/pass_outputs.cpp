@@ -31,15 +31,15 @@ PassOutputs::PassOutputs(const std::vector<std::string>& paths) {
 }
 
 void PassOutputs::begin_pass() {
-    for (Output& output : outputs_) output.before = stamp_of(output.path);
+    for (Output& output : outputs_) output.before = written_stamp(output.path);
 }
 
-void PassOutputs::end_pass() {
-    for (Output& output : outputs_) {
-        const FileStamp now = stamp_of(output.path);
-        const bool is_new = now != output.before;
-        if (!is_new && now.is_file && now == output.written) take_away(output.path);
-        output.written = is_new ? now : FileStamp{};
+void PassOutputs::end_pass(const WatchedFiles& read) {
+    for (const Output& output : outputs_) {
+        const FileStamp written = written_stamp(output.path);
+        const bool is_old = written.is_file && written == output.before;
+        if (is_old && written == stamp_of(output.path) && !read.reads(output.path))
+            take_away(output.path);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/batch/file_stamp.h"
+#include "app/batch/watched_files.h"
 
 namespace app {
 
@@ -17,14 +18,13 @@ public:
     void begin_pass();
 
     /// It is over: takes away what it has not written but one before it has, and says so. What was
-    /// there before the watch, and what somebody else has written since, stays.
-    void end_pass();
+    /// there before the watch, what somebody else has written since, and what is read, stays.
+    void end_pass(const WatchedFiles& read);
 
 private:
     struct Output {
         std::string path;
-        FileStamp before = {};  // as this pass found it
-        FileStamp written = {}; // as the last pass left it that wrote it
+        FileStamp before = {}; // as the last pass left it that wrote it
     };
 
     std::vector<Output> outputs_;

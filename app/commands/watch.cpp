@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "app/batch/watch_pace.h"
+#include "app/commands/output.h"
 #include "app/commands/pass_outputs.h"
 #include "app/commands/progress.h"
 #include "app/report/text_layout.h"
@@ -62,8 +63,7 @@ std::string names_of(const std::vector<std::string>& paths) {
 
 void say(const std::string& text) {
     std::fflush(stdout);
-    std::fputs(text.c_str(), stderr);
-    std::fflush(stderr);
+    print_note(text);
 }
 
 } // namespace
@@ -72,6 +72,7 @@ ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
     WatchedFiles files(outputs);
+    for (const std::string& path : outputs) files.add_own(place_of(path)); // behind a link, too
     PassOutputs written(outputs);
     while (true) {
         files.begin_again();
@@ -82,7 +83,7 @@ ExitCode watch(const std::vector<std::string>& outputs,
                 [&files](const core::FileLook& look) { files.note(look); });
             code = pass(files);
         }
-        written.end_pass();
+        written.end_pass(files);
         if (is_interrupted()) return code;
         say(fmt::format("feeler: watching {}; Ctrl-C ends it\n", counted(files.size(), "place")));
         const std::vector<std::string> changed = wait_for_change(files);

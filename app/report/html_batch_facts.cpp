@@ -68,7 +68,7 @@ std::string tightest_html(const BatchResult& batch) {
     return fmt::format("{}{:.3f} mm: clearance {}, {} mm to keep, {} / {}, <button type=\"button\" "
                        "class=\"link\" data-program=\"{}\">{}, line {}</button>",
                        tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
-                       bounds_text(tightest.lower, tightest.upper),
+                       bounds_text(tightest.lower, tightest.upper, tightest.allowance),
                        core::at_most(tightest.allowance), html_text(tightest.pair[0]),
                        html_text(tightest.pair[1]), at, html_text(name), tightest.line);
 }

@@ -115,7 +115,7 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
            + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
                          "\xC2\xB7 {1}, {2} mm to keep</button> <code>{3}</code></p>"
                          "</article>\n",
-                         block, bounds_text(pair.lower, upper),
+                         block, bounds_text(pair.lower, upper, pair.allowance.distance),
                          core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));
 }
 

@@ -33,7 +33,8 @@ std::string tightest_text(const CheckRun& run) {
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
     const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
     return fmt::format("{}, {} mm to keep: {} / {} in block {}, line {}",
-                       bounds_text(pair.lower, upper), core::at_most(pair.allowance.distance),
+                       bounds_text(pair.lower, upper, pair.allowance.distance),
+                       core::at_most(pair.allowance.distance),
                        core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
                        core::value_of(block->block), block->line);
 }

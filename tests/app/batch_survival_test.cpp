@@ -81,6 +81,22 @@ TEST_F(BatchSurvival, RefusesTwoReportsInOneFile) {
     EXPECT_FALSE(fs::exists(folder / "report"));
 }
 
+TEST_F(BatchSurvival, RefusesAReportOfWhichNobodyKnowsWhereItWouldBe) {
+    fs::create_symlink("self", folder / "self");
+    for (const std::string& place : {folder / "self", folder / std::string(300, 'n')}) {
+        const Ran ran = feeler({"check", lib(), "--format", "json", "-o", place});
+        EXPECT_EQ(ran.status, 2) << place;
+        EXPECT_THAT(ran.err, HasSubstr(place + ": cannot be written: "));
+    }
+    EXPECT_TRUE(fs::is_symlink(folder / "self"));
+    for (const auto& entry : fs::directory_iterator(fs::current_path()))
+        EXPECT_NE(entry.path().extension(), ".new") << entry.path();
+    const Ran piped = test_support::run({"bash", "-c", "\"$@\" | cat", "_", FEELER_BINARY, "check",
+                                         lib(), "--format", "csv", "-o", "/dev/stdout", "--quiet"});
+    EXPECT_THAT(piped.out, HasSubstr("program,"));
+    EXPECT_EQ(piped.err, "");
+}
+
 TEST_F(BatchSurvival, FollowsLinksToReportsThatAreNotThereYet) {
     fs::create_directory(folder / "reports");
     fs::create_symlink("reports/a.json", folder / "latest");

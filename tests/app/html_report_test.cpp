@@ -133,9 +133,10 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
 }
 
 TEST(HtmlBounds, ShowNoLowerBoundLargerThanItIs) {
-    EXPECT_EQ(bounds_text(1.9996, {}), "1.999 mm or more");
-    EXPECT_EQ(bounds_text(1.9996, 1.9996), "1.999 mm");
-    EXPECT_EQ(bounds_text(1.9996, 2.0024), "1.999 to 2.003 mm");
+    EXPECT_EQ(bounds_text(1.9996, {}, 2.0), "1.999 mm or more");
+    EXPECT_EQ(bounds_text(1.9996, 1.9996, 1.0), "1.999 mm");
+    EXPECT_EQ(bounds_text(1.9996, 2.0024, 1.0), "1.999 to 2.003 mm");
+    EXPECT_EQ(bounds_text(1.9, 1.9996, 2.0), "1.900 to 1.999600 mm");
 }
 
 TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {

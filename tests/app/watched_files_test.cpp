@@ -97,6 +97,19 @@ TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesItself) {
     EXPECT_EQ(changed(), Names{folder.path().filename()});
 }
 
+TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
+    const std::string report = folder.write("report.json", "{}");
+    EXPECT_FALSE(files.reads(report));
+    watch([&] { core::is_there(report); });
+    EXPECT_FALSE(files.reads(report)) << "nothing in it was asked for";
+    fs::create_symlink(report, folder / "link");
+    watch([&] { core::note_look({core::FileQuestion::content, folder / "link", {}, {}}); });
+    EXPECT_TRUE(files.reads(report)) << "by another name";
+    EXPECT_FALSE(files.reads(folder / "a.nc"));
+    files.begin_again();
+    EXPECT_FALSE(files.reads(report));
+}
+
 TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
     folder.write("a.nc", "G0 X2\n");
     watch([&] { core::file_bytes(folder / "a.nc"); });
