@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/batch/file_kind.h"
+#include "app/batch/file_place.h"
 #include "gcode/program_folder.h"
 
 namespace app {
@@ -12,10 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The file that a path leads to; a link that leads nowhere is itself.
 std::string whole_path(const std::string& path) {
     std::error_code failure;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path, failure), failure);
     return failure ? path : whole.string();
+}
+
+/// Where a file is, or will be once it is written.
+std::string written_place(const std::string& path) {
+    const fs::path place = place_of(path);
+    return place.empty() ? path : place.string();
 }
 
 /// Why a file is no program, as the search for programs sees it.
@@ -42,11 +50,7 @@ WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
 
 void WatchedFiles::add_own(const std::string& path) {
     if (path.empty()) return;
-    own_.insert(whole_path(path));
-    // Of a link to it also the name: that is all there is while it leads nowhere.
-    const fs::path place(path);
-    const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
-    own_.insert(whole_path(folder.string()) / place.filename());
+    own_.insert(written_place(path));
 }
 
 bool WatchedFiles::reads(const std::string& path) const {
@@ -57,7 +61,7 @@ bool WatchedFiles::reads(const std::string& path) const {
 
 bool WatchedFiles::is_own(const std::string& path) const {
     if (own_.empty()) return false;
-    const std::string whole = whole_path(path);
+    const std::string whole = written_place(path);
     return std::any_of(own_.begin(), own_.end(), [&](const std::string& own) {
         // A database has these beside it.
         return whole == own || whole == own + "-journal" || whole == own + "-wal"

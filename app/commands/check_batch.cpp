@@ -65,8 +65,8 @@ SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
 }
 
 /// The share of an earlier run must not be taken for that of a run that was killed, or could not
-/// begin. What is no
-/// share is somebody's file: whether it may be replaced is seen when it is written.
+/// begin. What is no share is somebody's file: whether it may be replaced is seen when it is
+/// written.
 core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets) {
         if (target.format != "shard" || !is_shard_file(target.path)) continue;

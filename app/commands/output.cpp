@@ -121,15 +121,6 @@ core::Result<void> OutputStream::give_up() {
     return std::fflush(stdout) == 0 ? core::Result<void>{} : standard_output_failed();
 }
 
-std::filesystem::path place_of(const std::filesystem::path& path) {
-    constexpr int most_links = 40; // as the system
-    std::error_code ignored;
-    std::filesystem::path place = std::filesystem::absolute(path, ignored);
-    for (int i = 0; i < most_links && std::filesystem::is_symlink(place, ignored); ++i)
-        place = place.parent_path() / std::filesystem::read_symlink(place, ignored);
-    return std::filesystem::weakly_canonical(place, ignored);
-}
-
 core::Result<void> check_output(const std::string& output,
                                 std::initializer_list<std::string> read) {
     for (const std::string& input : read) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "app/batch/file_place.h"
 #include "app/batch/file_stamp.h"
 #include "app/commands/commands.h"
 #include "core/base/result.h"
@@ -22,10 +22,6 @@ core::Result<void> write_output(const std::string& path, const std::string& text
 /// The stamp of the file that this process has written last at a path, as it left it; none where it
 /// has written none.
 FileStamp written_stamp(const std::string& path);
-
-/// Where a file is, or will be once it is written: whole, behind all links. Empty where nobody can
-/// know, as behind a loop of links.
-std::filesystem::path place_of(const std::filesystem::path& path);
 
 /// Refuses an output file that is one of the files that are read.
 ///

@@ -72,7 +72,6 @@ ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
     WatchedFiles files(outputs);
-    for (const std::string& path : outputs) files.add_own(place_of(path)); // behind a link, too
     PassOutputs written(outputs);
     while (true) {
         files.begin_again();

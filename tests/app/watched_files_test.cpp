@@ -97,6 +97,20 @@ TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesItself) {
     EXPECT_EQ(changed(), Names{folder.path().filename()});
 }
 
+TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesBehindALinkThatLedNowhere) {
+    fs::create_symlink("new.json", folder / "latest");
+    files.add_own(folder / "latest");
+    const auto look = [&] {
+        for (const char* name : {"latest", "new.json"}) core::is_there(folder / name);
+    };
+    watch(look);
+    folder.write("new.json", "{}");
+    EXPECT_EQ(changed(), Names{});
+    watch(look);
+    folder.write("new.json", "{ }");
+    EXPECT_EQ(changed(), Names{});
+}
+
 TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
     const std::string report = folder.write("report.json", "{}");
     EXPECT_FALSE(files.reads(report));
