@@ -18,4 +18,12 @@ std::string_view command_name(const CanonicalCommand& command) {
     return names[command.index()];
 }
 
+bool is_motion(const CanonicalCommand& command) {
+    return std::holds_alternative<StraightTraverse>(command)
+           || std::holds_alternative<StraightFeed>(command)
+           || std::holds_alternative<ArcFeed>(command)
+           || std::holds_alternative<StraightProbe>(command)
+           || std::holds_alternative<ThreadFeed>(command);
+}
+
 } // namespace gcode

@@ -111,6 +111,9 @@ using CanonicalCommand =
                  SetOffset, UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput,
                  WaitForInput, Message, ProgramStop, OptionalStop, ProgramEnd>;
 
+/// Whether a command moves axes: a rapid, a feed, an arc, a probing move or a thread.
+bool is_motion(const CanonicalCommand& command);
+
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);
 

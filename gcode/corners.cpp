@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+#include "gcode/canonical.h"
 #include "gcode/execution.h"
 #include "gcode/frame_codes.h"
 
@@ -12,16 +14,7 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr double one_degree = std::numbers::pi / 180.0;
 constexpr size_t most_waiting = 1000;
-
-bool is_motion(const CanonicalCommand& command) {
-    return std::holds_alternative<StraightTraverse>(command)
-           || std::holds_alternative<StraightFeed>(command)
-           || std::holds_alternative<ArcFeed>(command)
-           || std::holds_alternative<StraightProbe>(command)
-           || std::holds_alternative<ThreadFeed>(command);
-}
 
 const Position* end_of_feed(const CanonicalCommand& command) {
     if (const auto* move = std::get_if<StraightFeed>(&command)) return &move->end;
@@ -101,7 +94,7 @@ core::Result<CornerCut> cut_between(const CornerWord& word, const CornerSide& fi
     if (!has_length(first))
         return tl::unexpected(refusal(word, ErrorCode::invalid_value,
                                       "the motion it is written behind goes nowhere"));
-    if (bend_between(first, second) <= one_degree) return cut;
+    if (bend_between(first, second) <= core::radians_per_degree) return cut;
     cut = cut_corner(first, second, word.kind, word.size);
     if (cut.fit == CornerFit::none)
         return tl::unexpected(

@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double largest_whole = 9007199254740992.0; // 2^53
 
 double truth(bool holds) { return holds ? 1.0 : 0.0; }
@@ -37,14 +38,14 @@ double sine_of_degrees(double angle) {
     const double turned = std::remainder(angle, 360.0);
     if (turned == 0.0 || std::abs(turned) == 180.0) return 0.0;
     if (std::abs(turned) == 90.0) return turned > 0.0 ? 1.0 : -1.0;
-    return std::sin(angle / degrees);
+    return std::sin(angle / core::degrees_per_radian);
 }
 
 double cosine_of_degrees(double angle) {
     const double turned = std::abs(std::remainder(angle, 360.0));
     if (turned == 90.0) return 0.0;
     if (turned == 0.0 || turned == 180.0) return turned == 0.0 ? 1.0 : -1.0;
-    return std::cos(angle / degrees);
+    return std::cos(angle / core::degrees_per_radian);
 }
 
 /// Something that cannot be computed; empty when it can.
@@ -86,9 +87,9 @@ double of_one(Operation operation, double a) {
     case Operation::absolute:
         return std::abs(a);
     case Operation::arc_cosine:
-        return std::acos(a) * degrees;
+        return std::acos(a) * core::degrees_per_radian;
     case Operation::arc_sine:
-        return std::asin(a) * degrees;
+        return std::asin(a) * core::degrees_per_radian;
     case Operation::cosine:
         return cosine_of_degrees(a);
     case Operation::exponential:
@@ -126,7 +127,7 @@ double of_one(Operation operation, double a) {
     case Operation::away_from_zero:
         return std::copysign(std::ceil(std::abs(a)), a);
     case Operation::arc_tangent_of_one:
-        return std::atan(a) * degrees;
+        return std::atan(a) * core::degrees_per_radian;
     default:
         return truth(a == 0.0); // truth_not
     }
@@ -142,7 +143,7 @@ double of_bits(Operation operation, double a, double b) {
 double of_two(Operation operation, double a, double b, double equality) {
     switch (operation) {
     case Operation::arc_tangent:
-        return std::atan2(a, b) * degrees;
+        return std::atan2(a, b) * core::degrees_per_radian;
     case Operation::hypotenuse:
         return std::hypot(a, b);
     case Operation::power:

@@ -49,24 +49,24 @@ constexpr Operator klartext_operators[] = {{"*", multiply, 5}, {"/", divide, 5},
                                            {"%", modulo, 5},   {"^", power, 6},
                                            {"+", add, 4},      {"-", subtract, 4}};
 
-constexpr Function functions[] = {{"ABS", absolute},
-                                  {"ACOS", arc_cosine},
-                                  {"ASIN", arc_sine},
-                                  {"COS", cosine},
-                                  {"EXP", exponential},
-                                  {"FIX", fix},
-                                  {"FUP", fup},
-                                  {"LN", logarithm},
-                                  {"ROUND", Operation::round},
-                                  {"SIN", sine},
-                                  {"SQRT", square_root},
-                                  {"TAN", tangent},
-                                  {"SQR", square_root},
-                                  {"RND", Operation::round},
-                                  {"BIN", from_decimal_code},
-                                  {"BCD", to_decimal_code},
-                                  {"TRUNC", fix},
-                                  {"NOT", truth_not}};
+constexpr Function unary_functions[] = {{"ABS", absolute},
+                                        {"ACOS", arc_cosine},
+                                        {"ASIN", arc_sine},
+                                        {"COS", cosine},
+                                        {"EXP", exponential},
+                                        {"FIX", fix},
+                                        {"FUP", fup},
+                                        {"LN", logarithm},
+                                        {"ROUND", Operation::round},
+                                        {"SIN", sine},
+                                        {"SQRT", square_root},
+                                        {"TAN", tangent},
+                                        {"SQR", square_root},
+                                        {"RND", Operation::round},
+                                        {"BIN", from_decimal_code},
+                                        {"BCD", to_decimal_code},
+                                        {"TRUNC", fix},
+                                        {"NOT", truth_not}};
 
 // Of two that begin alike, the longer one comes first. The angle of ATAN is that of y over 1.
 constexpr Function klartext_functions[] = {
@@ -94,7 +94,7 @@ std::span<const Operator> operators_of(ExpressionSyntax syntax) {
 
 std::span<const Function> functions_of(ExpressionSyntax syntax) {
     if (syntax == ExpressionSyntax::klartext) return klartext_functions;
-    return functions;
+    return unary_functions;
 }
 
 } // namespace gcode

@@ -12,27 +12,27 @@ namespace {
 
 using core::ErrorCode;
 
-struct Keyword {
+struct FlowKeyword {
     std::string_view spelling;
     FlowKind kind;
 };
 
 // Of two that begin alike, the longer one comes first.
-constexpr Keyword o_keywords[] = {{"SUB", FlowKind::sub},
-                                  {"ENDSUB", FlowKind::end_sub},
-                                  {"CALL", FlowKind::call},
-                                  {"RETURN", FlowKind::return_value},
-                                  {"IF", FlowKind::if_branch},
-                                  {"ELSEIF", FlowKind::else_if},
-                                  {"ELSE", FlowKind::otherwise},
-                                  {"ENDIF", FlowKind::end_if},
-                                  {"WHILE", FlowKind::while_loop},
-                                  {"ENDWHILE", FlowKind::end_while},
-                                  {"DO", FlowKind::do_loop},
-                                  {"REPEAT", FlowKind::repeat},
-                                  {"ENDREPEAT", FlowKind::end_repeat},
-                                  {"BREAK", FlowKind::break_loop},
-                                  {"CONTINUE", FlowKind::continue_loop}};
+constexpr FlowKeyword o_keywords[] = {{"SUB", FlowKind::sub},
+                                      {"ENDSUB", FlowKind::end_sub},
+                                      {"CALL", FlowKind::call},
+                                      {"RETURN", FlowKind::return_value},
+                                      {"IF", FlowKind::if_branch},
+                                      {"ELSEIF", FlowKind::else_if},
+                                      {"ELSE", FlowKind::otherwise},
+                                      {"ENDIF", FlowKind::end_if},
+                                      {"WHILE", FlowKind::while_loop},
+                                      {"ENDWHILE", FlowKind::end_while},
+                                      {"DO", FlowKind::do_loop},
+                                      {"REPEAT", FlowKind::repeat},
+                                      {"ENDREPEAT", FlowKind::end_repeat},
+                                      {"BREAK", FlowKind::break_loop},
+                                      {"CONTINUE", FlowKind::continue_loop}};
 
 class FlowParser {
 public:
@@ -108,7 +108,7 @@ private:
             return refuse(fmt::format("'{}': the number of an O word is whole",
                                       lexer_.line.substr(begin_, lexer_.at - begin_)));
         const std::string letters = lexer_.letters();
-        for (const Keyword& keyword : o_keywords) {
+        for (const FlowKeyword& keyword : o_keywords) {
             const bool fits = only_head_ ? std::string_view(letters).starts_with(keyword.spelling)
                                          : letters == keyword.spelling;
             if (!fits) continue;

@@ -10,10 +10,10 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr size_t most_commands = 200000; // of one block
+constexpr size_t most_cycle_commands = 200000; // of one block
 
 /// A defined cycle at one hole. Heights are program coordinates along the tool axis.
-struct Hole {
+struct KlartextHole {
     Execution& execution;
     const DefinedCycle& cycle;
     PlaneAxes axes;
@@ -44,7 +44,7 @@ struct Hole {
 
 /// Cycle 1, which starts where the tool is; a pause before the bottom of the last peck as in the
 /// manual of the TNC 426: 0.6 mm, for holes deeper than 30 mm a fiftieth, at most 7 mm.
-void peck_from_here(Hole& hole) {
+void peck_from_here(KlartextHole& hole) {
     const double depth = hole.surface - hole.bottom;
     const double pause = depth <= 30.0 ? 0.6 : std::min(depth / 50.0, 7.0);
     const double step = hole.cycle.peck;
@@ -59,7 +59,7 @@ void peck_from_here(Hole& hole) {
 }
 
 /// Cycle 200: out of the hole after each peck, back to the set-up clearance above its bottom.
-void drill(Hole& hole) {
+void drill(KlartextHole& hole) {
     const DefinedCycle& cycle = hole.cycle;
     const double step = cycle.peck > 0.0 ? cycle.peck : hole.surface - hole.bottom;
     for (double level = hole.surface - step; level > hole.bottom + 1e-9; level -= step) {
@@ -74,7 +74,7 @@ void drill(Hole& hole) {
 }
 
 /// Cycles 203 and 205: pecks that become shorter, with chips broken in between.
-void drill_universal(Hole& hole) {
+void drill_universal(KlartextHole& hole) {
     const DefinedCycle& cycle = hole.cycle;
     const bool by_count = cycle.number == 203;
     const double start = hole.surface - std::abs(cycle.start_depth);
@@ -82,7 +82,8 @@ void drill_universal(Hole& hole) {
     double step = cycle.peck > 0.0 ? cycle.peck : start - hole.bottom;
     double level = start, since_break = 0.0;
     int breaks = 0;
-    while (level > hole.bottom + 1e-9 && hole.execution.result.commands.size() < most_commands) {
+    while (level > hole.bottom + 1e-9
+           && hole.execution.result.commands.size() < most_cycle_commands) {
         const double next = std::max(hole.bottom, level - step);
         since_break += level - next;
         level = next;
@@ -108,7 +109,7 @@ void drill_universal(Hole& hole) {
 }
 
 /// Cycle 202: off the wall with a spindle that stands.
-void bore(Hole& hole) {
+void bore(KlartextHole& hole) {
     const core::SpindleDirection turning = hole.execution.modal().spindle;
     hole.feed(hole.bottom);
     hole.dwell(hole.cycle.dwell_below);
@@ -131,7 +132,7 @@ void bore(Hole& hole) {
 }
 
 /// Cycles 206, 207 and 209: the thread is cut on the way in, the spindle turns back on the way out.
-void tap(Hole& hole) {
+void tap(KlartextHole& hole) {
     const ModalState& modal = hole.execution.modal();
     const bool rigid = hole.cycle.number != 206;
     const double feed = rigid ? std::abs(hole.cycle.pitch) * modal.speed : hole.cycle.feed;
@@ -152,7 +153,7 @@ void tap(Hole& hole) {
 }
 
 /// Cycle 208: a helix down to the bottom, a full circle there, and back over the centre.
-core::Result<void> mill_bore(Hole& hole) {
+core::Result<void> mill_bore(KlartextHole& hole) {
     Execution& execution = hole.execution;
     const double tool = to_mm(q_number(execution, 108), execution.modal().unit);
     const double radius = hole.cycle.diameter / 2.0 - tool;
@@ -190,7 +191,7 @@ core::Result<void> mill_bore(Hole& hole) {
     return {};
 }
 
-core::Result<void> machine(Hole& hole) {
+core::Result<void> machine(KlartextHole& hole) {
     switch (hole.cycle.number) {
     case 1:
         peck_from_here(hole);
@@ -235,7 +236,7 @@ core::Result<void> check(const Execution& execution, const DefinedCycle& cycle) 
     const double step = cycle.number == 208     ? cycle.infeed
                         : cycle.decrement > 0.0 ? std::min(cycle.peck, least)
                                                 : cycle.peck;
-    if (step > 0.0 && -cycle.depth / step > most_commands / 4)
+    if (step > 0.0 && -cycle.depth / step > most_cycle_commands / 4)
         return refuse("it makes too many pecks");
     return {};
 }
@@ -348,7 +349,8 @@ core::Result<void> call_defined_cycle(Execution& execution) {
         return refuse_statement(execution, "cycle 1 starts where the tool is, which is not known");
     const double surface = cycle.number == 1 ? *here - cycle.clearance : cycle.surface;
     execution.result.is_cycle = true;
-    Hole hole{execution, cycle, axes, surface, surface + cycle.clearance, surface + cycle.depth};
+    KlartextHole hole{
+        execution, cycle, axes, surface, surface + cycle.clearance, surface + cycle.depth};
     const std::optional<double> feed = modal.feed;
     if (cycle.number != 1) hole.rapid(hole.above);
     if (auto done = machine(hole); !done) return done;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/arc_geometry.h"
 #include "gcode/error_rules.h"
 #include "gcode/klartext.h"
@@ -12,7 +13,6 @@ namespace {
 
 using enum CommandKind;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double shortest = 1e-9; // mm: what is shorter has no direction
 
 /// A motion of the contour: where it ends, and how it gets there.
@@ -73,13 +73,13 @@ core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
         FEELER_TRY(const PlanePoint from, known_point(execution, base_of(execution)));
         const double along = from[0] - pole[0], across = from[1] - pole[1];
         if (relative(radius_word)) radius = std::hypot(along, across);
-        if (relative(angle_word)) angle = std::atan2(across, along) * degrees;
+        if (relative(angle_word)) angle = std::atan2(across, along) * core::degrees_per_radian;
     }
     if (radius_word) radius += length_of(execution, *radius_word);
     if (angle_word) angle += angle_word->value;
     if (turned_deg && angle_word && relative(angle_word)) *turned_deg = angle_word->value;
-    target[axes.first] = pole[0] + radius * std::cos(angle / degrees);
-    target[axes.second] = pole[1] + radius * std::sin(angle / degrees);
+    target[axes.first] = pole[0] + radius * std::cos(angle / core::degrees_per_radian);
+    target[axes.second] = pole[1] + radius * std::sin(angle / core::degrees_per_radian);
     return target;
 }
 

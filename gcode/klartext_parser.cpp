@@ -14,12 +14,12 @@ namespace {
 
 using core::ErrorCode;
 
-struct Keyword {
+struct StatementKeyword {
     std::string_view spelling;
     CommandKind kind;
 };
 
-constexpr Keyword motions[] = {
+constexpr StatementKeyword motions[] = {
     {"L", CommandKind::straight},     {"LP", CommandKind::straight_polar},
     {"CC", CommandKind::pole},        {"C", CommandKind::arc},
     {"CP", CommandKind::arc_polar},   {"CR", CommandKind::arc_of_radius},
@@ -30,7 +30,7 @@ constexpr std::string_view refused[] = {"APPR",  "DEP",      "LN",   "SPL",    "
                                         "FL",    "FLT",      "FPOL", "SEL",    "PATTERN", "TCH",
                                         "TRANS", "FUNCTION", "SQL",  "PRESET", "CONTOUR"};
 
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
 core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
     Command& command = reader.block.command;
@@ -52,7 +52,7 @@ core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
 core::Result<void> read_begin(KlartextReader& reader) {
     std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
     reader.lexer.at = reader.lexer.line.size();
-    while (!rest.empty() && (is_blank(rest.back()) || is_line_end(rest.back())))
+    while (!rest.empty() && (is_blank(rest.back()) || ends_line(rest.back())))
         rest.remove_suffix(1);
     const size_t blank = rest.find_last_of(" \t");
     const std::string_view unit =
@@ -106,7 +106,7 @@ core::Result<void> read_keyword(KlartextReader& reader, const std::string& first
     if (first == "CYCL" || first == "CYCLE") return read_cycle(reader);
     if (first == "CALL") return read_call(reader);
     if (first == "PLANE") return read_plane(reader);
-    for (const Keyword& keyword : motions)
+    for (const StatementKeyword& keyword : motions)
         if (first == keyword.spelling) return read_motion(reader, keyword.kind);
     const bool known =
         std::find(std::begin(refused), std::end(refused), first) != std::end(refused);

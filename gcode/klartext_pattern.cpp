@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/klartext.h"
 
 namespace gcode {
@@ -16,7 +17,6 @@ constexpr double most_places = 10000.0;
 core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };
-    constexpr double radians = std::numbers::pi / 180.0;
     std::vector<PlanePoint> places;
     if (execution.block.command.number == 220) {
         const double count = plain(241);
@@ -28,7 +28,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
         const bool full = std::abs(std::abs(sweep) - 360.0) < 1e-9;
         if (step == 0.0 && count > 1.0) step = sweep / (full ? count : count - 1.0);
         for (int i = 0; i < static_cast<int>(count); ++i) {
-            const double angle = (plain(245) + i * step) * radians;
+            const double angle = (plain(245) + i * step) * core::radians_per_degree;
             places.push_back({length(216) + 0.5 * length(244) * std::cos(angle),
                               length(217) + 0.5 * length(244) * std::sin(angle)});
         }
@@ -38,7 +38,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_places))
         return refuse_statement(execution, "Q242 and Q243 are the numbers of columns and lines, "
                                            "from 1");
-    const double turn = plain(224) * radians;
+    const double turn = plain(224) * core::radians_per_degree;
     for (int row = 0; row < static_cast<int>(rows); ++row)
         for (int i = 0; i < static_cast<int>(columns); ++i) {
             // Every other line is gone along backwards.

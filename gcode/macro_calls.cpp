@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/canonical.h"
 #include "gcode/execution.h"
 #include "gcode/flow.h"
 #include "gcode/subprogram.h"
@@ -73,14 +74,6 @@ core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, si
                 .modal_macro = modal};
     if (macro.rounds > 1 && modal == 0) frame.again = macro.arguments;
     return enter(execution.state, execution.environment, std::move(frame), where);
-}
-
-bool is_motion(const CanonicalCommand& command) {
-    return std::holds_alternative<StraightTraverse>(command)
-           || std::holds_alternative<StraightFeed>(command)
-           || std::holds_alternative<ArcFeed>(command)
-           || std::holds_alternative<StraightProbe>(command)
-           || std::holds_alternative<ThreadFeed>(command);
 }
 
 /// What G66 calls behind a motion, and G66.1 for every block.

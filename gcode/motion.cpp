@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/execution.h"
 #include "gcode/frame_codes.h"
 #include "gcode/motion_codes.h"
@@ -291,9 +292,9 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
                                       "give both @ and ^",
                                       written(first)),
                           first.span);
-    constexpr double radians = std::numbers::pi / 180.0;
     double radius = needs_place ? std::hypot(*target[0], *target[1]) : 0.0;
-    double angle = needs_place ? std::atan2(*target[1], *target[0]) / radians : 0.0;
+    double angle =
+        needs_place ? std::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
     if (!statement.polar_angle && radius < 1e-9)
         return core::fail(
             ErrorCode::missing_value,
@@ -302,8 +303,8 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
     if (statement.polar_radius)
         radius = length_of(execution, *statement.polar_radius) + (incremental ? radius : 0.0);
     if (statement.polar_angle) angle = statement.polar_angle->value + (incremental ? angle : 0.0);
-    target[0] = radius * std::cos(angle * radians);
-    target[1] = radius * std::sin(angle * radians);
+    target[0] = radius * std::cos(angle * core::radians_per_degree);
+    target[1] = radius * std::sin(angle * core::radians_per_degree);
     return {};
 }
 

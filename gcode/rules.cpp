@@ -5,20 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "gcode/canonical.h"
 #include "gcode/execution.h"
 
 namespace gcode {
 namespace {
 
 using core::SourceSpan;
-
-bool is_motion(const CanonicalCommand& command) {
-    return std::holds_alternative<StraightTraverse>(command)
-           || std::holds_alternative<StraightFeed>(command)
-           || std::holds_alternative<ArcFeed>(command)
-           || std::holds_alternative<StraightProbe>(command)
-           || std::holds_alternative<ThreadFeed>(command);
-}
 
 bool moves(const Execution& execution) {
     const auto& commands = execution.result.commands;

@@ -12,7 +12,7 @@ namespace {
 using core::ErrorCode;
 using enum SiemensAction;
 
-using Step = core::Result<void> (*)(Execution&);
+using SiemensStep = core::Result<void> (*)(Execution&);
 
 core::Result<void> say(Execution& execution) {
     const SiemensKeywordUse* use = use_of(execution, message);
@@ -201,7 +201,7 @@ core::Result<void> switch_language(Execution& execution) {
     return {};
 }
 
-constexpr Step steps[] = {
+constexpr SiemensStep siemens_steps[] = {
     use_siemens_words,    note_keywords,      say,
     use_siemens_tool,     turn_spindle,       set_coolant,
     dwell_in_siemens,     select_plane,       select_siemens_offset,
@@ -240,7 +240,7 @@ void turn_siemens_spindle(Execution& execution, int code) {
 }
 
 core::Result<void> run_siemens(Execution& execution) {
-    for (const Step step : steps)
+    for (const SiemensStep step : siemens_steps)
         if (auto done = step(execution); !done) return done;
     return {};
 }

@@ -36,36 +36,37 @@ private:
     LengthUnit unit_;
 };
 
-tl::unexpected<core::Error> refuse(const SiemensKeywordUse& use, std::string_view why,
-                                   ErrorCode code = ErrorCode::invalid_value) {
+tl::unexpected<core::Error> refuse_use(const SiemensKeywordUse& use, std::string_view why,
+                                       ErrorCode code = ErrorCode::invalid_value) {
     return core::fail(code, fmt::format("{}: {}", use.keyword->name, why), use.span);
 }
 
 /// Coarse pitches of metric threads, ISO 261.
-struct Thread {
+struct SiemensThread {
     double size, pitch;
 };
-constexpr Thread threads[] = {{3, 0.5},   {4, 0.7},  {5, 0.8},  {6, 1},    {8, 1.25}, {10, 1.5},
-                              {12, 1.75}, {14, 2},   {16, 2},   {18, 2.5}, {20, 2.5}, {22, 2.5},
-                              {24, 3},    {27, 3},   {30, 3.5}, {33, 3.5}, {36, 4},   {39, 4},
-                              {42, 4.5},  {45, 4.5}, {48, 5}};
+constexpr SiemensThread threads[] = {
+    {3, 0.5},  {4, 0.7},  {5, 0.8},  {6, 1},    {8, 1.25}, {10, 1.5}, {12, 1.75},
+    {14, 2},   {16, 2},   {18, 2.5}, {20, 2.5}, {22, 2.5}, {24, 3},   {27, 3},
+    {30, 3.5}, {33, 3.5}, {36, 4},   {39, 4},   {42, 4.5}, {45, 4.5}, {48, 5}};
 
 /// MPIT, a size, or PIT, a pitch; the sign is the direction of the thread.
 core::Result<double> pitch_of(const SiemensKeywordUse& use, const Values& values, size_t mpit,
                               size_t pit, size_t unit) {
     if (values.plain(unit) > 1.0)
-        return refuse(use,
-                      "pitches in inches or threads per inch are not supported yet: give the "
-                      "pitch in mm",
-                      ErrorCode::unsupported);
+        return refuse_use(use,
+                          "pitches in inches or threads per inch are not supported yet: give the "
+                          "pitch in mm",
+                          ErrorCode::unsupported);
     if (values.plain(pit) != 0.0) return values.plain(pit);
     const double size = values.plain(mpit);
     if (size == 0.0) return 0.0;
-    for (const Thread& thread : threads)
+    for (const SiemensThread& thread : threads)
         if (std::abs(size) == thread.size) return std::copysign(thread.pitch, size);
-    return refuse(use, fmt::format("M{:.12g} is no metric thread from M3 to M48: give the pitch as "
-                                   "PIT",
-                                   std::abs(size)));
+    return refuse_use(use,
+                      fmt::format("M{:.12g} is no metric thread from M3 to M48: give the pitch as "
+                                  "PIT",
+                                  std::abs(size)));
 }
 
 /// Which values stand behind those of the older controls: GMODE, DMODE and AMODE.
@@ -91,17 +92,18 @@ core::Result<void> check_modes(const Execution& execution, const SiemensKeywordU
     const size_t first = first_mode_of(number);
     const int by_shank = number == 81 ? values.digit(first, 0) : values.digit(first, 1);
     if (by_shank != 0)
-        return refuse(use,
-                      fmt::format("its value {} asks for a depth by the diameter or by the "
-                                  "shank of the drill, which is not supported yet: give the "
-                                  "depth of the tip",
-                                  first + 1),
-                      ErrorCode::unsupported);
+        return refuse_use(use,
+                          fmt::format("its value {} asks for a depth by the diameter or by the "
+                                      "shank of the drill, which is not supported yet: give the "
+                                      "depth of the tip",
+                                      first + 1),
+                          ErrorCode::unsupported);
     const int plane = values.digit(first + 1, 0);
     const Plane planes[] = {Plane::xy, Plane::zx, Plane::yz};
     if (plane >= 1 && plane <= 3 && planes[plane - 1] != execution.modal().plane)
-        return refuse(use, fmt::format("it is of the plane G{}, which is not the one that is on",
-                                       16 + plane));
+        return refuse_use(
+            use,
+            fmt::format("it is of the plane G{}, which is not the one that is on", 16 + plane));
     return {};
 }
 
@@ -133,12 +135,12 @@ core::Result<void> read_tapping(SiemensDrilling& cycle, const SiemensKeywordUse&
     FEELER_TRY(cycle.pitch,
                rigid ? pitch_of(use, values, 7, 8, 13) : pitch_of(use, values, 9, 10, 12));
     if (!rigid) return {};
-    if (cycle.pitch == 0.0) return refuse(use, "the pitch is missing: give MPIT or PIT");
+    if (cycle.pitch == 0.0) return refuse_use(use, "the pitch is missing: give MPIT or PIT");
     cycle.speed_in = values.plain(10);
     cycle.speed_out = values.plain(11) > 0.0 ? values.plain(11) : cycle.speed_in;
     if (values.plain(15) != 0.0)
-        return refuse(use, "tapping in several steps (VARI) is not supported yet",
-                      ErrorCode::unsupported);
+        return refuse_use(use, "tapping in several steps (VARI) is not supported yet",
+                          ErrorCode::unsupported);
     return {};
 }
 
@@ -179,18 +181,21 @@ core::Result<void> read_special(SiemensDrilling& cycle, const SiemensKeywordUse&
 
 core::Result<void> check_levels(const SiemensDrilling& cycle, const SiemensKeywordUse& use) {
     if (!(cycle.retract >= cycle.reference))
-        return refuse(use, fmt::format("the retract plane RTP at {:.4f} mm is below the reference "
-                                       "plane RFP at {:.4f} mm (the control's alarm 61101)",
-                                       cycle.retract, cycle.reference));
+        return refuse_use(use,
+                          fmt::format("the retract plane RTP at {:.4f} mm is below the reference "
+                                      "plane RFP at {:.4f} mm (the control's alarm 61101)",
+                                      cycle.retract, cycle.reference));
     if (cycle.bottom > cycle.reference)
-        return refuse(use, fmt::format("the bottom of the hole at {:.4f} mm is above the reference "
-                                       "plane RFP at {:.4f} mm (the control's alarm 61101)",
-                                       cycle.bottom, cycle.reference));
+        return refuse_use(use,
+                          fmt::format("the bottom of the hole at {:.4f} mm is above the reference "
+                                      "plane RFP at {:.4f} mm (the control's alarm 61101)",
+                                      cycle.bottom, cycle.reference));
     if (cycle.number == 83
         && (cycle.first_depth >= cycle.reference || cycle.first_depth < cycle.bottom - 1e-9))
-        return refuse(use, fmt::format("its first depth at {:.4f} mm is not between the reference "
-                                       "plane and the bottom (the control's alarm 61107)",
-                                       cycle.first_depth));
+        return refuse_use(use,
+                          fmt::format("its first depth at {:.4f} mm is not between the reference "
+                                      "plane and the bottom (the control's alarm 61107)",
+                                      cycle.first_depth));
     return {};
 }
 
@@ -201,10 +206,10 @@ core::Result<SiemensDrilling> drilling_of(Execution& execution, const SiemensKey
     constexpr std::string_view names[] = {"RTP", "RFP"};
     for (size_t i = 0; i < 2; ++i)
         if (!values.has(i))
-            return refuse(use, fmt::format("its value {}, {}, is missing", i + 1, names[i]),
-                          ErrorCode::missing_value);
+            return refuse_use(use, fmt::format("its value {}, {}, is missing", i + 1, names[i]),
+                              ErrorCode::missing_value);
     if (!values.has(3) && !values.has(4))
-        return refuse(use, "it has no depth: DP or DPR is missing", ErrorCode::missing_value);
+        return refuse_use(use, "it has no depth: DP or DPR is missing", ErrorCode::missing_value);
     cycle.retract = values.length(0);
     cycle.reference = values.length(1);
     cycle.safety = std::abs(values.length(2));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/error_rules.h"
 #include "gcode/siemens.h"
 
@@ -15,7 +16,7 @@ using core::ErrorCode;
 constexpr size_t most_commands = 200000; // of one block
 
 /// A cycle at one hole. Heights are program coordinates along the tool axis.
-struct Hole {
+struct SiemensHole {
     Execution& execution;
     const SiemensDrilling& cycle;
     size_t normal;
@@ -42,7 +43,8 @@ struct Hole {
     }
 };
 
-tl::unexpected<core::Error> refuse(const Execution& execution, int number, std::string_view why) {
+tl::unexpected<core::Error> refuse_cycle(const Execution& execution, int number,
+                                         std::string_view why) {
     return core::fail(no_feed, fmt::format("CYCLE{}: {}", number, why),
                       {.line = execution.block.line, .column = execution.column, .length = 1});
 }
@@ -50,12 +52,12 @@ tl::unexpected<core::Error> refuse(const Execution& execution, int number, std::
 core::Result<double> modal_rate(const Execution& execution, int number) {
     const ModalState& modal = execution.modal();
     if (!modal.feed || *modal.feed <= 0.0)
-        return refuse(execution, number, "no feed rate F came before it");
+        return refuse_cycle(execution, number, "no feed rate F came before it");
     if (modal.feed_mode == FeedMode::inverse_time)
-        return refuse(execution, number, "a cycle has no time of its own, so not under G93");
+        return refuse_cycle(execution, number, "a cycle has no time of its own, so not under G93");
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (modal.speed <= 0.0)
-        return refuse(execution, number, "under G95 the spindle needs a speed S");
+        return refuse_cycle(execution, number, "under G95 the spindle needs a speed S");
     return *modal.feed * modal.speed;
 }
 
@@ -84,7 +86,7 @@ std::vector<double> depths_of(const SiemensDrilling& cycle) {
     return depths;
 }
 
-core::Result<void> drill_deep(Hole& hole) {
+core::Result<void> drill_deep(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     const double total = cycle.reference - cycle.bottom;
     const double near = cycle.near > 0.0 ? cycle.near
@@ -92,7 +94,7 @@ core::Result<void> drill_deep(Hole& hole) {
                                          : std::min(total / 50.0, 7.0);
     const std::vector<double> depths = depths_of(cycle);
     if (depths.back() < total - 1e-6)
-        return refuse(hole.execution, 83, "it makes too many strokes");
+        return refuse_cycle(hole.execution, 83, "it makes too many strokes");
     for (size_t i = 0; i < depths.size(); ++i) {
         const bool last = i + 1 == depths.size();
         const double level = last ? cycle.bottom : cycle.reference - depths[i];
@@ -111,7 +113,7 @@ core::Result<void> drill_deep(Hole& hole) {
 }
 
 /// CYCLE84 and CYCLE840: in and out in feeds, the spindle reversed between them.
-core::Result<void> tap(Hole& hole) {
+core::Result<void> tap_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     Execution& execution = hole.execution;
     ModalState& modal = execution.modal();
@@ -121,7 +123,8 @@ core::Result<void> tap(Hole& hole) {
     const double out = cycle.speed_out > 0.0 ? cycle.speed_out : in;
     const double pitch = std::abs(cycle.pitch);
     if (pitch > 0.0 && !(in > 0.0))
-        return refuse(execution, cycle.number, "the spindle has no speed: S or SST is missing");
+        return refuse_cycle(execution, cycle.number,
+                            "the spindle has no speed: S or SST is missing");
     const bool left =
         rigid ? cycle.pitch < 0.0 : modal.spindle == core::SpindleDirection::counterclockwise;
     modal.speed = in;
@@ -137,7 +140,7 @@ core::Result<void> tap(Hole& hole) {
 }
 
 /// CYCLE86: off the wall with a spindle that stands, and back over the middle.
-void bore(Hole& hole) {
+void bore_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     Execution& execution = hole.execution;
     const PlaneAxes axes = axes_of(execution.modal().plane);
@@ -159,7 +162,7 @@ void bore(Hole& hole) {
 }
 
 /// CYCLE87 and CYCLE88: the operator starts the way out.
-void bore_and_wait(Hole& hole) {
+void bore_and_wait(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     turn_siemens_spindle(hole.execution, cycle.direction);
     hole.feed(cycle.bottom);
@@ -168,21 +171,21 @@ void bore_and_wait(Hole& hole) {
     hole.execution.emit(ProgramStop{});
 }
 
-core::Result<void> machine(Hole& hole) {
+core::Result<void> machine_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     switch (cycle.number) {
     case 83:
         return drill_deep(hole);
     case 84:
     case 840:
-        return tap(hole);
+        return tap_hole(hole);
     case 85:
         hole.feed(cycle.bottom, cycle.feed_in > 0.0 ? cycle.feed_in : hole.rate);
         hole.dwell(cycle.dwell_below);
         hole.feed(hole.above, cycle.feed_out > 0.0 ? cycle.feed_out : hole.rate);
         return {};
     case 86:
-        bore(hole);
+        bore_hole(hole);
         return {};
     case 87:
     case 88:
@@ -209,11 +212,10 @@ struct HolePlace {
 std::vector<HolePlace> places_of(const Execution& execution, bool row,
                                  const std::vector<double>& given, int count) {
     const auto mm = [&](double value) { return to_mm(value, execution.modal().unit); };
-    constexpr double radians = std::numbers::pi / 180.0;
     std::vector<HolePlace> places;
     for (int i = 0; i < count; ++i) {
         const double step = given[4] == 0.0 ? 360.0 / count : given[4];
-        const double angle = (row ? given[2] : given[3] + i * step) * radians;
+        const double angle = (row ? given[2] : given[3] + i * step) * core::radians_per_degree;
         const double reach = row ? mm(given[3]) + i * mm(given[4]) : mm(given[2]);
         places.push_back(
             {mm(given[0]) + reach * std::cos(angle), mm(given[1]) + reach * std::sin(angle)});
@@ -234,14 +236,14 @@ std::vector<HolePlace> places_of(const Execution& execution, bool row,
 core::Result<void> drill_here(Execution& execution, const SiemensDrilling& cycle) {
     const bool has_pitch = cycle.number == 84 || (cycle.number == 840 && cycle.pitch != 0.0);
     const bool has_feeds = cycle.number == 85 && cycle.feed_in > 0.0 && cycle.feed_out > 0.0;
-    Hole hole{execution, cycle, axes_of(execution.modal().plane).normal, 0.0,
-              cycle.reference + cycle.safety};
+    SiemensHole hole{execution, cycle, axes_of(execution.modal().plane).normal, 0.0,
+                     cycle.reference + cycle.safety};
     if (!has_pitch && !has_feeds) {
         FEELER_TRY(hole.rate, modal_rate(execution, cycle.number));
     }
     execution.result.is_cycle = true;
     hole.rapid(hole.above);
-    if (auto done = machine(hole); !done) return done;
+    if (auto done = machine_hole(hole); !done) return done;
     hole.rapid(cycle.retract);
     return {};
 }

@@ -18,7 +18,7 @@ struct NamedFunction {
 };
 
 // SINUMERIK 840D sl, Programming Manual Job Planning, "Arithmetic functions".
-constexpr NamedFunction functions[] = {
+constexpr NamedFunction siemens_functions[] = {
     {"ABS", Operation::absolute, 1},      {"ACOS", Operation::arc_cosine, 1},
     {"ASIN", Operation::arc_sine, 1},     {"ATAN2", Operation::arc_tangent, 2},
     {"COS", Operation::cosine, 1},        {"EXP", Operation::exponential, 1},
@@ -93,9 +93,9 @@ core::Result<void> ExpressionReader::siemens_parameter(size_t begin) {
 }
 
 core::Result<void> ExpressionReader::siemens_function(size_t begin, std::string_view name) {
-    const auto found = std::find_if(std::begin(functions), std::end(functions),
+    const auto found = std::find_if(std::begin(siemens_functions), std::end(siemens_functions),
                                     [&](const NamedFunction& some) { return some.name == name; });
-    if (found == std::end(functions))
+    if (found == std::end(siemens_functions))
         return core::fail(ErrorCode::unsupported,
                           fmt::format("'{}': there is no such function here; known are SIN, COS, "
                                       "TAN, ASIN, ACOS, ATAN2, SQRT, POT, ABS, ROUND, TRUNC, LN, "

@@ -13,7 +13,7 @@ namespace {
 using core::ErrorCode;
 using enum FlowKind;
 
-tl::unexpected<core::Error> refuse(const FlowStep& step, std::string message) {
+tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string message) {
     return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
 }
 
@@ -66,7 +66,7 @@ const FlowMark* SiemensFlowing::structure() const {
 core::Result<uint32_t> SiemensFlowing::partner(std::string_view wanted) const {
     const FlowMark* mark = structure();
     if (mark && mark->partner) return mark->partner;
-    return refuse(step_, fmt::format("{} is missing", wanted));
+    return refuse_step(step_, fmt::format("{} is missing", wanted));
 }
 
 std::optional<double> number_of(const std::string& name) {
@@ -190,8 +190,9 @@ core::Result<void> SiemensFlowing::repeat_part() {
     }
     const auto begin = last_in(jumps[0].target, lines.begin, line_);
     if (!begin)
-        return refuse(step_, fmt::format("REPEAT: there is no {} before this block to repeat from",
-                                         jumps[0].target));
+        return refuse_step(step_,
+                           fmt::format("REPEAT: there is no {} before this block to repeat from",
+                                       jumps[0].target));
     if (jumps.size() > 1)
         return core::fail(ErrorCode::unsupported,
                           "REPEAT with two labels is not supported yet: put it behind the last "

@@ -17,7 +17,7 @@ bool is_additive(SiemensAction action) {
     return action == add_shift || action == add_turn || action == add_scale || action == add_mirror;
 }
 
-core::Mat3 turn_of(const Execution& execution) {
+core::Mat3 rotation_of_words(const Execution& execution) {
     if (const Word* word = execution.statement.word('Q'))
         return turned_about(static_cast<int>(axes_of(execution.modal().plane).normal), word->value);
     // RPY, as delivered: about Z, then the new Y, then the new X.
@@ -33,7 +33,7 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
                                    AxisValues& others) {
     ProgramFrame step;
     if (action == turn || action == add_turn) {
-        step.linear = turn_of(execution);
+        step.linear = rotation_of_words(execution);
         return step;
     }
     for (size_t axis = 0; axis < axis_count; ++axis) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/arc_geometry.h"
 #include "gcode/error_rules.h"
 #include "gcode/siemens.h"
@@ -16,8 +17,6 @@ using Point = std::array<double, 2>;
 // Motions that keywords begin and that stay on, as G codes do.
 constexpr MotionCode by_point = 9010;   // CIP
 constexpr MotionCode by_tangent = 9020; // CT
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 tl::unexpected<core::Error> refuse(const Execution& execution, std::string_view why,
                                    ErrorCode code = ErrorCode::invalid_value) {
@@ -106,7 +105,8 @@ core::Result<Position> polar_target(Execution& execution) {
         const double along = *execution.modal().position[axes.first] - siemens.pole[0];
         const double across = *execution.modal().position[axes.second] - siemens.pole[1];
         if (!siemens.radius) siemens.radius = std::hypot(along, across);
-        if (!siemens.angle_deg) siemens.angle_deg = std::atan2(across, along) * degrees;
+        if (!siemens.angle_deg)
+            siemens.angle_deg = std::atan2(across, along) * core::degrees_per_radian;
     }
     take(statement.polar_radius, siemens.radius, to_mm(1.0, execution.modal().unit));
     take(statement.polar_angle, siemens.angle_deg, 1.0);
@@ -120,9 +120,10 @@ core::Result<Position> polar_target(Execution& execution) {
         execution.library, execution.environment, execution.dialect, execution.block,
         without,           execution.state,       execution.result,  execution.column};
     FEELER_TRY(Position target, target_of(shared));
-    target[axes.first] = siemens.pole[0] + *siemens.radius * std::cos(*siemens.angle_deg / degrees);
+    target[axes.first] =
+        siemens.pole[0] + *siemens.radius * std::cos(*siemens.angle_deg / core::degrees_per_radian);
     target[axes.second] =
-        siemens.pole[1] + *siemens.radius * std::sin(*siemens.angle_deg / degrees);
+        siemens.pole[1] + *siemens.radius * std::sin(*siemens.angle_deg / core::degrees_per_radian);
     return target;
 }
 
@@ -209,7 +210,7 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const Statement& statement = execution.statement;
-    const double angle = opening.value / degrees;
+    const double angle = opening.value / core::degrees_per_radian;
     if (!(opening.value > 0.0 && opening.value < 360.0))
         return refuse(execution, "AR= is an angle between 0 and 360 degrees");
     const double sign = modal.motion == tenths(2) ? -1.0 : 1.0;
@@ -239,7 +240,7 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
 }
 
 /// G331 and G332: with the spindle into the hole and back, the pitch along the tool.
-core::Result<void> tap(Execution& execution) {
+core::Result<void> read_tapping(Execution& execution) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const Word* pitch = execution.statement.word("IJK"[axes.normal]);
@@ -316,7 +317,7 @@ core::Result<void> move_by_mode(Execution& execution) {
     if (statement.polar_radius || statement.polar_angle) return move_polar(execution);
     if (motion == by_point) return move_by_point(execution);
     if (motion == by_tangent) return move_tangentially(execution);
-    if (motion == tenths(331) || motion == tenths(332)) return tap(execution);
+    if (motion == tenths(331) || motion == tenths(332)) return read_tapping(execution);
     if (motion == tenths(33)) return cut_thread(execution);
     if (motion == tenths(63)) {
         FEELER_TRY(const Position end, target_of(execution));
@@ -383,7 +384,7 @@ core::Result<void> set_pole(Execution& execution) {
     }
     if (execution.statement.polar_radius && execution.statement.polar_angle) {
         const double radius = length_of(execution, *execution.statement.polar_radius);
-        const double angle = execution.statement.polar_angle->value / degrees;
+        const double angle = execution.statement.polar_angle->value / core::degrees_per_radian;
         pole[0] += radius * std::cos(angle);
         pole[1] += radius * std::sin(angle);
     }

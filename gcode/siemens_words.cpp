@@ -11,7 +11,7 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr std::string_view letters_of_lengths = "XYZIJKF";
+constexpr std::string_view siemens_length_letters = "XYZIJKF";
 
 /// Whether a word other than those of axes, modes and tools has a use in its block.
 bool is_used(const Execution& execution, const Word& word) {
@@ -51,7 +51,7 @@ void note_assumed_siemens_units(Execution& execution) {
     ModalState& modal = execution.modal();
     if (modal.unit_said || execution.state.said_unit) return;
     for (const Word& word : execution.block.words) {
-        if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;
+        if (siemens_length_letters.find(word.letter) == std::string_view::npos) continue;
         execution.state.said_unit = true;
         execution.warn(word.span,
                        fmt::format("units not said (G70, G71, G700 or G710) before {}, taken as "

@@ -11,7 +11,7 @@ namespace {
 using core::ErrorCode;
 
 /// How far the chords may be from the curve that they stand for, mm.
-constexpr double chord_error = 0.001;
+constexpr double spline_chord_error = 0.001;
 
 core::Result<SplinePoint> start_of(const Execution& execution) {
     const Position& place = execution.modal().position;
@@ -23,7 +23,7 @@ core::Result<SplinePoint> start_of(const Execution& execution) {
     return SplinePoint{*place[0], *place[1]};
 }
 
-std::optional<double> length_word(const Execution& execution, char letter) {
+std::optional<double> spline_length(const Execution& execution, char letter) {
     const Word* word = execution.statement.word(letter);
     return word ? std::optional(length_of(execution, *word)) : std::nullopt;
 }
@@ -72,7 +72,7 @@ double length_of_chords(SplinePoint from, const std::vector<SplinePoint>& ends) 
 core::Result<void> follow(Execution& execution, const NurbsCurve& curve) {
     const core::SourceSpan where = moving_word(execution).span;
     FEELER_TRY(const std::vector<SplinePoint> ends,
-               placed(chords_within(curve, chord_error), where));
+               placed(chords_within(curve, spline_chord_error), where));
     const double length = length_of_chords(curve.points.front().at, ends);
     FEELER_TRY(const double rate, feed_rate(execution, length));
     execution.result.is_cycle = true;
@@ -87,10 +87,10 @@ core::Result<void> follow(Execution& execution, const NurbsCurve& curve) {
 core::Result<void> cubic(Execution& execution) {
     FEELER_TRY(const SplinePoint start, start_of(execution));
     FEELER_TRY(const Position end, target_of(execution));
-    const CubicWords words = {length_word(execution, 'I'),
-                              length_word(execution, 'J'),
-                              length_word(execution, 'P'),
-                              length_word(execution, 'Q'),
+    const CubicWords words = {spline_length(execution, 'I'),
+                              spline_length(execution, 'J'),
+                              spline_length(execution, 'P'),
+                              spline_length(execution, 'Q'),
                               {*end[0], *end[1]}};
     FEELER_TRY(const CubicSpline spline,
                placed(cubic_spline(start, execution.state.spline->next_tangent, words),
@@ -103,8 +103,8 @@ core::Result<void> quadratic(Execution& execution) {
     FEELER_TRY(const SplinePoint start, start_of(execution));
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const NurbsCurve curve,
-               placed(quadratic_spline(start, length_word(execution, 'I'),
-                                       length_word(execution, 'J'), {*end[0], *end[1]}),
+               placed(quadratic_spline(start, spline_length(execution, 'I'),
+                                       spline_length(execution, 'J'), {*end[0], *end[1]}),
                       moving_word(execution).span));
     return follow(execution, curve);
 }

@@ -15,7 +15,7 @@ constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
 
 /// What one kind of words does. It is asked only where the block has one of its groups of codes or
 /// of its letters. One with neither is asked always, or where the state makes it due.
-struct Step {
+struct ExecutionStep {
     core::Result<void> (*take)(Execution&);
     uint64_t groups = 0;
     uint32_t letters = 0;
@@ -47,7 +47,7 @@ bool may_call(const Execution& execution) {
 using enum ModalGroup;
 
 // NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
-constexpr Step steps[] = {
+constexpr ExecutionStep execution_steps[] = {
     {check_words},
     {note_assumed_units, 0, 0, lacks_units},
     {say_message, 0, 0, has_comments},
@@ -82,24 +82,25 @@ constexpr Step steps[] = {
 
 constexpr uint64_t groups_of_steps = [] {
     uint64_t bits = 0;
-    for (const Step& step : steps) bits |= step.groups;
+    for (const ExecutionStep& step : execution_steps) bits |= step.groups;
     return bits;
 }();
 
 constexpr uint32_t letters_of_steps = [] {
     uint32_t bits = 0;
-    for (const Step& step : steps) bits |= step.letters;
+    for (const ExecutionStep& step : execution_steps) bits |= step.letters;
     return bits;
 }();
 
-constexpr size_t steps_for_all = std::count_if(
-    std::begin(steps), std::end(steps), [](const Step& step) { return step.concerns_all(); });
+constexpr size_t steps_for_all =
+    std::count_if(std::begin(execution_steps), std::end(execution_steps),
+                  [](const ExecutionStep& step) { return step.concerns_all(); });
 
 /// The steps of a block that only moves.
-constexpr std::array<Step, steps_for_all> steps_of_moves = [] {
-    std::array<Step, steps_for_all> found{};
-    std::copy_if(std::begin(steps), std::end(steps), found.begin(),
-                 [](const Step& step) { return step.concerns_all(); });
+constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
+    std::array<ExecutionStep, steps_for_all> found{};
+    std::copy_if(std::begin(execution_steps), std::end(execution_steps), found.begin(),
+                 [](const ExecutionStep& step) { return step.concerns_all(); });
     return found;
 }();
 
@@ -109,8 +110,9 @@ core::Result<void> take_steps(Execution& execution) {
     const Statement& statement = execution.statement;
     const bool only_moves =
         !(statement.groups & groups_of_steps) && !(statement.letters & letters_of_steps);
-    const std::span<const Step> wanted = only_moves ? std::span<const Step>(steps_of_moves) : steps;
-    for (const Step& step : wanted)
+    const std::span<const ExecutionStep> wanted =
+        only_moves ? std::span<const ExecutionStep>(steps_of_moves) : execution_steps;
+    for (const ExecutionStep& step : wanted)
         if (step.concerns(execution))
             if (auto done = step.take(execution); !done) return done;
     return {};

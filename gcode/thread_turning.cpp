@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/motion_codes.h"
 #include "gcode/threading.h"
 
@@ -9,8 +10,6 @@ namespace gcode {
 namespace {
 
 using core::ErrorCode;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// Passes are made with the feed as it is programmed. The control leaves the override on, even
 /// where M49 or M50 had switched it off.
@@ -64,7 +63,7 @@ core::Result<ThreadingWords> words_of(const Execution& execution) {
     words.i = height('I'), words.j = height('J'), words.k = height('K');
     if (value('P')) words.pitch = length_of(execution, *statement.word('P'));
     words.degression = value('R').value_or(words.degression);
-    words.compound_angle = value('Q').value_or(0.0) * degree;
+    words.compound_angle = value('Q').value_or(0.0) * core::radians_per_degree;
     if (value('E')) words.taper_length = length_of(execution, *statement.word('E'));
     if (const Word* word = statement.word('H')) {
         FEELER_TRY(words.spring_passes, whole_number(*word, -1));

@@ -11,7 +11,7 @@ namespace {
 using core::ErrorCode;
 
 /// A thread seen from its drive line: heights count from there towards the material.
-struct Thread {
+struct ThreadPath {
     TurningPoint start, end;
     double inward;       // +1 for an internal thread, -1 for an external one: X of a height
     double along;        // +1 or -1: the direction of cutting on Z
@@ -51,8 +51,8 @@ core::Result<void> check(const ThreadingWords& words) {
     return {};
 }
 
-Thread thread_from_words(TurningPoint start, TurningPoint end, const ThreadingWords& words) {
-    Thread thread{};
+ThreadPath thread_from_words(TurningPoint start, TurningPoint end, const ThreadingWords& words) {
+    ThreadPath thread{};
     thread.start = start;
     thread.end = end;
     thread.inward = *words.i > 0.0 ? 1.0 : -1.0;
@@ -71,7 +71,7 @@ Thread thread_from_words(TurningPoint start, TurningPoint end, const ThreadingWo
     return thread;
 }
 
-void add_pass(std::vector<ThreadingMove>& moves, const Thread& thread, double depth) {
+void add_pass(std::vector<ThreadingMove>& moves, const ThreadPath& thread, double depth) {
     const auto x = [&](double height) { return thread.start.x + thread.inward * height; };
     const double clear = depth - thread.depth;
     const double root = thread.crest + depth;
@@ -95,7 +95,7 @@ void add_pass(std::vector<ThreadingMove>& moves, const Thread& thread, double de
 core::Result<std::vector<ThreadingMove>> threading_moves(TurningPoint start, TurningPoint end,
                                                          const ThreadingWords& words) {
     if (const auto checked = check(words); !checked) return tl::unexpected(checked.error());
-    const Thread thread = thread_from_words(start, end, words);
+    const ThreadPath thread = thread_from_words(start, end, words);
     const double power = 1.0 / std::max(words.degression, 1.0);
     std::vector<ThreadingMove> moves;
     int passes = 1;

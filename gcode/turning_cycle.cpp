@@ -116,14 +116,14 @@ void go_round(Roughing& roughing, const OutlinePiece& piece, ZxPoint end, bool u
     roughing.at = end;
 }
 
-enum class Step : uint8_t { done, not_this_way };
+enum class PassResult : uint8_t { done, not_this_way };
 
-core::Result<Step> dive_along_line(Roughing& roughing, const OutlinePiece& piece, bool rapid,
-                                   double level) {
-    if (piece.start.imag() <= piece.end.imag() + zx_tolerance) return Step::not_this_way;
+core::Result<PassResult> dive_along_line(Roughing& roughing, const OutlinePiece& piece, bool rapid,
+                                         double level) {
+    if (piece.start.imag() <= piece.end.imag() + zx_tolerance) return PassResult::not_this_way;
     if (level < piece.end.imag()) {
         go(roughing, piece.end, rapid);
-        return Step::done;
+        return PassResult::done;
     }
     const std::vector<double> places = crossings(piece, level);
     if (places.empty())
@@ -131,34 +131,34 @@ core::Result<Step> dive_along_line(Roughing& roughing, const OutlinePiece& piece
                           "the cycle starts below a piece of its contour that leads down: start it "
                           "outside of the material");
     go(roughing, {places.front(), level}, rapid);
-    return Step::done;
+    return PassResult::done;
 }
 
-Step dive_along_arc(Roughing& roughing, const OutlinePiece& piece, double level) {
+PassResult dive_along_arc(Roughing& roughing, const OutlinePiece& piece, double level) {
     ZxPoint& at = roughing.at;
     if (std::abs(at - piece.end) < zx_tolerance || (at - piece.end).real() <= zx_tolerance) {
         at = piece.end;
-        return Step::done;
+        return PassResult::done;
     }
     std::vector<double> places = crossings(piece, level);
     if (places.empty()) places = crossings(piece, level - zx_tolerance);
     const double top = piece.centre.real();
     if (piece.counterclockwise) {
-        if (at.real() - zx_tolerance > top) return Step::not_this_way;
+        if (at.real() - zx_tolerance > top) return PassResult::not_this_way;
         const bool whole = places.empty() || places.back() > top;
         go_round(roughing, piece, whole ? piece.end : ZxPoint(places.back(), level), false);
-        return Step::done;
+        return PassResult::done;
     }
-    if (at.real() <= top) return Step::not_this_way;
+    if (at.real() <= top) return PassResult::not_this_way;
     if (places.empty())
         go_round(roughing, piece, piece.end, false);
     else if (places.front() >= top)
         go_round(roughing, piece, {places.front(), level}, false);
-    return Step::done; // also where only the far side is met: the level comes down to it
+    return PassResult::done; // also where only the far side is met: the level comes down to it
 }
 
 /// Goes down along a piece to a level, or to its end if that is higher.
-core::Result<Step> dive(Roughing& roughing, double level) {
+core::Result<PassResult> dive(Roughing& roughing, double level) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (piece.is_arc()) return dive_along_arc(roughing, piece, level);
     return dive_along_line(roughing, piece, roughing.piece == 0, level);
@@ -171,21 +171,21 @@ ZxPoint top_of(const OutlinePiece& piece) {
 }
 
 /// Goes up along a piece from where the tool is.
-core::Result<Step> climb(Roughing& roughing) {
+core::Result<PassResult> climb(Roughing& roughing) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (!piece.is_arc()) {
-        if (piece.end.imag() + zx_tolerance < piece.start.imag()) return Step::not_this_way;
+        if (piece.end.imag() + zx_tolerance < piece.start.imag()) return PassResult::not_this_way;
         if (std::abs(roughing.at - piece.start) > zx_tolerance)
             return core::fail(ErrorCode::invalid_value,
                               "the cycle has lost its contour: its pieces do not meet");
         go(roughing, piece.end, false);
-        return Step::done;
+        return PassResult::done;
     }
     const double across = roughing.at.real() - piece.centre.real();
-    if (piece.counterclockwise ? across < 0.0 : across > 0.0) return Step::not_this_way;
+    if (piece.counterclockwise ? across < 0.0 : across > 0.0) return PassResult::not_this_way;
     go_round(roughing, piece, top_of(piece), true);
     // At its top a counter-clockwise arc may go down again.
-    return piece.counterclockwise ? Step::not_this_way : Step::done;
+    return piece.counterclockwise ? PassResult::not_this_way : PassResult::done;
 }
 
 /// Goes straight across to a piece that rises from the level of the tool, and up along it.
@@ -244,8 +244,8 @@ core::Result<bool> follow_to_pocket(Roughing& roughing) {
         return false;
     }
     for (; roughing.piece < count; ++roughing.piece) {
-        FEELER_TRY(const Step step, climb(roughing));
-        if (step == Step::done) continue;
+        FEELER_TRY(const PassResult step, climb(roughing));
+        if (step == PassResult::done) continue;
         std::vector<double>& tops = roughing.pocket_tops;
         if (roughing.follows_pockets) {
             if (roughing.at.imag() > tops.back() && tops.size() > 1) tops.pop_back();
@@ -260,8 +260,8 @@ core::Result<bool> follow_to_pocket(Roughing& roughing) {
 /// Goes down the first pocket without cutting its levels: G71.1 has cut them before.
 core::Result<void> skip_first_descent(Roughing& roughing) {
     for (; roughing.piece < roughing.pieces.size(); ++roughing.piece) {
-        FEELER_TRY(const Step step, dive(roughing, -1e9));
-        if (step == Step::not_this_way) break;
+        FEELER_TRY(const PassResult step, dive(roughing, -1e9));
+        if (step == PassResult::not_this_way) break;
     }
     roughing.follows_pockets = true;
     return {};
@@ -275,8 +275,8 @@ core::Result<void> cut(Roughing& roughing) {
         if (!(above / roughing.depth < 1e6) || roughing.budget < 0) return endless();
         roughing.budget -= static_cast<std::int64_t>(roughing.pieces.size());
         while (roughing.level - zx_tolerance > roughing.at.imag()) roughing.level -= roughing.depth;
-        FEELER_TRY(const Step step, dive(roughing, roughing.level));
-        if (step == Step::not_this_way) {
+        FEELER_TRY(const PassResult step, dive(roughing, roughing.level));
+        if (step == PassResult::not_this_way) {
             FEELER_TRY(const bool pocket, follow_to_pocket(roughing));
             if (!pocket) return {};
         } else if (std::abs(roughing.at.imag() - roughing.level) > zx_tolerance) {

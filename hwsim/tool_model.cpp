@@ -80,12 +80,12 @@ private:
     std::array<double, 6> borders_{};
 };
 
-constexpr double safety = 1e-9; // mm: more than the doubles here may be off
+constexpr double model_safety = 1e-9; // mm: more than the doubles here may be off
 
 core::Result<Record> cylinder(double low, double high, double radius) {
-    FEELER_TRY(const int32_t z0, fixed(low - safety, Rounding::down));
-    FEELER_TRY(const int32_t z1, fixed(high + safety, Rounding::up));
-    FEELER_TRY(const int32_t r, fixed(radius + safety, Rounding::up));
+    FEELER_TRY(const int32_t z0, fixed(low - model_safety, Rounding::down));
+    FEELER_TRY(const int32_t z1, fixed(high + model_safety, Rounding::up));
+    FEELER_TRY(const int32_t r, fixed(radius + model_safety, Rounding::up));
     if (z1 - z0 > Record::greatest_extent || r > Record::greatest_extent)
         return core::fail(core::ErrorCode::invalid_value,
                           "a part of a tool is larger than the coprocessor's 256 mm");
@@ -95,9 +95,9 @@ core::Result<Record> cylinder(double low, double high, double radius) {
 core::Result<void> add_slices(std::vector<Record>& records, const Outline& outline, double low,
                               double high, double tolerance, int depth) {
     const double radius = outline.radius_within(low, high);
-    const bool is_good = outline.outside(radius, low) <= tolerance
-                         && outline.outside(radius, high) <= tolerance
-                         && high - low <= length_of(Record::greatest_extent) - 2 * lsb - 2 * safety;
+    const bool is_good =
+        outline.outside(radius, low) <= tolerance && outline.outside(radius, high) <= tolerance
+        && high - low <= length_of(Record::greatest_extent) - 2 * lsb - 2 * model_safety;
     if (is_good || depth == 0) {
         FEELER_TRY(const Record record, cylinder(low, high, radius));
         records.push_back(record);

@@ -28,11 +28,6 @@ double shine_of(const Body* body) {
     }
 }
 
-bool is_of_tool(BodyRole role) {
-    return role == BodyRole::flutes || role == BodyRole::shank || role == BodyRole::holder
-           || role == BodyRole::nose;
-}
-
 /// Counts, for each pixel, how often the sight enters the body beyond the plane less how often it
 /// leaves it: what stays is where the plane lies within.
 void begin_counting() {

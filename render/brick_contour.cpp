@@ -17,12 +17,12 @@ constexpr int side = BrickWorkspace::side;
 constexpr size_t nodes = static_cast<size_t>(side) * side * side;
 constexpr int32_t nowhere = -1;
 static_assert(side == lattice_side);
-using Node = std::array<int, 3>;
+using GridNode = std::array<int, 3>;
 
 constexpr size_t row(int j, int k) {
     return static_cast<size_t>(j) + static_cast<size_t>(k) * side;
 }
-constexpr size_t at(const Node& n) {
+constexpr size_t at(const GridNode& n) {
     return static_cast<size_t>(n[0]) + static_cast<size_t>(side) * row(n[1], n[2]);
 }
 constexpr size_t step_of(size_t axis) {
@@ -32,7 +32,7 @@ constexpr size_t step_of(size_t axis) {
 
 /// The cells round an edge, anticlockwise seen from its end, and which of each cell's edges it is.
 struct Around {
-    Node cell;
+    GridNode cell;
     uint8_t edge;
 };
 constexpr std::array<std::array<Around, 4>, 3> cells_around = {
@@ -60,7 +60,7 @@ struct Piece {
 
 class BrickContour {
 public:
-    BrickContour(const core::CutModel& model, const Node& brick, BrickMemory& memory,
+    BrickContour(const core::CutModel& model, const GridNode& brick, BrickMemory& memory,
                  BrickWorkspace& workspace)
         : model_(model),
           grid_(model.lines.grid),
@@ -73,18 +73,18 @@ public:
     StockBrick run();
 
 private:
-    Node global(const Node& n) const {
+    GridNode global(const GridNode& n) const {
         return {first_[0] + n[0], first_[1] + n[1], first_[2] + n[2]};
     }
-    bool is_inside(const Node& n) const {
+    bool is_inside(const GridNode& n) const {
         return (room_.inside[row(n[1], n[2])] >> n[0] & 1U) != 0;
     }
     void vote(int axis);
     bool mark_inside();
     void cross_edges();
-    void cross(int axis, const Node& node, std::vector<BrickMemory::Known>& now, size_t& next);
+    void cross(int axis, const GridNode& node, std::vector<BrickMemory::Known>& now, size_t& next);
     void make_cells();
-    void make_cell(const Node& cell, uint8_t corners);
+    void make_cell(const GridNode& cell, uint8_t corners);
     void add_quads();
     void add_quad(size_t axis, size_t node, const CrossedEdge& edge);
     Piece& piece_at(size_t cell, uint8_t edge);
@@ -103,7 +103,7 @@ private:
     core::Aabb bounds_;
     BrickMemory& memory_;
     BrickWorkspace& room_;
-    Node first_{}; // global number of the lowest node
+    GridNode first_{}; // global number of the lowest node
     std::vector<Piece> pieces_;
     std::vector<size_t> cells_; // those with pieces
     std::vector<int32_t> next_vertex_;
@@ -119,7 +119,7 @@ void BrickContour::vote(int axis) {
     const auto ua = static_cast<size_t>(core::u_axis(axis));
     const auto va = static_cast<size_t>(core::v_axis(axis));
     const int start = first_[static_cast<size_t>(axis)] - 1; // scan line of node 0
-    Node n{};
+    GridNode n{};
     for (n[va] = 0; n[va] < side; ++n[va])
         for (n[ua] = 0; n[ua] < side; ++n[ua]) {
             const int u = first_[ua] + n[ua] - 1, v = first_[va] + n[va] - 1;
@@ -155,7 +155,7 @@ bool BrickContour::mark_inside() {
 }
 
 /// The surface where a line passes it; what is known of the same end is taken over.
-void BrickContour::cross(int axis, const Node& node, std::vector<BrickMemory::Known>& now,
+void BrickContour::cross(int axis, const GridNode& node, std::vector<BrickMemory::Known>& now,
                          size_t& next) {
     const auto number = static_cast<uint32_t>(at(node) + nodes * static_cast<size_t>(axis));
     const core::Crossing crossing =
@@ -216,7 +216,7 @@ void BrickContour::make_cells() {
         }
 }
 
-void BrickContour::make_cell(const Node& cell, uint8_t corners) {
+void BrickContour::make_cell(const GridNode& cell, uint8_t corners) {
     const core::DualCell& dual = core::dual_cell(corners);
     room_.cells[at(cell)] = static_cast<int32_t>(pieces_.size());
     room_.corners[at(cell)] = corners;
@@ -306,8 +306,8 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
 void BrickContour::add_quads() {
     for (const BrickMemory::Known& known : memory_.edges) {
         const size_t axis = known.edge / nodes, node = known.edge % nodes;
-        const Node n = {static_cast<int>(node % side), static_cast<int>(node / side % side),
-                        static_cast<int>(node / (static_cast<size_t>(side) * side))};
+        const GridNode n = {static_cast<int>(node % side), static_cast<int>(node / side % side),
+                            static_cast<int>(node / (static_cast<size_t>(side) * side))};
         if (std::all_of(n.begin(), n.end(), [](int i) { return i > 0 && i <= brick_cells; }))
             add_quad(axis, node, known.crossing);
     }
@@ -341,8 +341,8 @@ void BrickContour::add_crease(size_t axis, size_t cell) {
 
 void BrickContour::add_creases() {
     for (const size_t cell : cells_) {
-        const Node n = {static_cast<int>(cell % side), static_cast<int>(cell / side % side),
-                        static_cast<int>(cell / (static_cast<size_t>(side) * side))};
+        const GridNode n = {static_cast<int>(cell % side), static_cast<int>(cell / side % side),
+                            static_cast<int>(cell / (static_cast<size_t>(side) * side))};
         if (std::any_of(n.begin(), n.end(), [](int i) { return i == 0; })) continue;
         for (size_t axis = 0; axis < 3; ++axis) add_crease(axis, cell);
     }

@@ -7,7 +7,7 @@ namespace render {
 namespace {
 
 /// A cell of the tree on its way up.
-struct Node {
+struct ClusterNode {
     ClusterCell cell;
     std::vector<uint32_t> leaves;
     bool is_one = true; // one place stands for all of it; else what is in it has been settled
@@ -19,7 +19,7 @@ uint64_t order_of(const CellKey& key) {
 
 CellKey parent_of(const CellKey& key) { return {key[0] / 2, key[1] / 2, key[2] / 2}; }
 
-void settle(const Node& node, double width, Clusters& clusters) {
+void settle(const ClusterNode& node, double width, Clusters& clusters) {
     if (!node.is_one) return;
     for (const uint32_t leaf : node.leaves)
         clusters.of_leaf[leaf] = static_cast<uint32_t>(clusters.places.size());
@@ -27,10 +27,11 @@ void settle(const Node& node, double width, Clusters& clusters) {
 }
 
 /// The cells of one parent as one, if that may be; else they are settled.
-Node join(std::span<Node> children, double width, double tolerance, Clusters& clusters) {
-    Node parent;
+ClusterNode join(std::span<ClusterNode> children, double width, double tolerance,
+                 Clusters& clusters) {
+    ClusterNode parent;
     parent.cell.key = parent_of(children.front().cell.key);
-    for (const Node& child : children) {
+    for (const ClusterNode& child : children) {
         parent.is_one = parent.is_one && child.is_one;
         parent.cell.add(child.cell);
     }
@@ -38,7 +39,7 @@ Node join(std::span<Node> children, double width, double tolerance, Clusters& cl
         const core::Vec3 place = parent.cell.place(2.0 * width);
         parent.is_one = parent.cell.planes.at(place) <= tolerance;
     }
-    for (Node& child : children) {
+    for (ClusterNode& child : children) {
         if (parent.is_one)
             parent.leaves.insert(parent.leaves.end(), child.leaves.begin(), child.leaves.end());
         else
@@ -64,13 +65,13 @@ core::Vec3 ClusterCell::place(double width) const {
 Clusters joined(const std::vector<ClusterCell>& leaves, double width, double tolerance) {
     Clusters clusters;
     clusters.of_leaf.resize(leaves.size());
-    std::vector<Node> nodes;
+    std::vector<ClusterNode> nodes;
     for (uint32_t i = 0; i < leaves.size(); ++i) nodes.push_back({leaves[i], {i}});
     while (nodes.size() > 1) {
-        std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
+        std::sort(nodes.begin(), nodes.end(), [](const ClusterNode& a, const ClusterNode& b) {
             return order_of(parent_of(a.cell.key)) < order_of(parent_of(b.cell.key));
         });
-        std::vector<Node> parents;
+        std::vector<ClusterNode> parents;
         for (size_t i = 0; i < nodes.size();) {
             const uint64_t key = order_of(parent_of(nodes[i].cell.key));
             size_t end = i + 1;
@@ -82,7 +83,7 @@ Clusters joined(const std::vector<ClusterCell>& leaves, double width, double tol
         nodes = std::move(parents);
         width *= 2.0;
     }
-    for (const Node& node : nodes) settle(node, width, clusters);
+    for (const ClusterNode& node : nodes) settle(node, width, clusters);
     return clusters;
 }
 

@@ -43,11 +43,6 @@ bool is_kept(const std::optional<SectionPlane>& section, const Vec3& p) {
     return !section || glm::dot(section->normal, p) <= section->offset;
 }
 
-bool is_of_tool(BodyRole role) {
-    return role == BodyRole::flutes || role == BodyRole::shank || role == BodyRole::holder
-           || role == BodyRole::nose;
-}
-
 enum class Side : uint8_t { front, back };
 
 /// The nearest hit of one side of a mesh's triangles before `limit`.

@@ -80,4 +80,9 @@ core::Aabb work_bounds(const Scene& scene) {
     return box.empty() ? bounds(scene) : box;
 }
 
+bool is_of_tool(BodyRole role) {
+    return role == BodyRole::flutes || role == BodyRole::shank || role == BodyRole::holder
+           || role == BodyRole::nose;
+}
+
 } // namespace render

@@ -13,6 +13,9 @@ namespace render {
 
 enum class BodyRole : uint8_t { fixture, clamp, machine, flutes, shank, holder, nose, stock, part };
 
+/// Whether a body belongs to the tool or the spindle that carries it.
+bool is_of_tool(BodyRole role);
+
 /// The colour that bodies of a role have.
 Role color_role(BodyRole role);
 

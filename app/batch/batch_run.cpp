@@ -40,7 +40,7 @@ core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
 }
 
 /// At least one byte, so that every program counts.
-double size_of(const std::string& program) {
+double program_size(const std::string& program) {
     std::error_code failure;
     const auto size = std::filesystem::file_size(program, failure);
     return failure ? 1.0 : static_cast<double>(std::max<std::uintmax_t>(size, 1));
@@ -51,7 +51,7 @@ public:
     BatchRunner(const std::vector<CheckJob>& jobs, const BatchLimits& limits,
                 const BatchHooks& hooks)
         : jobs_(jobs), hooks_(hooks), budget_(limits.memory), results_(jobs.size()) {
-        for (const CheckJob& job : jobs_) sizes_.push_back(size_of(job.program));
+        for (const CheckJob& job : jobs_) sizes_.push_back(program_size(job.program));
         const size_t most = std::min<size_t>(std::max(1U, limits.jobs), jobs.size());
         order_.resize(jobs.size());
         std::iota(order_.begin(), order_.end(), size_t(0));

@@ -8,32 +8,32 @@
 namespace app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using KeyJson = nlohmann::ordered_json;
 
 template <typename T>
-Json optional_json(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
+KeyJson optional_json(const std::optional<T>& value) {
+    return value ? KeyJson(*value) : KeyJson(nullptr);
 }
 
 template <typename T>
-Json enum_json(const std::optional<T>& value) {
-    return value ? Json(static_cast<int>(*value)) : Json(nullptr);
+KeyJson enum_json(const std::optional<T>& value) {
+    return value ? KeyJson(static_cast<int>(*value)) : KeyJson(nullptr);
 }
 
 /// A path to the byte: JSON holds UTF-8 only, and names of files are any bytes.
-Json path_json(const std::string& path) {
+KeyJson path_json(const std::string& path) {
     if (utf8_text(path) == path) return path;
-    Json bytes = Json::array();
+    KeyJson bytes = KeyJson::array();
     for (const char byte : path) bytes.push_back(static_cast<unsigned char>(byte));
     return bytes;
 }
 
-Json settings_json(const ProgramSettings& settings) {
+KeyJson settings_json(const ProgramSettings& settings) {
     // A member that is added is to be said here, too: else this does not compile.
     const auto& [dialect, block_delete, start, machine_unit, max_blocks, counts_smallest_steps, ini,
                  parameters, tool_table, search_path, machine_codes, tool_at_start,
                  spindle_at_start, speed_by_hand] = settings;
-    Json places = Json::array(), folders = Json::array();
+    KeyJson places = KeyJson::array(), folders = KeyJson::array();
     for (const auto& place : start) places.push_back(optional_json(place));
     for (const std::string& folder : search_path) folders.push_back(path_json(folder));
     return {{"dialect", enum_json(dialect)},
@@ -60,24 +60,24 @@ std::optional<std::string> options_text(const CheckJob& job) {
                  before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
                  setup_was_found] = job;
     if (!edits.empty() || edits.tool_at_start) return std::nullopt;
-    Json severities = Json::object();
+    KeyJson severities = KeyJson::object();
     for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);
-    const Json json = {{"rules", severities},
-                       {"setup_was_found", setup_was_found},
-                       {"allowance", optional_json(allowance)},
-                       {"mesh_size", optional_json(mesh_size)},
-                       {"detail", static_cast<int>(detail)},
-                       {"needs_surface", needs_surface},
-                       {"start_line", path_json(start_line)},
-                       {"engine", name_of(engine)},
-                       {"settings", settings_json(settings)}};
+    const KeyJson json = {{"rules", severities},
+                          {"setup_was_found", setup_was_found},
+                          {"allowance", optional_json(allowance)},
+                          {"mesh_size", optional_json(mesh_size)},
+                          {"detail", static_cast<int>(detail)},
+                          {"needs_surface", needs_surface},
+                          {"start_line", path_json(start_line)},
+                          {"engine", name_of(engine)},
+                          {"settings", settings_json(settings)}};
     return json.dump();
 }
 
 std::string result_key(const std::string& build, const CheckJob& job, const std::string& sha256,
                        const std::string& options) {
-    const Json parts =
-        Json::array({build, path_json(job.program), sha256, path_json(job.setup), options});
+    const KeyJson parts =
+        KeyJson::array({build, path_json(job.program), sha256, path_json(job.setup), options});
     return sha256_of(parts.dump());
 }
 

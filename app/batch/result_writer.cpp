@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 constexpr auto gathering = 150ms;
 constexpr size_t most_bytes = size_t{64} << 20; // that wait to be written
 
-size_t size_of(const KeptRow& row) {
+size_t row_size(const KeptRow& row) {
     size_t bytes = sizeof row + row.value.size() + row.options.size();
     for (const InputFile& input : row.inputs)
         bytes += sizeof input + input.path.size() + input.name.size();
@@ -110,7 +110,7 @@ core::Result<void> ResultWriter::put(KeptRow row, Sighting sighting) {
     changed_.wait(lock, [&] { return waiting_.bytes < most_bytes || error_; });
     if (error_) return tl::unexpected(*error_);
     const bool is_first = waiting_.is_empty();
-    waiting_.bytes += size_of(row);
+    waiting_.bytes += row_size(row);
     waiting_.rows.push_back(std::move(row));
     waiting_.sightings.push_back(std::move(sighting));
     tell(is_first);

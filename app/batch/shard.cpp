@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-uintmax_t size_of(const std::string& path) {
+uintmax_t file_size_or_zero(const std::string& path) {
     std::error_code failure;
     const uintmax_t size = std::filesystem::file_size(path, failure);
     return failure ? 0 : size;
@@ -37,7 +37,8 @@ std::vector<PlannedProgram> planned_programs(const BatchPlan& plan) {
     InputAnswers answers;
     std::vector<PlannedProgram> programs;
     for (const CheckJob& job : plan.jobs)
-        programs.push_back({utf8_text(job.program), size_of(job.program), terms_of(job, answers)});
+        programs.push_back(
+            {utf8_text(job.program), file_size_or_zero(job.program), terms_of(job, answers)});
     return programs;
 }
 

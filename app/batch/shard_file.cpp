@@ -15,7 +15,7 @@ namespace {
 
 using Json = KeptJson;
 
-constexpr int format = 1;
+constexpr int shard_format = 1;
 constexpr std::string_view beginning = "{\"feeler_shard\"";
 constexpr double longest = 1e10; // seconds, three centuries
 
@@ -62,7 +62,7 @@ core::Result<std::vector<ProgramResult>> results_from(const Json& json) {
 }
 
 core::Result<Shard> shard_from(const Json& json) {
-    if (whole_from<int>(json.at("feeler_shard")) != format)
+    if (whole_from<int>(json.at("feeler_shard")) != shard_format)
         throw std::invalid_argument("it has another format");
     Shard shard;
     shard.version = json.at("version");
@@ -101,7 +101,7 @@ bool is_newer(const std::string& text) {
     if (colon != beginning.size()) return false;
     const auto [end, wrong] =
         std::from_chars(text.data() + colon + 2, text.data() + text.size(), number);
-    return wrong == std::errc() && number > format && (*end == ',' || *end == '}');
+    return wrong == std::errc() && number > shard_format && (*end == ',' || *end == '}');
 }
 
 } // namespace
@@ -114,7 +114,7 @@ std::string json_of(const Shard& shard) {
     std::string json = fmt::format(
         "{{\"feeler_shard\": {}, \"version\": {}, \"share\": [{}, {}], \"seconds\": {},\n"
         "\"places\": [{}],\n\"unchecked\": [{}]",
-        format, text_of(shard.version), shard.share.i, shard.share.n, text_of(shard.seconds),
+        shard_format, text_of(shard.version), shard.share.i, shard.share.n, text_of(shard.seconds),
         fmt::join(shard.places, ","), fmt::join(shard.unchecked, ","));
     json += list_text("programs", shard.programs, line);
     json += list_text("skipped", shard.skipped, line);

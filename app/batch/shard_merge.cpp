@@ -9,7 +9,7 @@
 namespace app {
 namespace {
 
-core::Error refusal(const std::string& file, std::string why) {
+core::Error merge_error(const std::string& file, std::string why) {
     return {core::ErrorCode::invalid_value, {}, std::move(why), file};
 }
 
@@ -45,12 +45,12 @@ core::Result<void> check_shares(const std::vector<Shard>& shards) {
     for (size_t i = 1; i < shards.size(); ++i) {
         if (const std::string why = difference(shards[0], shards[i]); !why.empty())
             return tl::unexpected(
-                refusal(shards[i].file,
-                        fmt::format("belongs to another batch than {}: {}", shards[0].file, why)));
+                merge_error(shards[i].file, fmt::format("belongs to another batch than {}: {}",
+                                                        shards[0].file, why)));
         if (shards[i].share == shards[i - 1].share)
-            return tl::unexpected(
-                refusal(shards[i].file, fmt::format("is share {}, and so is {}",
-                                                    text_of(shards[i].share), shards[i - 1].file)));
+            return tl::unexpected(merge_error(
+                shards[i].file, fmt::format("is share {}, and so is {}", text_of(shards[i].share),
+                                            shards[i - 1].file)));
     }
     return {};
 }
@@ -88,7 +88,8 @@ public:
         for (size_t i = 0; fits && i < shard.unchecked.size(); ++i)
             fits = is_new(shard.unchecked[i]) && put(shard.unchecked[i], nullptr);
         if (fits) return {};
-        return tl::unexpected(refusal(shard.file, "has a result that is not one of its programs'"));
+        return tl::unexpected(
+            merge_error(shard.file, "has a result that is not one of its programs'"));
     }
 
     core::Result<BatchResult> batch() const {

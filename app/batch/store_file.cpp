@@ -10,7 +10,7 @@ namespace app {
 namespace {
 
 constexpr int64_t application = 0x4665656C; // "Feel"
-constexpr int64_t format = 2;
+constexpr int64_t store_format = 2;
 
 /// Results are never changed. What a check read is shared by all results that read the same.
 constexpr const char* tables = R"(
@@ -66,7 +66,7 @@ constexpr const char* manners = "PRAGMA foreign_keys = ON;"
                                 "PRAGMA journal_mode = TRUNCATE;"
                                 "PRAGMA synchronous = FULL;";
 
-core::Error refusal(const std::string& path, std::string why) {
+core::Error store_error(const std::string& path, std::string why) {
     return {core::ErrorCode::unsupported, {}, std::move(why), path};
 }
 
@@ -76,9 +76,9 @@ core::Result<void> make_tables(Database& database) {
     FEELER_TRY(Transaction making, Transaction::begin(database));
     FEELER_TRY(const int64_t made, database.number("PRAGMA user_version"));
     std::string all = made == 0 ? tables : "";
-    if (made < format) all += seen_table;
-    all +=
-        fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", application, format);
+    if (made < store_format) all += seen_table;
+    all += fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", application,
+                       store_format);
     if (auto done = database.run(all); !done) return done;
     return making.commit();
 }
@@ -88,18 +88,18 @@ core::Result<void> settle(Database& database, const std::string& path, Database:
     FEELER_TRY(const int64_t whose, database.number("PRAGMA application_id"));
     FEELER_TRY(const int64_t content, database.number("SELECT count(*) FROM sqlite_schema"));
     if (content > 0 && whose != application)
-        return tl::unexpected(refusal(path, "is a database of another program"));
-    if (found > format)
-        return tl::unexpected(
-            refusal(path, fmt::format("was written by a newer version of Feeler (its format is {}, "
-                                      "this version knows {})",
-                                      found, format)));
+        return tl::unexpected(store_error(path, "is a database of another program"));
+    if (found > store_format)
+        return tl::unexpected(store_error(
+            path, fmt::format("was written by a newer version of Feeler (its format is {}, "
+                              "this version knows {})",
+                              found, store_format)));
     if (access == Database::Access::read_only) {
-        if (found == format) return {};
-        return tl::unexpected(refusal(path, "was written by an older version of Feeler"));
+        if (found == store_format) return {};
+        return tl::unexpected(store_error(path, "was written by an older version of Feeler"));
     }
     if (auto done = database.run(manners); !done) return tl::unexpected(std::move(done).error());
-    return found == format ? core::Result<void>{} : make_tables(database);
+    return found == store_format ? core::Result<void>{} : make_tables(database);
 }
 
 /// The databases in a folder `.feeler`, sorted.

@@ -25,7 +25,7 @@ std::string_view parent_of(std::string_view folder) {
 }
 
 /// An absolute path without the parts that lead nowhere; the root is empty.
-std::string whole(const std::string& path, const std::string& working_folder) {
+std::string absolute_path(const std::string& path, const std::string& working_folder) {
     std::string plain = plain_path(path.starts_with('/') ? path : working_folder + "/" + path);
     return plain == "/" ? std::string() : plain;
 }
@@ -47,8 +47,9 @@ std::string folder_of(const std::string& database) {
 StorePlaces::StorePlaces(const std::string& database) {
     std::error_code failure;
     working_folder_ = fs::current_path(failure).string();
-    named_folder_ = whole(folder_of(database), working_folder_);
-    folder_ = whole(fs::weakly_canonical(named_folder_ + "/", failure).string(), working_folder_);
+    named_folder_ = absolute_path(folder_of(database), working_folder_);
+    folder_ =
+        absolute_path(fs::weakly_canonical(named_folder_ + "/", failure).string(), working_folder_);
     stamps_ = stamps_of({working_folder_, named_folder_, folder_});
 }
 
@@ -64,7 +65,7 @@ bool StorePlaces::still_hold() const {
 
 std::string StorePlaces::place_of(const std::string& path) const {
     if (path.empty()) return {};
-    const std::string file = whole(path, working_folder_);
+    const std::string file = absolute_path(path, working_folder_);
     for (const std::string& folder : {named_folder_, folder_})
         if (const auto rest = below(file, folder))
             return rest->empty() ? "." : std::string(rest->substr(1));

@@ -7,12 +7,12 @@
 namespace app {
 namespace {
 
-struct Options {
+struct BenchOptions {
     std::string tables, output;
     std::string format = "text";
 };
 
-core::Result<void> bench_paper(const Options& options) {
+core::Result<void> bench_paper(const BenchOptions& options) {
     std::vector<BenchTable> tables;
     for (const BenchScene& scene : bench_scenes()) {
         FEELER_TRY(BenchTable table, measure(scene));
@@ -22,7 +22,7 @@ core::Result<void> bench_paper(const Options& options) {
                         options.format == "csv" ? csv_bench(tables) : text_bench(tables));
 }
 
-ExitCode run_bench(const Options& options) {
+ExitCode run_bench(const BenchOptions& options) {
     const auto done = bench_paper(options);
     if (done) return ExitCode::clear;
     return failed(done.error());
@@ -31,7 +31,7 @@ ExitCode run_bench(const Options& options) {
 } // namespace
 
 void add_bench(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchOptions>();
     CLI::App& command =
         *cli.add_subcommand("bench", "Measure the searches for the closest pair of points");
     command

@@ -12,14 +12,14 @@
 namespace app {
 namespace {
 
-struct Options {
+struct CoprocOptions {
     CheckArguments what;
     std::string config, format = "text", output, vcd;
     std::optional<size_t> from, to;
     bool past_refusals = false, no_fit = false;
 };
 
-core::Result<std::string> report_of(const Options& options, const CoprocessorResult& result) {
+core::Result<std::string> report_of(const CoprocOptions& options, const CoprocessorResult& result) {
     if (options.format == "json") return coprocessor_json(result);
     if (options.format == "csv") return coprocessor_csv(result);
     return coprocessor_text(result);
@@ -35,7 +35,7 @@ struct Trace {
     }
 };
 
-core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
+core::Result<CoprocessorResult> run(const CoprocOptions& options, Trace& trace) {
     DeviceFile file;
     if (!options.config.empty()) {
         FEELER_TRY(file, read_device_file(options.config));
@@ -57,7 +57,7 @@ core::Result<CoprocessorResult> run(const Options& options, Trace& trace) {
     return in_time(std::move(run), file, options.past_refusals);
 }
 
-core::Result<ExitCode> coproc(const Options& options) {
+core::Result<ExitCode> coproc(const CoprocOptions& options) {
     const ReadFiles read;
     for (const std::string& output : {options.output, options.vcd})
         if (auto safe =
@@ -87,7 +87,7 @@ core::Result<ExitCode> coproc(const Options& options) {
 } // namespace
 
 void add_coproc(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CoprocOptions>();
     CLI::App& command = *cli.add_subcommand(
         "coproc", "Run a program beside an emulated coprocessor that permits its blocks");
     add_check_arguments(command, options->what)->required();

@@ -23,7 +23,7 @@ struct Script {
     bool is_file = false;
 };
 
-struct Options {
+struct DebugOptions {
     CheckArguments what;
     std::vector<Script> scripts; // in the order of the command line
     bool batch = false;
@@ -119,7 +119,7 @@ private:
     bool ended_ = false;
 };
 
-ExitCode debug(const Options& options) {
+ExitCode debug(const DebugOptions& options) {
     const auto job = job_of(options.what);
     if (!job) return failed(job.error());
     auto session = DebugSession::open(*job);
@@ -139,7 +139,7 @@ ExitCode debug(const Options& options) {
 } // namespace
 
 void add_debug(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DebugOptions>();
     CLI::App& command =
         *cli.add_subcommand("debug", "Step through a program at a prompt, forwards and back");
     add_check_arguments(command, options->what)->required();

@@ -11,7 +11,7 @@
 namespace app {
 namespace {
 
-struct Options {
+struct DiffOptions {
     CheckArguments what; // the earlier version
     std::string later, later_setup, output, format = "text";
     bool blocks = false;
@@ -29,7 +29,7 @@ core::Result<CheckRun> checked(CheckJob job) {
     return run;
 }
 
-core::Result<ExitCode> compare(const Options& options) {
+core::Result<ExitCode> compare(const DiffOptions& options) {
     const ReadFiles read;
     FEELER_TRY(CheckJob job, job_of(options.what));
     CheckJob later = job;
@@ -56,7 +56,7 @@ core::Result<ExitCode> compare(const Options& options) {
     return diff.is_worse() ? ExitCode::findings : ExitCode::clear;
 }
 
-ExitCode diff(const Options& options) {
+ExitCode diff(const DiffOptions& options) {
     const auto compared = compare(options);
     if (compared) return *compared;
     return failed(compared.error());
@@ -65,7 +65,7 @@ ExitCode diff(const Options& options) {
 } // namespace
 
 void add_diff(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DiffOptions>();
     CLI::App& command = *cli.add_subcommand(
         "diff", "Compare two versions of a program, or of its set-up, block by block");
     add_check_arguments(command, options->what)->required();

@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-struct Options {
+struct DistanceOptions {
     std::string a, b, output;
     std::string format = "text";
     std::string engine = "fast";
@@ -23,7 +23,7 @@ struct Options {
 
 core::Vec3 vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
-core::Result<std::string> answer(const Options& options) {
+core::Result<std::string> answer(const DistanceOptions& options) {
     FEELER_TRY(const NamedBody a, body_argument(options.a));
     FEELER_TRY(const NamedBody b, body_argument(options.b));
     const core::Transform a_from_b{core::rotation_xyz_deg(vector(options.rotate)),
@@ -39,7 +39,7 @@ core::Result<std::string> answer(const Options& options) {
     return text_distance(found, a.name, b.name, sweep != core::Vec3(0.0));
 }
 
-ExitCode distance(const Options& options) {
+ExitCode distance(const DistanceOptions& options) {
     const ReadFiles read;
     const auto text = answer(options);
     if (!text) return failed(text.error());
@@ -58,7 +58,7 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
 } // namespace
 
 void add_distance(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
     const char* body = "A mesh file, or sphere:R, box:X,Y,Z, cylinder:R,H centred on the origin";
     command.add_option("a", options->a, body)->required();

@@ -14,11 +14,11 @@
 namespace app {
 namespace {
 
-struct Options {
+struct HistoryOptions {
     std::string program, cache, output, format = "text";
 };
 
-core::Result<std::vector<std::string>> places_of_stores(const Options& options) {
+core::Result<std::vector<std::string>> places_of_stores(const HistoryOptions& options) {
     std::error_code failure;
     if (!options.cache.empty()) {
         if (std::filesystem::exists(options.cache, failure))
@@ -76,7 +76,7 @@ core::Result<std::vector<KeptVersion>> versions_in(const std::vector<std::string
     return versions;
 }
 
-core::Result<void> write_history(const Options& options) {
+core::Result<void> write_history(const HistoryOptions& options) {
     FEELER_TRY(const std::vector<std::string> places, places_of_stores(options));
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
     for (const std::string& place : places)
@@ -90,7 +90,7 @@ core::Result<void> write_history(const Options& options) {
                                             : history_text(options.program, versions));
 }
 
-ExitCode history(const Options& options) {
+ExitCode history(const HistoryOptions& options) {
     const auto written = write_history(options);
     if (written) return ExitCode::clear;
     return failed(written.error());
@@ -99,7 +99,7 @@ ExitCode history(const Options& options) {
 } // namespace
 
 void add_history(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<HistoryOptions>();
     CLI::App& command = *cli.add_subcommand(
         "history", "Show how a program's results changed from version to version");
     command.add_option("program", options->program, "NC program")->required();

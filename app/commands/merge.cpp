@@ -15,7 +15,7 @@
 namespace app {
 namespace {
 
-struct Options {
+struct MergeOptions {
     std::vector<std::string> files, formats, outputs;
     BatchStyle style;
 };
@@ -78,7 +78,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
                                    shard.file, text_of(shard.share)));
 }
 
-core::Result<ExitCode> merge(const Options& options) {
+core::Result<ExitCode> merge(const MergeOptions& options) {
     outlive_readers();
     ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets,
@@ -94,7 +94,7 @@ core::Result<ExitCode> merge(const Options& options) {
     return end_batch(batch, nullptr, targets, talk, read);
 }
 
-ExitCode merge_aloud(const Options& options) {
+ExitCode merge_aloud(const MergeOptions& options) {
     const auto done = merge(options);
     if (done) return *done;
     return failed(done.error());
@@ -103,7 +103,7 @@ ExitCode merge_aloud(const Options& options) {
 } // namespace
 
 void add_merge(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<MergeOptions>();
     CLI::App& command = *cli.add_subcommand("merge", "Join the shares of check --shard");
     command
         .add_option("shares", options->files, "All files that --format shard has written of them")

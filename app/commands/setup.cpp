@@ -10,12 +10,12 @@
 namespace app {
 namespace {
 
-struct Options {
+struct SetupOptions {
     std::string program, output;
     ProgramArguments reading;
 };
 
-core::Result<void> write_setup(const Options& options) {
+core::Result<void> write_setup(const SetupOptions& options) {
     const ReadFiles read;
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
@@ -24,7 +24,7 @@ core::Result<void> write_setup(const Options& options) {
     return write_output(options.output, setup_text(setup, options.program), read);
 }
 
-ExitCode setup(const Options& options) {
+ExitCode setup(const SetupOptions& options) {
     auto written = write_setup(options);
     if (written) return ExitCode::clear;
     if (written.error().file.empty()) written.error().file = options.program;
@@ -34,7 +34,7 @@ ExitCode setup(const Options& options) {
 } // namespace
 
 void add_setup(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SetupOptions>();
     CLI::App& command =
         *cli.add_subcommand("setup", "Write a set-up file from what a program says");
     command.add_option("program", options->program, "NC program")->required();

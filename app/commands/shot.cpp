@@ -26,7 +26,7 @@ using viewer::ViewModel;
 constexpr size_t most_prints = 60;  // of a sheet
 constexpr size_t most_frames = 500; // of a film: 20 seconds
 
-struct Options {
+struct ShotOptions {
     CheckArguments what;
     viewer::DeviceChoice device;
     std::string output, view = "iso", theme = "dark", size = "1440x900";
@@ -58,7 +58,7 @@ std::string block_numbers(const ViewModel& model) {
                        model.rows.size() - 1);
 }
 
-core::Result<size_t> chosen_block(const Options& options, const ViewModel& model) {
+core::Result<size_t> chosen_block(const ShotOptions& options, const ViewModel& model) {
     if (options.block) {
         if (*options.block < model.rows.size()) return *options.block;
         return tl::unexpected(no_such("--block: " + block_numbers(model)));
@@ -75,7 +75,7 @@ core::Result<size_t> chosen_block(const Options& options, const ViewModel& model
     return core::value_of(*finding.block);
 }
 
-core::Result<void> shoot_block(const Options& options, const render::Viewport& size,
+core::Result<void> shoot_block(const ShotOptions& options, const render::Viewport& size,
                                Studio& studio) {
     FEELER_TRY(const size_t block, chosen_block(options, studio.model));
     if (options.block)
@@ -111,7 +111,7 @@ std::string caption_of(const ViewModel& model, size_t block, const std::vector<s
     return text;
 }
 
-core::Result<void> shoot_sheet(const Options& options, Studio& studio) {
+core::Result<void> shoot_sheet(const ShotOptions& options, Studio& studio) {
     const render::Viewport size{460, 330};
     std::vector<Studio::Print> prints;
     const auto blocks = blocks_with_findings(studio.model);
@@ -133,7 +133,7 @@ core::Result<void> shoot_sheet(const Options& options, Studio& studio) {
     return render::write_png(image, options.output);
 }
 
-core::Result<void> shoot_film(const Options& options, const render::Viewport& size,
+core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport& size,
                               Studio& studio) {
     ViewModel& model = studio.model;
     const size_t from = options.from.value_or(0), to = options.to.value_or(model.rows.size() - 1);
@@ -180,7 +180,7 @@ core::Result<void> check_replaced(const std::string& output) {
          output});
 }
 
-core::Result<void> shoot(const Options& options) {
+core::Result<void> shoot(const ShotOptions& options) {
     ReadFiles read;
     FEELER_TRY(const CheckJob job, job_of(options.what));
     FEELER_TRY(const render::Viewport size, size_in(options.size));
@@ -203,7 +203,7 @@ core::Result<void> shoot(const Options& options) {
 }
 
 /// What is to be seen: one of these.
-void add_subject(CLI::App& command, Options& options) {
+void add_subject(CLI::App& command, ShotOptions& options) {
     auto* block = command.add_option("--block", options.block,
                                      "The end of this block, numbered as in the reports of check");
     auto* worst = command.add_flag("--worst", options.worst,
@@ -218,7 +218,7 @@ void add_subject(CLI::App& command, Options& options) {
             if (one != other) one->excludes(other);
 }
 
-void add_looks(CLI::App& command, Options& options) {
+void add_looks(CLI::App& command, ShotOptions& options) {
     command.add_option("--size", options.size, "Pixels")->capture_default_str();
     command.add_option("--view", options.view, "From where")
         ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
@@ -232,7 +232,7 @@ void add_looks(CLI::App& command, Options& options) {
 } // namespace
 
 void add_shot(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ShotOptions>();
     CLI::App& command = *cli.add_subcommand("shot", "Take pictures of a program, without a window");
     add_check_arguments(command, options->what)->required();
     add_subject(command, *options);

@@ -16,14 +16,14 @@ namespace {
 
 constexpr size_t buffer_size = 65536; // bytes that are written at once
 
-struct Options {
+struct TraceOptions {
     std::string program, setup, output;
     ProgramArguments reading;
     std::string format = "text";
 };
 
 /// What the program is read in, but for the dialect, which is empty when nobody states it.
-core::Result<gcode::Environment> environment_of(const Options& options,
+core::Result<gcode::Environment> environment_of(const TraceOptions& options,
                                                 std::optional<gcode::DialectId>& dialect) {
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     if (!options.setup.empty()) {
@@ -55,7 +55,7 @@ core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> st
 
 /// A trace on its way: each block is written before the next one is read.
 struct Tracing {
-    const Options& options;
+    const TraceOptions& options;
     const gcode::Environment& environment;
     OutputStream out;
     const ReadFiles& read;
@@ -106,7 +106,7 @@ struct Tracing {
     }
 };
 
-core::Result<void> run_trace(const Options& options) {
+core::Result<void> run_trace(const TraceOptions& options) {
     const ReadFiles read;
     FEELER_TRY(gcode::Program program, gcode::open_program(options.program));
     const auto safe = check_output(options.output, {options.program, options.setup});
@@ -126,7 +126,7 @@ core::Result<void> run_trace(const Options& options) {
     return traced;
 }
 
-ExitCode trace(const Options& options) {
+ExitCode trace(const TraceOptions& options) {
     auto traced = run_trace(options);
     if (traced) return ExitCode::clear;
     core::Error error = std::move(traced).error();
@@ -137,7 +137,7 @@ ExitCode trace(const Options& options) {
 } // namespace
 
 void add_trace(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<TraceOptions>();
     CLI::App& command = *cli.add_subcommand("trace", "Print the canonical commands of a program");
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("--setup", options->setup,

@@ -27,13 +27,13 @@ std::filesystem::path pictures_folder(const std::string& program) {
     return std::filesystem::path(program).parent_path();
 }
 
-struct Options {
+struct ViewOptions {
     CheckArguments what;
     viewer::DeviceChoice device;
     std::string frame_log;
 };
 
-ExitCode view(const Options& options) {
+ExitCode view(const ViewOptions& options) {
     const CheckArguments& arguments = options.what;
     auto check = job_of(arguments);
     if (!check) return failed(check.error());
@@ -58,7 +58,7 @@ ExitCode view(const Options& options) {
 } // namespace
 
 void add_view(CLI::App& cli, ExitCode& exit_code) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ViewOptions>();
     CLI::App& command =
         *cli.add_subcommand("view", "Step through a program in a window and see it");
     add_check_arguments(command, options->what)

@@ -15,7 +15,7 @@ std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-constexpr const char* column_names =
+constexpr const char* batch_column_names =
     "program,setup,sha256,dialect,verdict,status,errors,warnings,notes,blocks,cycle_time,removed,"
     "tightest_line,lower,upper,allowance,part,body,seconds,error\r\n";
 
@@ -77,7 +77,7 @@ std::string batch_lines_report(const BatchResult& batch) {
 }
 
 std::string batch_csv_report(const BatchResult& batch) {
-    std::string text = column_names;
+    std::string text = batch_column_names;
     for (const ProgramResult& program : batch.programs) text += row_of(program);
     for (const std::string& program : batch.unchecked)
         text += csv_cell(program) + ",,,,not checked,2,,,,,,,,,,,,,,\r\n";

@@ -8,7 +8,7 @@
 namespace app {
 namespace {
 
-constexpr const char* column_names =
+constexpr const char* block_column_names =
     "block,file,line,calls,text,motion,tool,time,duration,removed,lower,upper,allowance,part,body,"
     "at,part_x,part_y,part_z,body_x,body_y,body_z,verdict,rules\r\n";
 
@@ -47,7 +47,7 @@ std::string clearance_cells(const CheckRun& run, const core::BlockResult& result
 
 std::string csv_report(const CheckRun& run) {
     auto rules = rules_of_blocks(run);
-    std::string text = column_names;
+    std::string text = block_column_names;
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         const std::string tool =

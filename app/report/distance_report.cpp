@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json array_of(const core::Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+Json json_point(const core::Vec3& p) { return Json::array({p.x, p.y, p.z}); }
 
 } // namespace
 
@@ -21,7 +21,7 @@ std::string json_distance(const BodyPairDistance& found) {
     json["distance"] = found.distance;
     json["lower"] = found.lower;
     json["upper"] = found.upper;
-    json["witness"] = Json::array({array_of(found.on_a), array_of(found.on_b)});
+    json["witness"] = Json::array({json_point(found.on_a), json_point(found.on_b)});
     json["at"] = found.at;
     json["points"] = {found.points_a, found.points_b};
     json["sphere_tests"] = found.node_tests;

@@ -14,9 +14,9 @@ namespace app {
 namespace {
 
 /// A SHA-256 that is fed piece by piece.
-class Digest {
+class TextDigest {
 public:
-    Digest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    TextDigest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
         is_good_ = context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1;
     }
 
@@ -42,7 +42,7 @@ private:
 } // namespace
 
 std::string sha256_of(std::string_view bytes) {
-    Digest digest;
+    TextDigest digest;
     digest.add(bytes);
     return std::move(digest).finish();
 }
@@ -51,7 +51,7 @@ std::string sha256_of_file(const std::string& path) {
     if (!core::is_file(path)) return {};
     std::ifstream file(path, std::ios::binary);
     if (!file) return {};
-    Digest digest;
+    TextDigest digest;
     std::array<char, 65536> chunk;
     while (file.read(chunk.data(), chunk.size()) || file.gcount() > 0)
         digest.add({chunk.data(), static_cast<size_t>(file.gcount())});

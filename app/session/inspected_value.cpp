@@ -16,7 +16,7 @@ using core::ErrorCode;
 using gcode::axis_letters;
 
 /// What an expression means.
-enum class Kind : uint8_t {
+enum class ValueKind : uint8_t {
     numbered, // `index` behind `letter`
     named,    // #<name>
     declared, // $AA_IM[X] and what a program of Siemens declares
@@ -32,7 +32,7 @@ enum class Kind : uint8_t {
 };
 
 struct Reference {
-    Kind kind;
+    ValueKind kind;
     size_t index = 0;
     size_t axis = 0;
     char letter = '\0';
@@ -46,7 +46,7 @@ std::string without_blanks(std::string_view text) {
     return rest;
 }
 
-std::optional<size_t> whole(std::string_view text) {
+std::optional<size_t> index_in(std::string_view text) {
     size_t number = 0;
     const char* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, number);
@@ -61,7 +61,7 @@ std::optional<size_t> axis_named(std::string_view letter) {
     return std::nullopt;
 }
 
-std::string capitals(std::string_view small) {
+std::string upper_case(std::string_view small) {
     std::string text(small);
     for (char& c : text)
         if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
@@ -75,23 +75,24 @@ std::optional<Reference> dotted(std::string_view text) {
     const auto axis = axis_named(text.substr(dot + 1));
     const std::string_view of = text.substr(0, dot);
     if (!axis) return std::nullopt;
-    if (of == "machine") return Reference{.kind = Kind::machine_axis, .axis = *axis};
-    if (of == "g52") return Reference{.kind = Kind::local_origin, .axis = *axis};
-    if (of == "g92") return Reference{.kind = Kind::axis_origin, .axis = *axis};
-    if (const auto index = offset_named(capitals(of)))
-        return Reference{.kind = Kind::origin, .index = *index, .axis = *axis};
+    if (of == "machine") return Reference{.kind = ValueKind::machine_axis, .axis = *axis};
+    if (of == "g52") return Reference{.kind = ValueKind::local_origin, .axis = *axis};
+    if (of == "g92") return Reference{.kind = ValueKind::axis_origin, .axis = *axis};
+    if (const auto index = offset_named(upper_case(of)))
+        return Reference{.kind = ValueKind::origin, .index = *index, .axis = *axis};
     return std::nullopt;
 }
 
 std::optional<Reference> parameter(std::string_view text) {
     if (text.starts_with("#<") && text.ends_with(">") && text.size() > 3)
-        return Reference{.kind = Kind::named, .name = std::string(text.substr(2, text.size() - 3))};
+        return Reference{.kind = ValueKind::named,
+                         .name = std::string(text.substr(2, text.size() - 3))};
     if (text.front() == '$' && text.size() > 1)
-        return Reference{.kind = Kind::declared, .name = std::string(text)};
+        return Reference{.kind = ValueKind::declared, .name = std::string(text)};
     if (text.front() != '#' && text.front() != 'r' && text.front() != 'q') return std::nullopt;
-    const auto number = whole(text.substr(1));
+    const auto number = index_in(text.substr(1));
     if (!number) return std::nullopt;
-    return Reference{.kind = Kind::numbered, .index = *number, .letter = text.front()};
+    return Reference{.kind = ValueKind::numbered, .index = *number, .letter = text.front()};
 }
 
 std::optional<Reference> modal(std::string_view text) {
@@ -100,7 +101,7 @@ std::optional<Reference> modal(std::string_view text) {
     if (text == "t") text = "tool";
     const auto table = modal_table();
     for (size_t index = 0; index < table.size(); ++index)
-        if (table[index].name == text) return Reference{.kind = Kind::modal, .index = index};
+        if (table[index].name == text) return Reference{.kind = ValueKind::modal, .index = index};
     return std::nullopt;
 }
 
@@ -108,15 +109,17 @@ std::optional<Reference> modal(std::string_view text) {
 std::optional<Reference> reference_in(std::string_view text) {
     if (text.empty()) return std::nullopt;
     if (const auto found = parameter(text)) return found;
-    if (const auto axis = axis_named(text)) return Reference{.kind = Kind::axis, .axis = *axis};
+    if (const auto axis = axis_named(text))
+        return Reference{.kind = ValueKind::axis, .axis = *axis};
     if (const auto found = modal(text)) return found;
     if (const auto found = dotted(text)) return found;
-    if (const auto index = offset_named(capitals(text)))
-        return Reference{.kind = Kind::offset, .index = *index};
+    if (const auto index = offset_named(upper_case(text)))
+        return Reference{.kind = ValueKind::offset, .index = *index};
     if (text.front() != 'h' && text.front() != 'd') return std::nullopt;
-    const auto number = whole(text.substr(1));
+    const auto number = index_in(text.substr(1));
     if (!number) return std::nullopt;
-    return Reference{.kind = text.front() == 'h' ? Kind::length : Kind::diameter, .index = *number};
+    return Reference{.kind = text.front() == 'h' ? ValueKind::length : ValueKind::diameter,
+                     .index = *number};
 }
 
 char parameter_letter(const gcode::Dialect& dialect) {
@@ -140,7 +143,7 @@ core::Result<InspectedValue> numbered(const Reference& asked,
     if (letter != (asked.letter == '#' ? '#' : static_cast<char>(asked.letter - 'a' + 'A')))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("this control has no {}{}: its parameters are {}1, {}2, ...",
-                                      capitals(std::string(1, asked.letter)), asked.index, letter,
+                                      upper_case(std::string(1, asked.letter)), asked.index, letter,
                                       letter));
     FEELER_TRY(const gcode::Value value,
                parameters_of(control, environment).numbered(static_cast<double>(asked.index), {}));
@@ -179,28 +182,28 @@ core::Result<InspectedValue> read(const Reference& asked, const gcode::Interpret
     const gcode::ModalState& modal = control.modal;
     const gcode::Tables& tables = *control.tables;
     switch (asked.kind) {
-    case Kind::numbered:
+    case ValueKind::numbered:
         return numbered(asked, control, environment);
-    case Kind::named:
-    case Kind::declared:
+    case ValueKind::named:
+    case ValueKind::declared:
         return named(asked, control, environment);
-    case Kind::modal:
+    case ValueKind::modal:
         return modal_table()[asked.index].read(control, gcode::dialect(environment.dialect));
-    case Kind::axis:
+    case ValueKind::axis:
         return axis_quantity(asked.axis, modal.position[asked.axis]);
-    case Kind::machine_axis:
+    case ValueKind::machine_axis:
         return axis_quantity(
             asked.axis, gcode::machine_from_program(modal.offsets, modal.position)[asked.axis]);
-    case Kind::offset:
+    case ValueKind::offset:
         return InspectedValue{std::nullopt, text_of(gcode::work_offset(tables, asked.index))};
-    case Kind::origin:
+    case ValueKind::origin:
         return axis_quantity(asked.axis,
                              gcode::work_offset(tables, asked.index).origin[asked.axis]);
-    case Kind::local_origin:
+    case ValueKind::local_origin:
         return axis_quantity(asked.axis, modal.offsets.local[asked.axis]);
-    case Kind::axis_origin:
+    case ValueKind::axis_origin:
         return axis_quantity(asked.axis, modal.offsets.axis[asked.axis]);
-    case Kind::length:
+    case ValueKind::length:
         return of_table(gcode::length_under(tables, static_cast<int>(asked.index)));
     default:
         return of_table(gcode::diameter_under(tables, static_cast<int>(asked.index)));
@@ -248,7 +251,7 @@ core::Result<InspectedValue> value_of(const std::string& expression,
     if (const auto asked = reference_in(text)) return read(*asked, control, environment);
     const bool declares = gcode::dialect(environment.dialect).names_are_declared;
     if (declares && !text.empty() && parameters_of(control, environment).exists(text))
-        return named({.kind = Kind::declared, .name = text}, control, environment);
+        return named({.kind = ValueKind::declared, .name = text}, control, environment);
     if (text.empty()) return core::fail(ErrorCode::invalid_value, "no value is named");
     const std::string nearest = core::nearest_name(text, all_names());
     return core::fail(ErrorCode::invalid_value,

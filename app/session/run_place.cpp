@@ -6,14 +6,14 @@ namespace app {
 namespace {
 
 /// FNV-1a over words of 64 bits.
-struct Digest {
+struct StateDigest {
     uint64_t value = 1469598103934665603ULL;
 
     void add(uint64_t word) { value = (value ^ word) * 1099511628211ULL; }
     void add(double number) { add(std::bit_cast<uint64_t>(number)); }
 };
 
-void add(Digest& digest, const core::ScanLines& lines) {
+void add(StateDigest& digest, const core::ScanLines& lines) {
     for (int v = 0; v < lines.v_count(); ++v)
         for (int u = 0; u < lines.u_count(); ++u) {
             const core::LineView line = lines.line(u, v);
@@ -28,7 +28,7 @@ void add(Digest& digest, const core::ScanLines& lines) {
         }
 }
 
-void add(Digest& digest, const core::SimulatorState& machine) {
+void add(StateDigest& digest, const core::SimulatorState& machine) {
     for (const core::ScanLines& family : machine.stock.lines.families) add(digest, family);
     add(digest, machine.stock.columns);
     digest.add(machine.stock.log.size());
@@ -57,7 +57,7 @@ RunPlace start_of_program(const gcode::Environment& environment, const core::Set
 }
 
 uint64_t digest_of(const RunPlace& place) {
-    Digest digest;
+    StateDigest digest;
     digest.add(gcode::digest_of(place.control));
     digest.add(uint64_t(place.control.next_block));
     add(digest, place.machine);

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+
 namespace app {
 namespace {
-
-constexpr double seconds_per_minute = 60.0;
 
 /// The numbers of an ini file about one axis, in mm or degrees.
 class AxisNumbers {
@@ -72,8 +72,8 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
         bool some = places && take(axis.min, numbers.number("min_limit"));
         some = (places && take(axis.max, numbers.number("max_limit"))) || some;
         some = (places && take(axis.home, numbers.number("home"))) || some;
-        some =
-            take_above_zero(axis.rapid, numbers.number("max_velocity"), seconds_per_minute) || some;
+        some = take_above_zero(axis.rapid, numbers.number("max_velocity"), core::seconds_per_minute)
+               || some;
         some = take_above_zero(axis.acceleration, numbers.number("max_acceleration"), 1.0) || some;
         if (some) taken += core::axis_letters[i];
         ++joint;

@@ -12,8 +12,8 @@
 namespace app {
 namespace {
 
-constexpr double largest_stock = 20000.0;    // mm; more is a slip of the finger
-constexpr double largest_allowance = 1000.0; // mm
+constexpr double largest_stock = 20000.0;           // mm; more is a slip of the finger
+constexpr double largest_edited_allowance = 1000.0; // mm
 
 bool is_place(const core::Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -80,11 +80,12 @@ std::vector<EditRefusal> refusals_of(const SetupEdits& edits) {
     std::vector<EditRefusal> refused;
     if (edits.stock) check_stock(*edits.stock, refused);
     for (const auto& [number, stated] : edits.tools) check_tool(stated.tool, refused);
-    if (edits.allowance && !(*edits.allowance >= 0.0 && *edits.allowance <= largest_allowance))
+    if (edits.allowance
+        && !(*edits.allowance >= 0.0 && *edits.allowance <= largest_edited_allowance))
         refused.push_back(
             {{},
              "allowance",
-             fmt::format("an allowance lies between 0 and {:g} mm", largest_allowance)});
+             fmt::format("an allowance lies between 0 and {:g} mm", largest_edited_allowance)});
     return refused;
 }
 

@@ -133,7 +133,7 @@ std::optional<std::filesystem::path> find_bit(const std::filesystem::path& libra
     return std::nullopt;
 }
 
-FoundTool tool_of_entry(const json& entry, int number, const std::filesystem::path& path) {
+FoundTool freecad_tool(const json& entry, int number, const std::filesystem::path& path) {
     const auto size = [&](const char* key) {
         const auto found = entry.find(key);
         return found == entry.end() ? 0.0 : quantity(*found).value_or(0.0);
@@ -204,7 +204,7 @@ core::Result<ToolMap> tools_of_freecad_table(const json& table, const std::files
         const auto number = number_in(key);
         if (!number || !entry.is_object())
             return tl::unexpected(error(path, fmt::format("'{}' is no number of a tool", key)));
-        const FoundTool tool = tool_of_entry(entry, static_cast<int>(*number), path);
+        const FoundTool tool = freecad_tool(entry, static_cast<int>(*number), path);
         if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
     }
     return tools;

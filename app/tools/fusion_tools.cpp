@@ -101,7 +101,7 @@ std::optional<int> number_of(const json& tool) {
     return number->get<int>();
 }
 
-FoundTool tool_of_entry(const json& entry, int number, const std::filesystem::path& path) {
+FoundTool fusion_tool(const json& entry, int number, const std::filesystem::path& path) {
     const Reader reader{entry, text_at(entry, "unit") == "inches" ? 25.4 : 1.0};
     FoundTool found;
     found.source = path.string();
@@ -130,7 +130,7 @@ core::Result<ToolMap> tools_of_fusion_library(const json& library,
         const auto number = number_of(entry);
         if (!number || type == "holder" || type == "probe" || type.starts_with("turning")) continue;
         if (tools.contains(core::ToolNumber{*number})) continue; // a library of variants: the first
-        const FoundTool tool = tool_of_entry(entry, *number, path);
+        const FoundTool tool = fusion_tool(entry, *number, path);
         if (tool.tool.diameter > 0.0) tools.emplace(tool.tool.number, tool);
     }
     if (tools.empty())

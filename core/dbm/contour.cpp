@@ -6,7 +6,7 @@ namespace core {
 namespace {
 
 /// How far beyond an edge an end is still taken for the edge's own, mm.
-constexpr double slack = 1e-6;
+constexpr double contour_slack = 1e-6;
 
 } // namespace
 
@@ -31,7 +31,7 @@ Crossing crossing_at(const Dbm& lines, int axis, const std::array<int, 3>& node,
     const double low = grid.coordinate(axis, step), high = grid.coordinate(axis, step + 1);
     const LineView matter = lines.families[static_cast<size_t>(axis)].line(u, v);
     Crossing crossing{{axis, u, v, 0, from_inside}, 0.5 * (low + high)};
-    double best = slack;
+    double best = contour_slack;
     for (size_t i = 0; i < matter.size(); ++i) {
         const double here = from_inside ? matter[i].upper : matter[i].lower;
         const double beyond = std::max({low - here, here - high, 0.0});

@@ -10,7 +10,7 @@
 namespace core {
 namespace {
 
-constexpr int32_t nowhere = -1;
+constexpr int32_t no_vertex = -1;
 
 /// Nodes with the same z: where the lines of the three families meet. Node (i, j) stands where the
 /// lines i - 1 and j - 1 do; those round the outside have no lines and are outside.
@@ -31,7 +31,7 @@ struct CellLayer {
 using EdgePoints = std::array<const CrossedEdge*, 12>;
 
 const CrossedEdge* point_of(const std::vector<CrossedEdge>& points, int32_t number) {
-    return number == nowhere ? nullptr : &points[static_cast<size_t>(number)];
+    return number == no_vertex ? nullptr : &points[static_cast<size_t>(number)];
 }
 
 class Contouring {
@@ -80,7 +80,7 @@ private:
 NodeLayer Contouring::nodes(int k) {
     NodeLayer layer;
     layer.inside.assign(size_, 0);
-    for (auto& edges : layer.edges) edges.assign(size_, nowhere);
+    for (auto& edges : layer.edges) edges.assign(size_, no_vertex);
     const int row = k - 1;
     if (row < 0 || row >= grid_.count(2)) return layer;
     const auto mark_inside = [&](int axis, const LineView& line, const auto& mark) {
@@ -121,8 +121,8 @@ int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_in
 CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int k) {
     CellLayer layer;
     layer.inside.assign(size_, 0);
-    layer.first_vertex.assign(size_, nowhere);
-    layer.z_edges.assign(size_, nowhere);
+    layer.first_vertex.assign(size_, no_vertex);
+    layer.z_edges.assign(size_, no_vertex);
     for (int j = 0; j < depth_; ++j)
         for (int i = 0; i < width_; ++i)
             if (below.inside[at(i, j)] != above.inside[at(i, j)])

@@ -9,7 +9,7 @@ namespace core {
 namespace {
 
 constexpr uint32_t no_piece = ~uint32_t{0};
-constexpr int side = ScanLines::tile_side;
+constexpr int tile_side = ScanLines::tile_side;
 
 /// The first and the last line whose place along `axis` lies within lower .. upper, widened by
 /// `more` lines; first > last if there is none.
@@ -70,8 +70,8 @@ public:
         : model_(model),
           z_(family(model, 2)),
           map_(map),
-          u_tiles_((z_.u_count() + side - 1) / side),
-          v_tiles_((z_.v_count() + side - 1) / side) {}
+          u_tiles_((z_.u_count() + tile_side - 1) / tile_side),
+          v_tiles_((z_.v_count() + tile_side - 1) / tile_side) {}
 
     void bring_up_to_date();
     std::vector<StockPiece> put_together();
@@ -81,8 +81,8 @@ private:
 
     size_t index(int tu, int tv) const { return static_cast<size_t>(tu + tv * u_tiles_); }
     LineRange lines_of(int tu, int tv) const {
-        return {tu * side, std::min((tu + 1) * side, z_.u_count()), tv * side,
-                std::min((tv + 1) * side, z_.v_count())};
+        return {tu * tile_side, std::min((tu + 1) * tile_side, z_.u_count()), tv * tile_side,
+                std::min((tv + 1) * tile_side, z_.v_count())};
     }
     static size_t place(const LineRange& range, int u, int v) {
         return static_cast<size_t>((u - range.u_first)
@@ -245,9 +245,9 @@ void PieceMap::note_cut(const CutModel& model, const Aabb& box) {
     // A line along X or Y that is cut parts lines along Z on both sides of it.
     const auto [u_first, u_last] = lines_within(model.lines.grid, 0, box.min.x, box.max.x, 1);
     const auto [v_first, v_last] = lines_within(model.lines.grid, 1, box.min.y, box.max.y, 1);
-    const int u_tiles = (z.u_count() + side - 1) / side;
-    for (int tv = v_first / side; tv <= v_last / side && v_first <= v_last; ++tv)
-        for (int tu = u_first / side; tu <= u_last / side && u_first <= u_last; ++tu)
+    const int u_tiles = (z.u_count() + tile_side - 1) / tile_side;
+    for (int tv = v_first / tile_side; tv <= v_last / tile_side && v_first <= v_last; ++tv)
+        for (int tu = u_first / tile_side; tu <= u_last / tile_side && u_first <= u_last; ++tu)
             changed_[static_cast<size_t>(tu + tv * u_tiles)] = 1;
 }
 
@@ -260,14 +260,14 @@ std::vector<StockPiece> PieceMap::pieces(const CutModel& model) {
 std::vector<std::pair<Vec3, Vec3>> PieceMap::stretches(const CutModel& model, size_t number) const {
     std::vector<std::pair<Vec3, Vec3>> found;
     const ScanLines& z = family(model, 2);
-    const int u_tiles = (z.u_count() + side - 1) / side;
+    const int u_tiles = (z.u_count() + tile_side - 1) / tile_side;
     uint32_t first = 0;
     for (size_t t = 0; t < tiles_.size(); ++t) {
-        const int u0 = static_cast<int>(t) % u_tiles * side,
-                  v0 = static_cast<int>(t) / u_tiles * side;
+        const int u0 = static_cast<int>(t) % u_tiles * tile_side,
+                  v0 = static_cast<int>(t) / u_tiles * tile_side;
         size_t stretch = 0;
-        for (int v = v0; v < std::min(v0 + side, z.v_count()); ++v)
-            for (int u = u0; u < std::min(u0 + side, z.u_count()); ++u)
+        for (int v = v0; v < std::min(v0 + tile_side, z.v_count()); ++v)
+            for (int u = u0; u < std::min(u0 + tile_side, z.u_count()); ++u)
                 for (const Interval& matter : z.line(u, v))
                     if (piece_of_[first + tiles_[t]->part[stretch++]] == number)
                         found.emplace_back(point_on_line(model.lines.grid, 2, u, v, matter.lower),

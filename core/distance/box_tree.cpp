@@ -6,9 +6,9 @@
 namespace core {
 namespace {
 
-constexpr uint32_t leaf_size = 2;
+constexpr uint32_t box_leaf_size = 2;
 
-struct Builder {
+struct BoxTreeBuilder {
     const std::vector<Aabb>& boxes;
     std::vector<uint32_t> order;
     std::vector<BoxTree::Node> nodes;
@@ -17,7 +17,7 @@ struct Builder {
         Aabb box;
         for (uint32_t i = first; i < last; ++i) box.extend(boxes[order[i]]);
         nodes[node].box = box;
-        if (last - first <= leaf_size) {
+        if (last - first <= box_leaf_size) {
             nodes[node].first = first;
             nodes[node].count = last - first;
             return;
@@ -50,7 +50,7 @@ struct Builder {
 BoxTree box_tree(std::vector<Aabb> boxes) {
     const auto count = static_cast<uint32_t>(boxes.size());
     if (count == 0) return {};
-    Builder builder{boxes, std::vector<uint32_t>(count), {}};
+    BoxTreeBuilder builder{boxes, std::vector<uint32_t>(count), {}};
     std::iota(builder.order.begin(), builder.order.end(), 0U);
     builder.nodes.resize(1);
     builder.build(0, 0, count);

@@ -31,10 +31,10 @@ std::string why_unbounded(const MeasuredBody& a, const MeasuredBody& b) {
              "lines";
 }
 
-class Measuring {
+class RestMeasurement {
 public:
-    Measuring(const MeasuredBody& a, const MeasuredBody& b, const BodyMotion& motion,
-              const MeasureGoal& goal)
+    RestMeasurement(const MeasuredBody& a, const MeasuredBody& b, const BodyMotion& motion,
+                    const MeasureGoal& goal)
         : a_(a),
           b_(b),
           motion_(motion),
@@ -131,7 +131,7 @@ Result<Measurement> measure(const DistanceEngine& engine, const MeasuredBody& a,
     const PairGoal points{.limit = goal.limit, .sweep = goal.sweep, .first = goal.first};
     FEELER_TRY(const ClosestPair scan,
                engine.closest_pair(*a.in_engine, *b.in_engine, a_from_b, points));
-    return Measuring(a, b, {a_from_b, goal.sweep}, goal).run(scan);
+    return RestMeasurement(a, b, {a_from_b, goal.sweep}, goal).run(scan);
 }
 
 } // namespace core

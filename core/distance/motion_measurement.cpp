@@ -10,10 +10,10 @@ namespace core {
 namespace {
 
 /// Measures parts of a motion and remembers the nearest pair.
-class Measuring {
+class MotionMeasurement {
 public:
-    Measuring(const DistanceEngine& engine, const MeasuredBody& a, const MeasuredBody& b,
-              const RigidMotion& motion, const MeasureGoal& goal)
+    MotionMeasurement(const DistanceEngine& engine, const MeasuredBody& a, const MeasuredBody& b,
+                      const RigidMotion& motion, const MeasureGoal& goal)
         : engine_(engine), a_(a), b_(b), motion_(motion), goal_(goal) {
         const Vec3 axis_in_b = glm::transpose(motion.start.rotation) * motion.axis;
         from_axis_ = b.reach + glm::length(glm::cross(axis_in_b, motion.centre));
@@ -103,7 +103,7 @@ Result<Measurement> measure(const DistanceEngine& engine, const MeasuredBody& a,
     FEELER_TRY(const ClosestPair scan,
                closest_pair(engine, *a.in_engine, *b.in_engine, motion, points));
     turning.first = scan.found() ? std::optional(scan.points) : goal.first;
-    return Measuring(engine, a, b, motion, turning).run(scan);
+    return MotionMeasurement(engine, a, b, motion, turning).run(scan);
 }
 
 } // namespace core

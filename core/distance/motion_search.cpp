@@ -10,17 +10,17 @@ namespace core {
 namespace {
 
 /// What rounding adds to a place on the way, for each of these lengths: some ten operations.
-constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
+constexpr double motion_rounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 /// How far the turn may miss the end, for each of these lengths: rotations may be off by 1e-9 in
 /// each entry of R^T R, and twice this much stays below the least tolerance.
 constexpr double most_gap = 4e-9;
 
 /// Searches parts of the motion and remembers the best pair.
-class Search {
+class MotionSearch {
 public:
-    Search(const DistanceEngine& engine, PointBody a, PointBody b, const RigidMotion& motion,
-           const PairGoal& goal)
+    MotionSearch(const DistanceEngine& engine, PointBody a, PointBody b, const RigidMotion& motion,
+                 const PairGoal& goal)
         : engine_(engine),
           a_(a),
           b_(b),
@@ -57,7 +57,8 @@ private:
 
     Result<StretchBound> search(double from, double to, double worth) {
         const Transform start = motion_.at(from);
-        const double allowance = bulge(motion_, reach_, to - from) + gap_ + rounding * lengths_;
+        const double allowance =
+            bulge(motion_, reach_, to - from) + gap_ + motion_rounding * lengths_;
         const PairGoal goal{.limit = worth + allowance, .end = motion_.at(to), .first = first_};
         FEELER_TRY(const ClosestPair chords, engine_.closest_pair(a_, b_, start, goal));
         node_tests_ += chords.node_tests;
@@ -102,7 +103,7 @@ Result<ClosestPair> closest_pair(const DistanceEngine& engine, PointBody a, Poin
     if (!std::isfinite(motion.angle) || !(std::abs(glm::length(motion.axis) - 1.0) <= 1e-9))
         return fail(ErrorCode::invalid_value,
                     "a motion must turn about an axis of length 1 by an angle that is a number");
-    return Search(engine, a, b, motion, goal).run(goal);
+    return MotionSearch(engine, a, b, motion, goal).run(goal);
 }
 
 } // namespace core

@@ -9,7 +9,7 @@
 namespace core {
 namespace {
 
-double reach_of(const Aabb& box) {
+double column_reach(const Aabb& box) {
     return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
 }
 
@@ -140,7 +140,7 @@ Interval cell_of(const OuterModel& model, int axis, int i) {
 OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFunction& column,
                        std::initializer_list<int> axes) {
     assert(axes.size() > 0);
-    const double error = scan_rounding(reach_of(bounds));
+    const double error = scan_rounding(column_reach(bounds));
     OuterModel model{grid, bounds.grown(error), {}};
     for (const int axis : axes) {
         ScanLines columns = empty_columns(model, axis);
@@ -159,7 +159,7 @@ OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFun
 }
 
 OuterModel outer_model(const CutModel& stock) {
-    const double error = scan_rounding(reach_of(stock.outer_box));
+    const double error = scan_rounding(column_reach(stock.outer_box));
     OuterModel model{stock.lines.grid, stock.outer_box, {}};
     ScanLines columns = empty_columns(model, 2);
     for (int j = 0; j < columns.v_count(); ++j)

@@ -13,7 +13,7 @@
 namespace core {
 namespace {
 
-constexpr uint32_t width = PointTree::width;
+constexpr uint32_t lane_width = PointTree::width;
 constexpr size_t beam_width = 2; // pairs followed down to the leaves before the search proper
 
 // A front is made for so many queries like the last ones, or to hold so many pairs of points; where
@@ -29,7 +29,7 @@ float squared_above(double length) {
     return squared < 1e38 ? static_cast<float>(squared) : std::numeric_limits<float>::infinity();
 }
 
-Float3 single(const Vec3& v) {
+Float3 as_single(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
@@ -40,10 +40,10 @@ bool nearer(const BoxPair& x, const BoxPair& y) {
     return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-class Search : private PairComparison {
+class PointSearch : private PairComparison {
 public:
-    Search(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
-           const PairGoal& goal, SearchMemory& memory)
+    PointSearch(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+                const PairGoal& goal, SearchMemory& memory)
         : PairComparison(a_from_b, goal),
           kernels_(lane_kernels()),
           body_a_(a),
@@ -144,11 +144,12 @@ private:
     }
 
     void collect_points(PairFront& front, const BoxPair& leaves, double limit) {
-        const VisitedLeaf& a = a_.child_leaf(leaves.a / width, leaves.a % width);
-        const VisitedLeaf& b = b_.child_leaf(leaves.b / width, leaves.b % width);
+        const VisitedLeaf& a = a_.child_leaf(leaves.a / lane_width, leaves.a % lane_width);
+        const VisitedLeaf& b = b_.child_leaf(leaves.b / lane_width, leaves.b % lane_width);
         const float squared = squared_above(limit + 8.0 * static_cast<double>(a.margin + b.margin));
-        const uint32_t rows = ((1U << b.leaf->count) - 1U)
-                              & rows_near(b, a_.box(leaves.a / width, leaves.a % width), squared);
+        const uint32_t rows =
+            ((1U << b.leaf->count) - 1U)
+            & rows_near(b, a_.box(leaves.a / lane_width, leaves.a % lane_width), squared);
         for_near(a, b, rows, squared, [&](uint32_t i, uint32_t j) {
             const PointPlace of_a = place_in(a, i), of_b = place_in(b, j);
             const double apart = glm::distance(of_a.position(), motion_.start * of_b.position());
@@ -172,7 +173,7 @@ private:
     /// Begins afresh at the roots, in the best frame known by now.
     void start() {
         frame_ = next_frame();
-        sweep_ = single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
+        sweep_ = as_single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
         limit_squared_ = squared_above(std::max(worth(), 0.0));
         a_.begin(body_a_, frame_, nullptr);
         b_.begin(body_b_, frame_, &motion_);
@@ -239,13 +240,13 @@ private:
     }
 
     bool are_leaves(const BoxPair& pair) const {
-        return a_.nodes[pair.a / width].size[pair.a % width] < 0.0F
-               && b_.nodes[pair.b / width].size[pair.b % width] < 0.0F;
+        return a_.nodes[pair.a / lane_width].size[pair.a % lane_width] < 0.0F
+               && b_.nodes[pair.b / lane_width].size[pair.b % lane_width] < 0.0F;
     }
 
     void open(const BoxPair& pair) {
-        const uint32_t at_a = pair.a / width, lane_a = pair.a % width;
-        const uint32_t at_b = pair.b / width, lane_b = pair.b % width;
+        const uint32_t at_a = pair.a / lane_width, lane_a = pair.a % lane_width;
+        const uint32_t at_b = pair.b / lane_width, lane_b = pair.b % lane_width;
         const float size_a = a_.nodes[at_a].size[lane_a], size_b = b_.nodes[at_b].size[lane_b];
         if (size_a < 0.0F && size_b < 0.0F)
             compare_leaves(pair);
@@ -258,7 +259,7 @@ private:
     /// Compares the children of a node with one box of the other body.
     void compare_boxes(const SearchSide& side, uint32_t at, const SearchSide& other, uint32_t box) {
         const VisitedNode& node = side.nodes[at];
-        const FrameBox facing = other.box(box / width, box % width);
+        const FrameBox facing = other.box(box / lane_width, box % lane_width);
         PointTree::Lanes squared;
         uint32_t lanes = node.node->used;
         best_.node_tests += node.count;
@@ -268,20 +269,20 @@ private:
             lanes &= kernels_.near_boxes(node.boxes, facing, limit_squared_, squared);
         for (; lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<uint32_t>(std::countr_zero(lanes));
-            const uint32_t mine = at * width + lane;
+            const uint32_t mine = at * lane_width + lane;
             stack_.push_back({squared[lane], &side == &a_ ? mine : box, &side == &a_ ? box : mine});
         }
     }
 
     void compare_leaves(const BoxPair& pair) {
-        const VisitedLeaf& a = a_.child_leaf(pair.a / width, pair.a % width);
-        const VisitedLeaf& b = b_.child_leaf(pair.b / width, pair.b % width);
+        const VisitedLeaf& a = a_.child_leaf(pair.a / lane_width, pair.a % lane_width);
+        const VisitedLeaf& b = b_.child_leaf(pair.b / lane_width, pair.b % lane_width);
         const float limit = limit_for(a, b);
         const uint32_t all = (1U << b.leaf->count) - 1U;
         const uint32_t rows =
             near_squared_ == infinity || motion_.end
                 ? all
-                : all & rows_near(b, a_.box(pair.a / width, pair.a % width), limit);
+                : all & rows_near(b, a_.box(pair.a / lane_width, pair.a % lane_width), limit);
         if (rows == 0) return;
         const double before = near_squared_;
         if (near_squared_ < infinity)
@@ -356,7 +357,7 @@ private:
 };
 
 /// Fills the front after a search, if that will be of use.
-void fill_front(SearchMemory& memory, Search& search, double distance, double step) {
+void fill_front(SearchMemory& memory, PointSearch& search, double distance, double step) {
     const double for_pairs = std::sqrt(wanted_pairs / memory.pairs_per_square);
     const double slack = std::min(for_pairs, most_steps * step);
     if (slack < least_steps * step && memory.resting++ < long_rest) return;
@@ -373,7 +374,7 @@ void fill_front(SearchMemory& memory, Search& search, double distance, double st
 ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
                          const PairGoal& goal) {
     static thread_local SearchMemory memory;
-    return Search(a, b, a_from_b, goal, memory).run();
+    return PointSearch(a, b, a_from_b, goal, memory).run();
 }
 
 ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
@@ -381,13 +382,13 @@ ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const T
     const std::optional<Transform> last = std::exchange(memory.last_pose, a_from_b);
     if (goal.sweep != Vec3(0.0) || goal.end) {
         memory.forget_front(); // the search overwrites what it refers to
-        return Search(a, b, a_from_b, goal, memory).run();
+        return PointSearch(a, b, a_from_b, goal, memory).run();
     }
     if (memory.front.limit >= 0.0)
-        if (const auto found = Search(a, b, a_from_b, goal, memory).run_along(memory.front))
+        if (const auto found = PointSearch(a, b, a_from_b, goal, memory).run_along(memory.front))
             return *found;
     memory.forget_front();
-    Search search(a, b, a_from_b, goal, memory);
+    PointSearch search(a, b, a_from_b, goal, memory);
     const ClosestPair found = search.run();
     if (last && found.found() && !goal.any)
         fill_front(memory, search, found.distance, displacement(*last, a_from_b, b.top->box));

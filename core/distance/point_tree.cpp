@@ -81,9 +81,9 @@ void set_box(PointTree::Node& node, size_t lane, const TurnedBox& box) {
 
 namespace {
 
-class Builder {
+class PointTreeBuilder {
 public:
-    Builder(std::span<const Vec3> points, uint32_t tile)
+    PointTreeBuilder(std::span<const Vec3> points, uint32_t tile)
         : given_(points), tile_(static_cast<uint64_t>(tile) << 32U) {
         for (const Vec3& p : points) tree_.box.extend(p);
         const Vec3 centre = tree_.box.center();
@@ -201,7 +201,7 @@ private:
 
 Result<PointTree> point_tree(std::span<const Vec3> points, uint32_t tile) {
     FEELER_TRY([[maybe_unused]] const size_t count, checked_points(points));
-    return Builder(points, tile).build();
+    return PointTreeBuilder(points, tile).build();
 }
 
 } // namespace core

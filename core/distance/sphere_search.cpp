@@ -21,10 +21,10 @@ struct Pair {
     double gap; // lower bound of the distance between their points
 };
 
-class Search {
+class SphereSearch {
 public:
-    Search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
-           const PairGoal& goal)
+    SphereSearch(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
+                 const PairGoal& goal)
         : motion_(a_from_b, goal),
           goal_(goal),
           moves_(motion_.moves()),
@@ -128,9 +128,9 @@ ClosestPair closest_pair(const SphereTree& a, const SphereTree& b, const Transfo
     const auto leaf = [](const SphereTree& tree, uint64_t point) {
         return &tree.nodes[tree.leaf_of_point[point]];
     };
-    return goal.first
-               ? Search(a, b, a_from_b, goal).run(leaf(a, goal.first->a), leaf(b, goal.first->b))
-               : Search(a, b, a_from_b, goal).run(nullptr, nullptr);
+    return goal.first ? SphereSearch(a, b, a_from_b, goal)
+                            .run(leaf(a, goal.first->a), leaf(b, goal.first->b))
+                      : SphereSearch(a, b, a_from_b, goal).run(nullptr, nullptr);
 }
 
 } // namespace core

@@ -14,9 +14,9 @@ int longest_axis(const Vec3& size) {
     return size.y >= size.z ? 1 : 2;
 }
 
-class Builder {
+class SphereTreeBuilder {
 public:
-    explicit Builder(std::span<const Vec3> points)
+    explicit SphereTreeBuilder(std::span<const Vec3> points)
         : points_(points), order_(points.size()), leaf_of_point_(points.size()) {
         std::iota(order_.begin(), order_.end(), uint32_t{0});
         nodes_.reserve(2 * points.size() - 1);
@@ -77,7 +77,7 @@ private:
 
 Result<SphereTree> sphere_tree(std::span<const Vec3> points) {
     FEELER_TRY([[maybe_unused]] const size_t count, checked_points(points));
-    return Builder(points).build();
+    return SphereTreeBuilder(points).build();
 }
 
 } // namespace core

@@ -12,7 +12,7 @@ namespace core {
 
 namespace {
 
-constexpr uint32_t width = PointTree::width;
+constexpr uint32_t tile_lanes = PointTree::width;
 
 std::vector<LineTile> tiles_of(const Dbm& dbm) {
     std::vector<LineTile> tiles;
@@ -93,7 +93,7 @@ struct TiledPoints::Builder {
         nodes.emplace_back();
         layout.above_node.push_back(above);
         size_t below = 1; // tiles that a child holds at most
-        while (below * width < group.size()) below *= width;
+        while (below * tile_lanes < group.size()) below *= tile_lanes;
         for (uint32_t lane = 0; lane * below < group.size(); ++lane) {
             const auto part =
                 group.subspan(lane * below, std::min(below, group.size() - lane * below));

@@ -87,9 +87,9 @@ struct Moment {
     double x = 0.0, y = 0.0; // of the place in the box, seen from above, that is nearest the axis
 };
 
-class Search {
+class SweepSearch {
 public:
-    Search(const UprightSweep& sweep, const Aabb& box) : sweep_(sweep), box_(box) {}
+    SweepSearch(const UprightSweep& sweep, const Aabb& box) : sweep_(sweep), box_(box) {}
 
     Moment at(double time) const {
         const ProfileElement& element = sweep_.element;
@@ -164,7 +164,7 @@ private:
 } // namespace
 
 Separation separation(const UprightSweep& sweep, const Aabb& box, const SeparationGoal& goal) {
-    const Search search(sweep, box);
+    const SweepSearch search(sweep, box);
     const auto [moment, lower] = search.nearest(goal);
     Separation found = search.witness(moment);
     found.lower = std::max(0.0, lower - sweep.element.margin);
@@ -172,7 +172,7 @@ Separation separation(const UprightSweep& sweep, const Aabb& box, const Separati
 }
 
 double distance_bound(const UprightSweep& sweep, const Aabb& box, double limit) {
-    const double lower = Search(sweep, box).nearest({.limit = limit}).second;
+    const double lower = SweepSearch(sweep, box).nearest({.limit = limit}).second;
     return std::max(0.0, lower - sweep.element.margin);
 }
 

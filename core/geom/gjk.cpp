@@ -11,7 +11,7 @@ constexpr int max_steps = 100;
 
 /// Nearer than this the bodies touch: a point of the simplex that should be the origin is off by
 /// rounding.
-constexpr double touching = 1e-10;
+constexpr double gjk_touching = 1e-10;
 
 Simplex::Vertex support_pair(const ConvexShape& a, const ConvexShape& b, const Vec3& towards_a) {
     // The vertex of A - B that lies farthest back along the line from the origin to A - B.
@@ -83,7 +83,7 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
 
     for (int step = 0; step < max_steps; ++step) {
         const double length = glm::length(v);
-        const double upper = length - margins <= touching ? 0.0 : length - margins;
+        const double upper = length - margins <= gjk_touching ? 0.0 : length - margins;
         if (upper < found.upper) {
             found.upper = upper;
             set_witness(found, simplex, v, a.margin, b.margin);
@@ -123,7 +123,7 @@ void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal&
         const double upper = glm::distance(seen.point_a, seen.point_b);
         const double lower = glm::dot(n, support_pair(a, b, n).difference) - a.margin - b.margin;
         if (upper < found.upper) {
-            found.upper = upper <= touching ? 0.0 : upper;
+            found.upper = upper <= gjk_touching ? 0.0 : upper;
             found.point_a = seen.point_a;
             found.point_b = found.upper == 0.0 ? seen.point_a : seen.point_b;
             found.time_a = seen.time_a;
@@ -137,7 +137,7 @@ void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal&
 Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal) {
     Separation found = search(a, b, goal);
     const bool is_done = found.lower >= goal.limit
-                         || found.upper - found.lower <= std::max(goal.tolerance, touching);
+                         || found.upper - found.lower <= std::max(goal.tolerance, gjk_touching);
     if (!is_done) step_back(a, b, goal, found);
     return found;
 }

@@ -10,6 +10,8 @@ namespace core {
 
 struct Triangle {
     Vec3 a, b, c;
+
+    Aabb bounds() const { return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)}; }
 };
 
 /// A triangle mesh: corners shared between triangles, counter-clockwise seen from outside.

@@ -16,10 +16,6 @@ double greatest(const Triangle& t, const Vec3& u) {
     return std::max({glm::dot(t.a, u), glm::dot(t.b, u), glm::dot(t.c, u)});
 }
 
-Aabb bounds_of(const Triangle& t) {
-    return {glm::min(glm::min(t.a, t.b), t.c), glm::max(glm::max(t.a, t.b), t.c)};
-}
-
 /// The length of the longest vector to a point of the tree.
 double reach(const TriangleBvh& tree) {
     const Aabb& box = tree.nodes[0].box;
@@ -39,10 +35,10 @@ Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * 
 
 /// Depth first through pairs of boxes, the nearer first. Nearest of all first would open a third
 /// fewer, but keeping them in order costs more than that.
-class Search {
+class MeshPairSearch {
 public:
-    Search(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b, const Vec3& sweep,
-           const SeparationGoal& goal)
+    MeshPairSearch(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
+                   const Vec3& sweep, const SeparationGoal& goal)
         : a_(a), b_(b), a_from_b_(a_from_b), sweep_(sweep), goal_(goal) {}
 
     Separation run() {
@@ -156,12 +152,12 @@ private:
     void compare(const TriangleBvh::Node& node_a, const TriangleBvh::Node& node_b) {
         for (uint32_t j = node_b.first; j < node_b.first + node_b.count; ++j) {
             const Triangle b = moved(b_.triangles[j], a_from_b_);
-            Aabb box = bounds_of(b);
+            Aabb box = b.bounds();
             box.extend({box.min + sweep_, box.max + sweep_});
             for (uint32_t i = node_a.first; i < node_a.first + node_a.count; ++i) {
                 const Triangle& a = a_.triangles[i];
                 const double gap = smallest(b, along_) + sweep_start_ - greatest(a, along_);
-                if (skipped(gap) || skipped(distance(bounds_of(a), box))) continue;
+                if (skipped(gap) || skipped(distance(a.bounds(), box))) continue;
                 offer(separation_of(a, b));
                 if (best_.upper == 0.0) return;
             }
@@ -206,7 +202,7 @@ private:
 
 Separation separation(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
                       const Vec3& sweep_of_b, const SeparationGoal& goal) {
-    return Search(a, b, a_from_b, sweep_of_b, goal).run();
+    return MeshPairSearch(a, b, a_from_b, sweep_of_b, goal).run();
 }
 
 } // namespace core

@@ -8,12 +8,6 @@ namespace {
 
 constexpr uint32_t leaf_size = 4;
 
-Aabb bounds_of(const Triangle& t) {
-    Aabb box;
-    for (const Vec3& corner : {t.a, t.b, t.c}) box.extend(corner);
-    return box;
-}
-
 class Builder {
 public:
     explicit Builder(const Mesh& mesh) {
@@ -32,7 +26,7 @@ public:
 private:
     void build(uint32_t node, uint32_t first, uint32_t last) {
         const std::span triangles = std::span(bvh_.triangles).subspan(first, last - first);
-        for (const Triangle& t : triangles) bvh_.nodes[node].box.extend(bounds_of(t));
+        for (const Triangle& t : triangles) bvh_.nodes[node].box.extend(t.bounds());
         bvh_.oriented[node] = fitted_box(triangles);
         if (last - first <= leaf_size) {
             bvh_.nodes[node].first = first;
@@ -60,7 +54,7 @@ private:
         std::vector<Entry> entries;
         for (uint32_t i = first; i < last; ++i) {
             const Triangle& t = bvh_.triangles[i];
-            const Aabb b = bounds_of(t);
+            const Aabb b = t.bounds();
             entries.push_back({glm::dot(b.min + b.max, axis), bvh_.ids[i], t});
         }
         const uint32_t half = (last - first) / 2;
@@ -79,7 +73,7 @@ private:
 };
 
 /// Keeps the best pair, and the least lower bound among all that was looked at.
-struct Search {
+struct NearestTriangleSearch {
     SeparationGoal goal;
     Separation best;
     double least_lower = infinity;
@@ -99,13 +93,13 @@ struct Search {
     }
 };
 
-struct ShapeSearch : Search {
+struct ShapeSearch : NearestTriangleSearch {
     const ConvexShape& shape;
     const Aabb shape_box;
     const TriangleBvh& mesh;
 
     ShapeSearch(const ConvexShape& s, const TriangleBvh& m, const SeparationGoal& g)
-        : Search{g, {}, infinity}, shape(s), shape_box(bounds(s)), mesh(m) {}
+        : NearestTriangleSearch{g, {}, infinity}, shape(s), shape_box(bounds(s)), mesh(m) {}
 
     bool worth(const TriangleBvh::Node& node) const {
         if (distance(shape_box, node.box) >= limit()) return false;
@@ -154,7 +148,7 @@ std::vector<uint32_t> triangles_in(const TriangleBvh& mesh, const Aabb& box) {
             continue;
         }
         for (uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (overlaps(bounds_of(mesh.triangles[i]), box)) found.push_back(mesh.ids[i]);
+            if (overlaps(mesh.triangles[i].bounds(), box)) found.push_back(mesh.ids[i]);
     }
     std::sort(found.begin(), found.end());
     return found;

@@ -4,11 +4,10 @@
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/base/units.h"
 
 namespace core {
 namespace {
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 /// The turn about a line through the origin; exact for the frame's axes and multiples of 90
 /// degrees.

@@ -9,9 +9,9 @@
 namespace core {
 namespace {
 
-constexpr double room = 0.5;   // mm that a rapid should pass over the stock by
-constexpr double most = 500.0; // mm that a retract could be higher by
-constexpr double step = 0.01;
+constexpr double room = 0.5;              // mm that a rapid should pass over the stock by
+constexpr double highest_retract = 500.0; // mm that a retract could be higher by
+constexpr double retract_step = 0.01;
 
 Setup with_every_pair(Setup setup) {
     setup.detail = Detail::every_pair;
@@ -97,12 +97,12 @@ std::optional<double> lift(Look& look) {
         return are_clear(pairs) && flutes_to_stock(pairs) >= room;
     };
     double low = 0.0, high = 1.0;
-    while (high < most && !passes(high)) {
+    while (high < highest_retract && !passes(high)) {
         low = high;
         high *= 2.0;
     }
-    if (high >= most) return std::nullopt;
-    while (high - low > step) {
+    if (high >= highest_retract) return std::nullopt;
+    while (high - low > retract_step) {
         const double middle = 0.5 * (low + high);
         (passes(middle) ? high : low) = middle;
     }

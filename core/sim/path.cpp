@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/base/units.h"
 #include "core/sim/kinematics.h"
 
 namespace core {
 namespace {
-
-constexpr double seconds_per_minute = 60.0;
 
 /// The values of a position; empty when an axis of the machine may stand anywhere.
 std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
@@ -43,7 +42,9 @@ AxisValues axis_times(const AxisValues& from, const AxisValues& to, const Machin
     return times;
 }
 
-double longest(const AxisValues& times) { return *std::max_element(times.begin(), times.end()); }
+double longest_time(const AxisValues& times) {
+    return *std::max_element(times.begin(), times.end());
+}
 
 AxisValues between(const AxisValues& from, const AxisValues& to, double share) {
     AxisValues values = from;
@@ -86,7 +87,7 @@ size_t moving_axes(const AxisValues& from, const AxisValues& to) {
 
 void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to) {
     const AxisValues times = axis_times(from, to, machine, path);
-    const double total = longest(times);
+    const double total = longest_time(times);
     bool only_linear = true;
     for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
     if (path.assumed_speed && only_linear) {
@@ -206,7 +207,7 @@ void add_tip_path(Path& path, const Machine& machine, const Motion& motion, cons
         1'000'000);
     path.duration = motion.feed > 0.0 ? (travel > 0.0 ? travel : feed_length(from, to))
                                             / motion.feed * seconds_per_minute
-                                      : longest(axis_times(from, to, machine, path));
+                                      : longest_time(axis_times(from, to, machine, path));
     AxisValues here = from;
     for (int i = 1; i <= count; ++i) {
         const double share = static_cast<double>(i) / count;
@@ -308,7 +309,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     } else if (machine.rapid == RapidStyle::dogleg && moving_axes(*from, *to) > 1) {
         add_dogleg(path, machine, *from, *to);
     } else {
-        add_straight(path, *from, *to, longest(axis_times(*from, *to, machine, path)));
+        add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }
     return path;
 }

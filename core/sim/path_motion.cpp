@@ -5,13 +5,12 @@
 #include <numbers>
 
 #include "core/base/angle.h"
+#include "core/base/units.h"
 #include "core/sim/kinematics.h"
 #include "core/sim/path.h"
 
 namespace core {
 namespace {
-
-constexpr double seconds_per_minute = 60.0;
 
 /// How far each axis goes; empty if nobody knows. An axis that nobody knows and nobody tells to
 /// move stays where it is.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "core/sim/kinematics.h"
 
 namespace core {
@@ -14,7 +15,6 @@ constexpr double far_turn = 20.0;       // degrees: less is no jump
 constexpr double turn_per_lean = 5.0;   // an axis that turns so many times as far as the tool leans
 constexpr double way_per_degree = 0.05; // mm that the tip moves at most for each degree
 constexpr double swing = 0.5;           // mm off the line
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 /// What the tool and its tip do over a motion, seen from the work.
 struct Seen {
@@ -56,7 +56,7 @@ Seen look(const Machine& machine, const Motion& motion, const std::array<AxisVal
         seen.axis = i;
     }
     const double cosine = glm::dot(direction(machine, places[0]), direction(machine, places[2]));
-    seen.lean = std::acos(std::clamp(cosine, -1.0, 1.0)) * degrees;
+    seen.lean = std::acos(std::clamp(cosine, -1.0, 1.0)) * degrees_per_radian;
     const Vec3 from = tip_place(machine, places[0], length);
     const Vec3 to = tip_place(machine, places[2], length);
     seen.way =

@@ -7,9 +7,9 @@
 namespace core {
 namespace {
 
-constexpr double most = 300.0; // mm that anybody would make a tool longer by
-constexpr double step = 0.01;  // mm, to which the answer is worked out
-constexpr size_t enough = 500; // legs of a tool that are looked at again
+constexpr double longest_stick_out = 300.0; // mm that anybody would make a tool longer by
+constexpr double stick_out_step = 0.01;     // mm, to which the answer is worked out
+constexpr size_t enough = 500;              // legs of a tool that are looked at again
 
 /// The tool with everything above the flutes, or above the shank, higher by `by`. What is moved
 /// leaves no gap: its lowest piece becomes longer.
@@ -53,12 +53,12 @@ bool keeps_clear(const CutLeg& cut, PartKind from, double by) {
 double needed(const CutLeg& cut, PartKind from, double known) {
     if (keeps_clear(cut, from, known)) return known;
     double low = known, high = std::max(1.0, 2.0 * known);
-    while (high < most && !keeps_clear(cut, from, high)) {
+    while (high < longest_stick_out && !keeps_clear(cut, from, high)) {
         low = high;
         high *= 2.0;
     }
-    if (high >= most) return most;
-    while (high - low > step) {
+    if (high >= longest_stick_out) return longest_stick_out;
+    while (high - low > stick_out_step) {
         const double middle = 0.5 * (low + high);
         (keeps_clear(cut, from, middle) ? high : low) = middle;
     }
@@ -104,7 +104,7 @@ Finding short_stick_out(const ToolAssembly& tool, const ToolReach& reach) {
                                   "holder comes too near to the stock.",
                                   number, now);
     finding.cure =
-        reach.more_stick_out >= most
+        reach.more_stick_out >= longest_stick_out
             ? "No stick-out helps: less depth, or a slimmer holder."
             : fmt::format("A stick-out of {:.1f} mm keeps every allowance{}; or use a slimmer "
                           "holder.",
@@ -117,7 +117,7 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
                       std::vector<Finding>& findings) {
     const int number = value_of(tool.description.number);
     const double now = top_of_flutes(tool);
-    const bool hopeless = reach.more_flute >= most;
+    const bool hopeless = reach.more_flute >= longest_stick_out;
     Finding deep = about("over-engagement", reach.shank_block);
     deep.pair = {name_of(PartKind::shank), "stock"};
     deep.shortfall = reach.more_flute;

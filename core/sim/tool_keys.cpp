@@ -18,7 +18,7 @@ struct ShapeKey {
     Shapes shapes;
 };
 
-constexpr double longest = 2000.0; // mm; more is a slip of the finger
+constexpr double longest_length = 2000.0; // mm; more is a slip of the finger
 
 Result<void> check_shape_keys(const ToolDescription& tool) {
     using enum ToolShape;
@@ -56,9 +56,9 @@ Result<void> check_length(const ToolDescription& tool, const Length& length) {
     if (!std::isfinite(length.value) || length.value < 0.0
         || (length.value == 0.0 && !length.may_be_zero))
         return tool_error(tool, fmt::format("{} must be above 0", length.key));
-    if (length.value > longest)
+    if (length.value > longest_length)
         return tool_error(tool, fmt::format("{} = {:g} mm is larger than any tool ({:g} mm)",
-                                            length.key, length.value, longest));
+                                            length.key, length.value, longest_length));
     return {};
 }
 
