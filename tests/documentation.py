@@ -3,10 +3,12 @@
 must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
+    documentation.py ROOT FEELER    checks that the manual lists every subcommand and option of the program
     documentation.py --self-check   checks this script against a small tree with known mistakes
 """
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import urllib.parse
@@ -129,6 +131,32 @@ def mistakes(root):
     return found
 
 
+def section_of(text, heading):
+    """The lines below a heading of the second level."""
+    parts = re.split(rf"^## {re.escape(heading)}$", text, flags=re.M)
+    return re.split(r"^## ", parts[1], flags=re.M)[0] if len(parts) > 1 else ""
+
+
+def undocumented(root, feeler):
+    """Subcommands and options that --help lists and the command reference does not."""
+    def help_of(*arguments):
+        return subprocess.run([feeler, *arguments, "--help"], capture_output=True, text=True, check=True).stdout
+
+    text = (root / "docs" / "manual" / "commands.md").read_text(encoding="utf-8")
+    shared = section_of(text, "Options for reading a program") + section_of(text, "Options for a check")
+    found = []
+    commands = re.findall(r"^  ([a-z]+) ", help_of().split("Subcommands:")[1], flags=re.M)
+    for command in commands:
+        own = section_of(text, command)
+        if not own:
+            found.append(f"docs/manual/commands.md: nothing about feeler {command}")
+        for option in re.findall(r"(?<![\w-])--[a-z][a-z-]*", "\n".join(
+                line for line in help_of(command).splitlines() if line.startswith("  -"))):
+            if option != "--help" and not re.search(rf"{option}(?![a-z-])", own + shared):
+                found.append(f"docs/manual/commands.md: feeler {command} has {option}, which is not listed")
+    return found
+
+
 def self_check():
     """Runs the check over a small tree; each line with a mistake must be reported, and no other."""
     readme = "\n".join([
@@ -166,7 +194,8 @@ def main(arguments):
     if arguments == ["--self-check"]:
         self_check()
         return 0
-    found = mistakes(pathlib.Path(arguments[0] if arguments else ".").resolve())
+    root = pathlib.Path(arguments[0] if arguments else ".").resolve()
+    found = undocumented(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
     for mistake in found:
         print(mistake)
     return 1 if found else 0
