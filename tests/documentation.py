@@ -143,17 +143,16 @@ def undocumented(root, feeler):
         return subprocess.run([feeler, *arguments, "--help"], capture_output=True, text=True, check=True).stdout
 
     text = (root / "docs" / "manual" / "commands.md").read_text(encoding="utf-8")
-    shared = section_of(text, "Options for reading a program") + section_of(text, "Options for a check")
+    shared = "--help" + section_of(text, "Options for reading a program") + section_of(text, "Options for a check")
     found = []
     commands = re.findall(r"^  ([a-z]+) ", help_of().split("Subcommands:")[1], flags=re.M)
     for command in commands:
         own = section_of(text, command)
         if not own:
             found.append(f"docs/manual/commands.md: nothing about feeler {command}")
-        for option in re.findall(r"(?<![\w-])--[a-z][a-z-]*", "\n".join(
-                line for line in help_of(command).splitlines() if line.startswith("  -"))):
-            if option != "--help" and not re.search(rf"{option}(?![a-z-])", own + shared):
-                found.append(f"docs/manual/commands.md: feeler {command} has {option}, which is not listed")
+        for names in re.findall(r"^  (-[^ ]+)", help_of(command), flags=re.M):
+            if not any(re.search(rf"(?<![\w-]){name}(?![\w-])", own + shared) for name in names.split(",")):
+                found.append(f"docs/manual/commands.md: feeler {command} has {names}, which is not listed")
     return found
 
 

@@ -7,6 +7,7 @@
 A block ```console holds commands ($ ...) with their output; a line [...] stands for any lines. A block ```toml
 FILE is written to that file, ```toml append FILE is appended to it. Seconds of computing time do not count.
 """
+import difflib
 import os
 import pathlib
 import re
@@ -33,14 +34,20 @@ def matches(shown, printed):
 
 
 def updated(shown, printed):
-    """What is printed, shortened where the shown text is: as many lines before and after each [...]."""
-    if shown.count(LEFT_OUT) == 0:
-        return printed
-    if shown.count(LEFT_OUT) > 1:
-        raise SystemExit("edit this block by hand: " + "\n".join(shown))
-    at = shown.index(LEFT_OUT)
-    after = len(shown) - at - 1
-    return printed[:at] + [LEFT_OUT] + (printed[len(printed) - after:] if after else [])
+    """What is printed, shortened where the shown text is: after a [...] goes on the line that is most alike."""
+    result, at, after_gap = [], 0, False
+    for line in shown:
+        if line == LEFT_OUT:
+            result.append(line)
+            after_gap = True
+            continue
+        rest = range(at, len(printed))
+        if after_gap and rest:
+            at = max(rest, key=lambda i: (difflib.SequenceMatcher(None, line, printed[i]).ratio(), -i))
+        if at < len(printed):
+            result.append(printed[at])
+        at, after_gap = at + 1, False
+    return result if after_gap or LEFT_OUT in shown else printed
 
 
 class Shell:
