@@ -3,9 +3,10 @@
 must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
-    documentation.py ROOT FEELER    checks that the manual lists every subcommand and option of the program
+    documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
     documentation.py --self-check   checks this script against a small tree with known mistakes
 """
+import json
 import pathlib
 import re
 import subprocess
@@ -156,6 +157,21 @@ def undocumented(root, feeler):
     return found
 
 
+def undocumented_rules(root, feeler):
+    """Rules that SARIF lists and the manual does not, or with another severity."""
+    program = root / "assets" / "programs" / "clamped_plate.nc"
+    sarif = subprocess.run([feeler, "check", str(program), "--format", "sarif"], capture_output=True, text=True,
+                           check=False).stdout
+    text = (root / "docs" / "manual" / "rules.md").read_text(encoding="utf-8")
+    listed = dict(re.findall(r"^\| `([a-z-]+)` \| (\w+) \|", text, flags=re.M))
+    found = []
+    for rule in json.loads(sarif)["runs"][0]["tool"]["driver"]["rules"]:
+        level = rule["defaultConfiguration"]["level"]
+        if listed.get(rule["id"]) != level:
+            found.append(f"docs/manual/rules.md: {rule['id']} should be listed with severity {level}")
+    return found
+
+
 def self_check():
     """Runs the check over a small tree; each line with a mistake must be reported, and no other."""
     readme = "\n".join([
@@ -194,7 +210,7 @@ def main(arguments):
         self_check()
         return 0
     root = pathlib.Path(arguments[0] if arguments else ".").resolve()
-    found = undocumented(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
+    found = undocumented(root, arguments[1]) + undocumented_rules(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
     for mistake in found:
         print(mistake)
     return 1 if found else 0
