@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""Checks the documentation: every relative link and #anchor in every *.md resolves, and the pages that
+must stay short are short.
+
+    documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
+    documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
+    documentation.py --self-check   checks this script against a small tree with known mistakes
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import urllib.parse
+
+SKIPPED_FOLDERS = {".git", "build", "node_modules", ".feeler", "__pycache__"}
+MAX_LINES = {"README.md": 150, "app/README.md": 40}
+MAX_BYTES = {"docs/architecture.md": 8 * 1024}
+
+FENCE = re.compile(r"^ {0,3}(`{3,}|~{3,})")
+HEADING = re.compile(r"^ {0,3}#{1,6}\s+(.*?)\s*#*\s*$")
+HTML_ANCHOR = re.compile(r"""<[a-zA-Z][^>]*\b(?:id|name)\s*=\s*["']([^"']+)["']""")
+INLINE_CODE = re.compile(r"(`+)(?:.*?)\1")
+LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*(<[^>]*>|[^()\s]*(?:\([^()]*\)[^()\s]*)*)"
+                  r"""(?:\s+(?:"[^"]*"|'[^']*'))?\s*\)""")
+DEFINITION = re.compile(r"^ {0,3}\[[^\]]+\]:\s*(<[^>]*>|\S+)")
+HTML_SOURCE = re.compile(r"""<(?:img|a)\b[^>]*\b(?:src|href)\s*=\s*["']([^"']+)["']""")
+EXTERNAL = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]*:")
+
+
+def prose_lines(text):
+    """Line numbers and lines of a page without fenced blocks; indented blocks are left out as well."""
+    fence = None
+    after_blank = True
+    in_block = False
+    in_list = False
+    for number, line in enumerate(text.splitlines(), 1):
+        opening = FENCE.match(line)
+        if fence:
+            if opening and opening.group(1)[0] == fence[0] and len(opening.group(1)) >= len(fence):
+                fence = None
+            continue
+        if opening:
+            fence = opening.group(1)
+            continue
+        if re.match(r"^ {0,3}([-*+]|\d+[.)])\s", line):
+            in_list = True
+        elif line.strip() and not line.startswith(" "):
+            in_list = False
+        in_block = line.startswith("    ") and (after_blank or in_block) and not in_list
+        after_blank = not line.strip()
+        if not in_block:
+            yield number, line
+
+
+def slug(heading):
+    """The anchor that GitHub gives a heading."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.replace("`", ""))
+    text = re.sub(r"<[^>]*>", "", text)
+    return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-")
+
+
+def anchors(text):
+    found = set()
+    for _, line in prose_lines(text):
+        found.update(HTML_ANCHOR.findall(INLINE_CODE.sub("", line)))
+        heading = HEADING.match(line)
+        if heading:
+            name = slug(heading.group(1))
+            unique, count = name, 0
+            while unique in found:
+                count += 1
+                unique = f"{name}-{count}"
+            found.add(unique)
+    return found
+
+
+def links(text):
+    for number, line in prose_lines(text):
+        plain = INLINE_CODE.sub(lambda code: "`" * len(code.group()), line)
+        for pattern in (LINK, DEFINITION, HTML_SOURCE):
+            for target in pattern.findall(plain):
+                yield number, target.strip("<>")
+
+
+def pages_of(root):
+    for page in sorted(root.rglob("*.md")):
+        if not SKIPPED_FOLDERS.intersection(page.relative_to(root).parts):
+            yield page
+
+
+def mistake_of(root, page, target, anchors_of):
+    if not target:
+        return "an empty link"
+    if EXTERNAL.match(target) or target.startswith("//"):
+        return None
+    path, _, anchor = target.partition("#")
+    path = urllib.parse.unquote(path)
+    if path.startswith("/"):
+        return f"{target}: write a path relative to this page"
+    file = (page.parent / path).resolve() if path else page
+    if not file.exists():
+        return f"{target}: there is no such file"
+    if not file.is_relative_to(root):
+        return f"{target}: leads out of the repository"
+    if anchor and file.suffix == ".md" and urllib.parse.unquote(anchor) not in anchors_of(file):
+        return f"{target}: {file.relative_to(root)} has no heading #{anchor}"
+    return None
+
+
+def mistakes(root):
+    known = {}
+
+    def anchors_of(file):
+        if file not in known:
+            known[file] = anchors(file.read_text(encoding="utf-8"))
+        return known[file]
+
+    found = []
+    for page in pages_of(root):
+        name = page.relative_to(root).as_posix()
+        text = page.read_text(encoding="utf-8")
+        for number, target in links(text):
+            mistake = mistake_of(root, page, target, anchors_of)
+            if mistake:
+                found.append(f"{name}:{number}: {mistake}")
+        if name in MAX_LINES and len(text.splitlines()) > MAX_LINES[name]:
+            found.append(f"{name}: {len(text.splitlines())} lines; at most {MAX_LINES[name]} are allowed")
+        if name in MAX_BYTES and len(text.encode()) > MAX_BYTES[name]:
+            found.append(f"{name}: {len(text.encode())} bytes; at most {MAX_BYTES[name]} are allowed")
+    return found
+
+
+def section_of(text, heading):
+    """The lines below a heading of the second level."""
+    parts = re.split(rf"^## {re.escape(heading)}$", text, flags=re.M)
+    return re.split(r"^## ", parts[1], flags=re.M)[0] if len(parts) > 1 else ""
+
+
+def undocumented(root, feeler):
+    """Subcommands and options that --help lists and the command reference does not."""
+    def help_of(*arguments):
+        return subprocess.run([feeler, *arguments, "--help"], capture_output=True, text=True, check=True).stdout
+
+    text = (root / "docs" / "manual" / "commands.md").read_text(encoding="utf-8")
+    shared = "--help" + section_of(text, "Options for reading a program") + section_of(text, "Options for a check")
+    found = []
+    commands = re.findall(r"^  ([a-z]+) ", help_of().split("Subcommands:")[1], flags=re.M)
+    for command in commands:
+        own = section_of(text, command)
+        if not own:
+            found.append(f"docs/manual/commands.md: nothing about feeler {command}")
+        for names in re.findall(r"^  (-[^ ]+)", help_of(command), flags=re.M):
+            if not any(re.search(rf"(?<![\w-]){name}(?![\w-])", own + shared) for name in names.split(",")):
+                found.append(f"docs/manual/commands.md: feeler {command} has {names}, which is not listed")
+    return found
+
+
+def undocumented_rules(root, feeler):
+    """Rules that SARIF lists and the manual does not, or with another severity."""
+    program = root / "assets" / "programs" / "clamped_plate.nc"
+    sarif = subprocess.run([feeler, "check", str(program), "--format", "sarif"], capture_output=True, text=True,
+                           check=False).stdout
+    text = (root / "docs" / "manual" / "rules.md").read_text(encoding="utf-8")
+    listed = dict(re.findall(r"^\| `([a-z-]+)` \| (\w+) \|", text, flags=re.M))
+    found = []
+    for rule in json.loads(sarif)["runs"][0]["tool"]["driver"]["rules"]:
+        level = rule["defaultConfiguration"]["level"]
+        if listed.get(rule["id"]) != level:
+            found.append(f"docs/manual/rules.md: {rule['id']} should be listed with severity {level}")
+    return found
+
+
+def self_check():
+    """Runs the check over a small tree; each line with a mistake must be reported, and no other."""
+    readme = "\n".join([
+        "# The first `page`",
+        "[right](docs/a.md) [right](docs/a.md#two-words) [right](#the-first-page) <http://x.invalid>",
+        "[right](docs/a.md#two-words-1) ![right](docs/p.png) `[no](link.md)` [web](https://x.invalid/#a)",
+        "[wrong](docs/b.md)",
+        "[wrong](docs/a.md#three-words)",
+        "[wrong](#second-page)",
+        "![wrong](docs/q.png)",
+        "[ref]: docs/c.md",
+        "<img src=\"docs/r.png\">",
+        "```", "[no](link.md)", "```",
+        "", "    [no](link.md)", "",
+        "[wrong](/docs/a.md)", "[wrong](../outside.md)"])
+    long_readme = readme + "\n" * 150 + "end"
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder).resolve() / "tree"
+        (root / "docs").mkdir(parents=True)
+        (root / "build").mkdir()
+        (root / "build" / "skipped.md").write_text("[no](link.md)")
+        (root.parent / "outside.md").write_text("")
+        (root / "docs" / "a.md").write_text("## Two words\n\n[up](../README.md)\n\n## Two words\n")
+        (root / "docs" / "p.png").write_bytes(b"")
+        (root / "README.md").write_text(readme)
+        lines = [int(m.split(":")[1]) for m in mistakes(root)]
+        assert sorted(lines) == [4, 5, 6, 7, 8, 9, 16, 17], mistakes(root)
+        (root / "README.md").write_text(long_readme)
+        (root / "docs" / "architecture.md").write_text("x" * 8193)
+        lengths = [m for m in mistakes(root) if "allowed" in m]
+        assert len(lengths) == 2, lengths
+
+
+def main(arguments):
+    if arguments == ["--self-check"]:
+        self_check()
+        return 0
+    root = pathlib.Path(arguments[0] if arguments else ".").resolve()
+    found = undocumented(root, arguments[1]) + undocumented_rules(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
+    for mistake in found:
+        print(mistake)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
