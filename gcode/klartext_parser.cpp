@@ -8,6 +8,7 @@
 #include "gcode/axes.h"
 #include "gcode/expression_parser.h"
 #include "gcode/klartext_reader.h"
+#include "gcode/program_text.h"
 
 namespace gcode {
 namespace {
@@ -30,8 +31,6 @@ constexpr std::string_view refused[] = {"APPR",  "DEP",      "LN",   "SPL",    "
                                         "FL",    "FLT",      "FPOL", "SEL",    "PATTERN", "TCH",
                                         "TRANS", "FUNCTION", "SQL",  "PRESET", "CONTOUR"};
 
-bool ends_line(char c) { return c == '\n' || c == '\r'; }
-
 core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
     Command& command = reader.block.command;
     command.kind = kind;
@@ -52,7 +51,7 @@ core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
 core::Result<void> read_begin(KlartextReader& reader) {
     std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
     reader.lexer.at = reader.lexer.line.size();
-    while (!rest.empty() && (is_blank(rest.back()) || ends_line(rest.back())))
+    while (!rest.empty() && (is_blank(rest.back()) || is_line_end(rest.back())))
         rest.remove_suffix(1);
     const size_t blank = rest.find_last_of(" \t");
     const std::string_view unit =

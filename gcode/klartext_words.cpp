@@ -6,13 +6,12 @@
 #include "gcode/axes.h"
 #include "gcode/expression_parser.h"
 #include "gcode/klartext_reader.h"
+#include "gcode/program_text.h"
 
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
-
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 /// `F500`, `FQ5`, `FMAX`, `FAUTO`, or an F that says nothing.
 core::Result<void> read_feed(KlartextReader& reader) {

@@ -93,7 +93,7 @@ core::Result<void> check_spindle(const Execution& execution, int code) {
 }
 
 /// A shift of the tool off the middle: I, J and K are those of the plane's axes.
-void shift(Drilling& hole, double sign) {
+void shift_off_middle(Drilling& hole, double sign) {
     Position end = hole.execution.modal().position;
     for (const size_t axis : {hole.first, hole.second})
         if (end[axis]) *end[axis] += sign * hole.cycle.shift[axis % 3];
@@ -178,17 +178,17 @@ void bore_back_to_middle(Drilling& hole) {
     const SpindleDirection direction = hole.execution.modal().spindle;
     const double word = hole.cycle.shift[hole.normal % 3];
     const bool incremental = hole.execution.modal().distance == DistanceMode::incremental;
-    shift(hole, +1.0);
+    shift_off_middle(hole, +1.0);
     hole.turn(SpindleDirection::stopped);
     hole.traverse(hole.bottom);
-    shift(hole, -1.0);
+    shift_off_middle(hole, -1.0);
     hole.turn(direction);
     hole.feed(incremental ? hole.bottom + word : word);
     hole.feed(hole.bottom);
     hole.turn(SpindleDirection::stopped);
-    shift(hole, +1.0);
+    shift_off_middle(hole, +1.0);
     hole.traverse(hole.clear);
-    shift(hole, -1.0);
+    shift_off_middle(hole, -1.0);
     hole.turn(direction);
 }
 

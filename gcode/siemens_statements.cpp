@@ -114,7 +114,7 @@ private:
         if (name.empty() || name.front() == '$')
             return reader_.refuse(
                 fmt::format("'{}' needs a label or a block number behind it", behind), begin_);
-        if (is_digit(name.front())) name.insert(0, "N");
+        if (is_digit(name.front())) name.insert(0, 1, 'N');
         return name;
     }
 

@@ -10,12 +10,11 @@ namespace {
 
 using core::Vec3;
 
-constexpr double pi = std::numbers::pi;
-
 /// Chords of a circle that stay within `sag` of it; a multiple of 4, so that quarters are exact.
 int chords_of(double radius, double sag) {
     const double angle = std::acos(std::clamp(1.0 - sag / std::max(radius, sag), -1.0, 1.0));
-    const int quarter = static_cast<int>(std::ceil(0.25 * pi / std::max(angle, 1e-3)));
+    const int quarter =
+        static_cast<int>(std::ceil(0.25 * std::numbers::pi / std::max(angle, 1e-3)));
     return 4 * std::clamp(quarter, 6, 32);
 }
 
@@ -29,7 +28,7 @@ struct Rings {
         const auto first = static_cast<uint32_t>(mesh.vertices.size());
         const int count = at.r > 0.0 ? chords : 1;
         for (int i = 0; i < count; ++i) {
-            const double angle = 2.0 * pi * i / chords;
+            const double angle = 2.0 * std::numbers::pi * i / chords;
             mesh.vertices.emplace_back(at.r * std::cos(angle), at.r * std::sin(angle), at.z);
         }
         return first;
@@ -65,7 +64,7 @@ core::Mesh revolved(const std::vector<OutlinePoint>& outline, double sag) {
 core::Mesh directions(int divisions) {
     std::vector<OutlinePoint> outline;
     for (int i = 0; i <= divisions; ++i) {
-        const double angle = pi * i / divisions;
+        const double angle = std::numbers::pi * i / divisions;
         const bool pole = i == 0 || i == divisions;
         outline.push_back({pole ? 0.0 : std::sin(angle), -std::cos(angle)});
     }
@@ -200,7 +199,7 @@ TriangleMesh mesh_of(const core::Solid& solid, double sag) {
 TriangleMesh ball_mesh(double radius, int divisions) {
     core::Mesh ball = directions(divisions);
     for (Vec3& p : ball.vertices) p *= radius;
-    return shaded(ball, pi);
+    return shaded(ball, std::numbers::pi);
 }
 
 } // namespace render

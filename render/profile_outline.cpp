@@ -8,7 +8,6 @@
 namespace render {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double tiny = 1e-9; // mm
 
 using Outline = std::vector<OutlinePoint>;
@@ -36,8 +35,8 @@ Outline outline_of(const core::ProfileElement& e, double sag) {
     if (e.margin <= 0.0) return {{e.r0, e.z0}, {e.r1, e.z1}};
     const double flank = std::atan2(-(e.r1 - e.r0), e.z1 - e.z0);
     Outline outline;
-    add_arc(outline, {e.r0, e.z0, e.margin, -0.5 * pi, flank}, sag);
-    add_arc(outline, {e.r1, e.z1, e.margin, flank, 0.5 * pi}, sag);
+    add_arc(outline, {e.r0, e.z0, e.margin, -0.5 * std::numbers::pi, flank}, sag);
+    add_arc(outline, {e.r1, e.z1, e.margin, flank, 0.5 * std::numbers::pi}, sag);
     return outline;
 }
 

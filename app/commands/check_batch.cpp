@@ -95,7 +95,7 @@ Shard shard_of(const ShareName& share, const SharedWork& work, const BatchResult
 }
 
 /// Between the passes of --watch.
-struct Watch {
+struct WatchState {
     WatchedFiles* files = nullptr; // of this pass; null: nothing is watched
     // What was said last of each program; what is known and the same is not said again.
     std::map<std::string, ProgramResult> said = {};
@@ -103,7 +103,7 @@ struct Watch {
 };
 
 /// Whether this is not what was said of the program before.
-bool note_said(Watch& watch, ProgramResult result) {
+bool note_said(WatchState& watch, ProgramResult result) {
     result.seconds = 0.0;
     const auto [place, is_first] = watch.said.try_emplace(result.program, result);
     if (!is_first && place->second == result) return false;
@@ -112,7 +112,7 @@ bool note_said(Watch& watch, ProgramResult result) {
 }
 
 BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchTalk& talk,
-                      BatchStore& store, Watch& watch, ReadFiles& read) {
+                      BatchStore& store, WatchState& watch, ReadFiles& read) {
     ProgressLine line;
     BatchHooks hooks;
     store.serve(hooks);
@@ -157,7 +157,7 @@ ExitCode all_failed(const std::vector<core::Error>& errors) {
 
 /// Once through the whole batch.
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
-              const std::vector<ReportTarget>& targets, BatchStore& store, Watch& watch) {
+              const std::vector<ReportTarget>& targets, BatchStore& store, WatchState& watch) {
     const Stopwatch time;
     ReadFiles read;
     read.add(store.path());
@@ -199,7 +199,7 @@ core::Result<BatchPass> batch_pass(const CheckOptions& options,
     asked.detail = detail_of(options);
     stop_on_interrupt();
     const auto store = std::make_shared<BatchStore>(options);
-    return [&options, &targets, asked, store, state = Watch()](WatchedFiles* files) mutable {
+    return [&options, &targets, asked, store, state = WatchState()](WatchedFiles* files) mutable {
         if (files) files->add_own(store->path());
         store->begin_again();
         state.files = files;

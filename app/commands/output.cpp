@@ -20,10 +20,6 @@ namespace {
 std::mutex written_guard;
 std::map<std::string, FileStamp> written_stamps; // by path
 
-struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 tl::unexpected<core::Error> refused(const std::string& path, const std::string& why) {
     return tl::unexpected<core::Error>({core::ErrorCode::io, {}, why, path});
 }
@@ -39,6 +35,10 @@ tl::unexpected<core::Error> standard_output_failed() {
 } // namespace
 
 struct OutputStream::State {
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+
     std::string path{};             // as the user gave it; empty: standard output
     std::filesystem::path target{}; // that the finished file gets; empty: written as it goes
     std::string fresh{};            // the file that is being written

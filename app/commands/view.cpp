@@ -44,7 +44,9 @@ ExitCode view(const ViewOptions& options) {
         job.notes_file = folder / "feeler" / "notes.toml";
     }
     job.device = options.device;
-    job.write = write_output;
+    job.write = [](const std::string& path, const std::string& text) {
+        return write_output(path, text);
+    };
     job.pictures = pictures_folder(arguments.program);
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);

@@ -12,7 +12,7 @@
 namespace app {
 namespace {
 
-tl::unexpected<core::Error> refused(const std::string& path, const std::string& why) {
+tl::unexpected<core::Error> stock_file_error(const std::string& path, const std::string& why) {
     return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
 }
 
@@ -32,7 +32,7 @@ core::Result<MeshForm> mesh_form(const std::string& path) {
     if (ending == ".stl") return MeshForm::stl;
     if (ending == ".ply") return MeshForm::ply;
     if (ending == ".feeler") return MeshForm::record;
-    return refused(path, "cannot be written: the name must end in .stl, .ply or .feeler");
+    return stock_file_error(path, "cannot be written: the name must end in .stl, .ply or .feeler");
 }
 
 std::string facts_of(const SavedStock& saved) {
@@ -52,7 +52,7 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
     FEELER_TRY(const MeshForm form, mesh_form(path));
     assert(form != MeshForm::record);
     if (surface.mesh.triangles.empty())
-        return refused(path, "was not written: nothing is left of the stock");
+        return stock_file_error(path, "was not written: nothing is left of the stock");
     StockFile file;
     file.facts = {path, surface.mesh.triangles.size(), surface.error, mesh_size, surface.lost};
     if (form == MeshForm::stl) file.facts.error += rounding_of(surface.mesh);

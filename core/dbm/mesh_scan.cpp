@@ -12,13 +12,13 @@ namespace core {
 namespace {
 
 /// Where a line passes through the surface, and by how much its winding number grows there.
-struct Crossing {
+struct TriangleCrossing {
     uint32_t line;
     int32_t step;
     double depth;
 };
 
-bool comes_before(const Crossing& a, const Crossing& b) {
+bool comes_before(const TriangleCrossing& a, const TriangleCrossing& b) {
     if (a.line != b.line) return a.line < b.line;
     if (a.depth != b.depth) return a.depth < b.depth;
     return a.step > b.step; // which of them does not matter, but the order is fixed
@@ -32,7 +32,7 @@ struct LineScan {
 };
 
 /// Reads the sorted crossings of one line. Stretches up to `rounding` long decide nothing.
-LineScan read_line(std::span<const Crossing> crossings, double rounding) {
+LineScan read_line(std::span<const TriangleCrossing> crossings, double rounding) {
     LineScan scan;
     int winding = 0;
     Interval piece{0.0, -infinity}; // the last piece found; waits for one that continues it
@@ -90,7 +90,7 @@ int line_after(const ScanGrid& grid, int axis, double position) {
 /// The crossings of one triangle with one family, row by row.
 class TriangleRaster {
 public:
-    TriangleRaster(const ScanGrid& grid, int axis, std::vector<Crossing>& crossings)
+    TriangleRaster(const ScanGrid& grid, int axis, std::vector<TriangleCrossing>& crossings)
         : grid_(grid), axis_(axis), crossings_(crossings) {}
 
     void add(const ProjectedTriangle& triangle) const {
@@ -134,11 +134,11 @@ private:
 
     const ScanGrid& grid_;
     int axis_;
-    std::vector<Crossing>& crossings_;
+    std::vector<TriangleCrossing>& crossings_;
 };
 
-std::vector<Crossing> crossings_with(const Mesh& mesh, const ScanGrid& grid, int axis) {
-    std::vector<Crossing> crossings;
+std::vector<TriangleCrossing> crossings_with(const Mesh& mesh, const ScanGrid& grid, int axis) {
+    std::vector<TriangleCrossing> crossings;
     const TriangleRaster raster(grid, axis, crossings);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) raster.add(project(mesh.triangle(i), axis));
     std::sort(crossings.begin(), crossings.end(), comes_before);
@@ -148,7 +148,7 @@ std::vector<Crossing> crossings_with(const Mesh& mesh, const ScanGrid& grid, int
 /// Fills one family; says whether shells overlap.
 Result<bool> scan_family(const Mesh& mesh, const ScanGrid& grid, double rounding,
                          ScanLines& family) {
-    const std::vector<Crossing> crossings = crossings_with(mesh, grid, family.axis());
+    const std::vector<TriangleCrossing> crossings = crossings_with(mesh, grid, family.axis());
     const auto u_count = static_cast<uint32_t>(family.u_count());
     bool shells_overlap = false;
     for (size_t first = 0, last = 0; first < crossings.size(); first = last) {
@@ -190,7 +190,7 @@ Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit) {
 namespace {
 
 LineScan read_line_of(const Mesh& mesh, int axis, double u, double v) {
-    std::vector<Crossing> crossings;
+    std::vector<TriangleCrossing> crossings;
     const Vec2 p(u, v);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         const ProjectedTriangle triangle = project(mesh.triangle(i), axis);

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <string>
 
+#include "core/distance/rounding.h"
+
 namespace core {
 namespace {
 
-constexpr double farthest_coordinate = 1e12;     // squares and sums stay far from overflow
 constexpr size_t most_points = size_t{1} << 31U; // nodes are counted in 32 bits
 
 } // namespace

@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-constexpr uint32_t width = PointTree::width;
+constexpr uint32_t tile_width = PointTree::width;
 
 /// The single precision that the frame's coordinates are off by, per length: direction, products
 /// and sums take less than ten roundings.
@@ -21,7 +21,7 @@ Float3 single(const Vec3& v) {
 /// The boxes round two rows of boxes.
 void extend(BoxLanes& boxes, const BoxLanes& by) {
     for (size_t k = 0; k < 3; ++k)
-        for (size_t lane = 0; lane < width; ++lane) {
+        for (size_t lane = 0; lane < tile_width; ++lane) {
             boxes.lower[k][lane] = std::min(boxes.lower[k][lane], by.lower[k][lane]);
             boxes.upper[k][lane] = std::max(boxes.upper[k][lane], by.upper[k][lane]);
         }
@@ -101,7 +101,7 @@ uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
     visited.node = &node;
     visited.count = static_cast<uint32_t>(std::popcount(node.used));
     visited.below.fill(none);
-    for (uint32_t lane = 0; lane < width; ++lane) {
+    for (uint32_t lane = 0; lane < tile_width; ++lane) {
         const bool leaf = (node.child[lane] & PointTree::leaf_flag) != 0;
         visited.size[lane] = leaf ? -1.0F : node.radius[lane];
     }

@@ -9,6 +9,8 @@
 
 namespace core {
 
+struct Setup;
+
 enum class Severity : uint8_t { off, note, warning, error };
 
 const char* name_of(Severity severity);
@@ -29,6 +31,13 @@ using RuleSeverities = std::map<std::string, Severity>;
 
 /// The severity a rule has unless the set-up says otherwise; empty for a name that is no rule.
 std::optional<Severity> default_severity(const std::string& rule);
+
+/// The severity of a rule in this set-up.
+Severity severity_of(const Setup& setup, const std::string& rule);
+
+/// Gives a finding whose rule has left that open its severity in this set-up. A note stays one
+/// unless the set-up names its rule.
+void settle_severity(const Setup& setup, Finding& finding);
 
 /// The rule whose name takes the fewest letters changed, put in or left out to make it from this
 /// one.

@@ -191,17 +191,6 @@ double shortfall_of(const PairClearance& pair) {
 
 } // namespace
 
-Severity severity_of(const Setup& setup, const std::string& rule) {
-    const auto set = setup.rules.find(rule);
-    return set != setup.rules.end() ? set->second
-                                    : default_severity(rule).value_or(Severity::warning);
-}
-
-void settle_severity(const Setup& setup, Finding& finding) {
-    if (finding.severity != Severity::note || setup.rules.count(finding.rule))
-        finding.severity = severity_of(setup, finding.rule);
-}
-
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                    const SimulatorState& state) {
     const ToolAssembly* tool = nullptr;

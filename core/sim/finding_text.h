@@ -23,11 +23,4 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
 /// The finding for a tool that is changed in where it does not keep an allowance.
 Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool);
 
-/// The severity of a rule in this set-up.
-Severity severity_of(const Setup& setup, const std::string& rule);
-
-/// Gives a finding whose rule has left that open its severity in this set-up. A note stays one
-/// unless the set-up names its rule.
-void settle_severity(const Setup& setup, Finding& finding);
-
 } // namespace core

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/sim/finding_text.h"
-
 namespace core {
 namespace {
 
