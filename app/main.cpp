@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/base/version.h"
 #include "app/commands/commands.h"
-#include "app/version.h"
 
 namespace {
 

@@ -1,5 +1,7 @@
 #include "hwsim/memory_line.h"
 
+#include <cassert>
+
 namespace hwsim {
 namespace {
 
@@ -134,6 +136,28 @@ Records records_in(const Line& line) {
         records[i].half = extent_at(line, at + 3 * coordinate_bits + Record::extent_bits);
     }
     return records;
+}
+
+std::optional<LineRun> take(LineSpace& space, uint32_t count) {
+    assert(count >= 1 && count <= LineSpace::most);
+    if (space.returned[count].empty() && space.end - space.next >= count) {
+        space.next += count;
+        return LineRun{space.next - count, count};
+    }
+    for (uint32_t length = count; length <= LineSpace::most; ++length) {
+        std::vector<uint32_t>& runs = space.returned[length];
+        if (runs.empty()) continue;
+        const LineRun run{runs.back(), count};
+        runs.pop_back();
+        if (length > count) give_back(space, {run.first + count, length - count});
+        return run;
+    }
+    return {};
+}
+
+void give_back(LineSpace& space, const LineRun& run) {
+    assert(run.count >= 1 && run.count <= LineSpace::most);
+    space.returned[run.count].push_back(run.first);
 }
 
 } // namespace hwsim

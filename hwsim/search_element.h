@@ -1,10 +1,168 @@
 #pragma once
 
-#include "hwsim/line_cache.h"
+#include <vector>
+
+#include "hwsim/memory_line.h"
 #include "hwsim/memory_unit.h"
-#include "hwsim/search_thread.h"
+#include "hwsim/search.h"
 
 namespace hwsim {
+
+/// A direct mapped cache of lines. What is in it has been checked.
+struct LineCache {
+    struct Entry {
+        bool valid = false;
+        uint32_t address = 0;
+        Line line;
+        bool operator==(const Entry&) const = default;
+    };
+    std::vector<Entry> entries; // a power of two
+
+    bool operator==(const LineCache&) const = default;
+};
+
+inline LineCache::Entry& entry_of(LineCache& cache, uint32_t address) {
+    return cache.entries[address & (cache.entries.size() - 1)];
+}
+
+/// The line, or null if it is not there.
+inline const Line* looked_up(LineCache& cache, uint32_t address) {
+    const LineCache::Entry& entry = entry_of(cache, address);
+    return entry.valid && entry.address == address ? &entry.line : nullptr;
+}
+
+inline void fill(LineCache& cache, uint32_t address, const Line& line) {
+    entry_of(cache, address) = {true, address, line};
+}
+
+/// The memory has another line there now.
+inline void invalidate(LineCache& cache, uint32_t address) {
+    LineCache::Entry& entry = entry_of(cache, address);
+    if (entry.address == address) entry.valid = false;
+}
+
+/// Tests both halves of a division: swept volume against box, twice, as a pipeline.
+///
+/// Latency:    15 cycles: offsets, then those of the pair unit, for the arithmetic is the same.
+/// Throughput: one division a cycle, no stall.
+struct BoxUnit {
+    static constexpr uint32_t latency = 15;
+
+    struct Output {
+        bool valid = false;
+        uint8_t thread = 0;
+        std::array<bool, 2> in_range{};
+        std::array<uint64_t, 2> squared{};
+        bool operator==(const Output&) const = default;
+    };
+    /// The halves stay with their thread; only what is computed of them travels. Stages move round
+    /// instead of their contents: `next` is where a question enters, and where the oldest leaves.
+    std::array<Output, latency> stage{};
+    uint32_t next = 0;
+
+    const Output& output() const { return stage[next]; }
+    bool operator==(const BoxUnit&) const = default;
+};
+
+/// What enters the first stage: both halves, of which some may not be there.
+BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment& segment);
+
+/// One rising clock edge.
+void tick(BoxUnit& unit, const BoxUnit::Output& in);
+
+/// The squared distance of two records, as a pipeline.
+///
+/// Latency:    14 cycles: gaps, squares, 9 of the root (3 bits each), less the radius, squares,
+/// sum. Throughput: one pair a cycle, no stall.
+struct PairUnit {
+    static constexpr size_t latency = 14;
+
+    struct Output {
+        bool valid = false;
+        uint8_t thread = 0;
+        uint32_t tool_record = 0, work_record = 0;
+        uint64_t squared = 0;
+        bool operator==(const Output&) const = default;
+    };
+    /// Stages move round instead of their contents: `next` is where the next pair enters, and
+    /// where the oldest leaves.
+    std::array<Output, latency> stage{};
+    uint32_t next = 0;
+
+    const Output& output() const { return stage[next]; }
+    bool operator==(const PairUnit&) const = default;
+};
+
+/// One rising clock edge.
+void tick(PairUnit& unit, const PairUnit::Output& in);
+
+/// What a thread is about to do, or waits for.
+enum class Phase : uint8_t {
+    idle,
+    divide,    // decide what of the pair is divided
+    open,      // read the node: needs the node cache
+    test,      // needs the box unit
+    tested,    // waits for the box unit
+    pop,       // take the next pair from the stack
+    take_tool, // read a line of the tool's leaf: needs the record cache
+    take_work, // and one of the work's
+    compare,   // needs the pair unit
+    drain,     // waits for the last pairs
+    ask,       // needs the element's port to the memory
+    wait,      // for the memory
+    done,      // waits until everything before it is retired
+};
+
+/// One search of a processing element, as far as it has come. All of it is registers, but for the
+/// stack, which is a memory.
+struct SearchThread {
+    Phase phase = Phase::idle;
+    Phase after_line = Phase::idle; // open, take_tool or take_work: what a line is read for
+    uint8_t stack_size = 0;
+    uint8_t tool_line = 0, work_line = 0; // of the leaves, from 0
+    uint8_t tool_place = 0, work_place = 0;
+    uint8_t in_pair_unit = 0;
+    Division division = Division::none;
+    uint64_t started = 0; // cycle
+    Query query;
+    Answer answer;
+    SearchPair pair;
+    Halves halves;
+    Records tools{}, works{};
+    FixedVec offset{};
+    std::array<SearchPair, 64> stack{};
+
+    bool operator==(const SearchThread&) const = default;
+};
+
+void start(SearchThread& thread, const Query& query, uint64_t cycle);
+
+/// The line that the thread wants to read, in phases open, take_tool and take_work.
+uint32_t wanted_line(const SearchThread& thread);
+
+/// Whether a line is of the work's model, else the tool's.
+bool wants_work(const SearchThread& thread);
+
+/// Decides what comes next for the thread's pair.
+void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit);
+
+/// Goes on with the line that it wanted.
+void take_line(SearchThread& thread, const Line& line);
+
+/// Goes on with what the box unit found.
+void take_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth);
+
+/// Takes the next pair from the stack; done when there is none.
+void pop(SearchThread& thread);
+
+/// The pair of records that goes into the pair unit next. Moves on to the one after it.
+PairUnit::Output next_records(SearchThread& thread, uint8_t number);
+
+/// Takes what the pair unit found.
+void take_distance(SearchThread& thread, const PairUnit::Output& distance);
+
+/// Ends the search without an answer.
+void stop(SearchThread& thread, Stop reason, uint32_t line);
 
 /// What an element counts, from reset on.
 struct ElementCounts {

@@ -12,9 +12,8 @@
 ///   traversal.h      what a search divides, and the box test
 
 #include "hwsim/fixed_point.h"
-#include "hwsim/interpolation.h"
 #include "hwsim/memory_line.h"
 #include "hwsim/pair_distance.h"
 #include "hwsim/registers.h"
+#include "hwsim/search.h"
 #include "hwsim/segment.h"
-#include "hwsim/traversal.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/distance/body_distance.h"
 #include "core/geom/primitive.h"
 #include "core/geom/profile.h"
@@ -24,5 +26,16 @@ TriangleMesh mesh_of(const core::Solid& solid, double sag = round_sag);
 
 /// A ball about the origin.
 TriangleMesh ball_mesh(double radius, int divisions = 16);
+
+/// A point of the outline of a body of revolution: how far from its axis at a height.
+struct OutlinePoint {
+    double r = 0.0, z = 0.0;
+
+    bool operator==(const OutlinePoint&) const = default;
+};
+
+/// The outline of the union of a profile's pieces, from the tip up: begins and ends on the axis.
+/// Roundings are chords within `sag` of them. Empty for an empty profile.
+std::vector<OutlinePoint> outline_of(const core::RevolvedProfile& profile, double sag);
 
 } // namespace render

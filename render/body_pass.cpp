@@ -1,6 +1,7 @@
 #include "render/body_pass.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <epoxy/gl.h>
 
@@ -8,6 +9,77 @@
 #include "render/shaders.h"
 
 namespace render {
+namespace {
+
+/// Pictures after which a mesh that none of them showed is given back.
+constexpr uint64_t patience = 30;
+
+template <typename T>
+void fill(GLenum target, const GlBuffer& buffer, const std::vector<T>& data) {
+    glBindBuffer(target, buffer.id());
+    glBufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(),
+                 GL_STATIC_DRAW);
+}
+
+void describe(unsigned index, int size, GLenum type, bool share, size_t stride, size_t offset) {
+    glEnableVertexAttribArray(index);
+    glVertexAttribPointer(index, size, type, share ? GL_TRUE : GL_FALSE,
+                          static_cast<GLsizei>(stride),
+                          reinterpret_cast<const void*>(offset)); // NOLINT: as OpenGL wants it
+}
+
+GpuMesh uploaded(const SharedMesh& mesh) {
+    GpuMesh made;
+    made.of = mesh;
+    made.index_count = static_cast<int>(3 * mesh->triangles.size());
+    made.line_count = static_cast<int>(2 * mesh->edges.size());
+    made.faces = GlVertexArray::make();
+    made.vertices = GlBuffer::make();
+    made.indices = GlBuffer::make();
+    glBindVertexArray(made.faces.id());
+    fill(GL_ARRAY_BUFFER, made.vertices, mesh->vertices);
+    fill(GL_ELEMENT_ARRAY_BUFFER, made.indices, mesh->triangles);
+    constexpr size_t stride = sizeof(MeshVertex);
+    describe(0, 3, GL_FLOAT, false, stride, offsetof(MeshVertex, place));
+    describe(1, 3, GL_BYTE, true, stride, offsetof(MeshVertex, normal));
+    describe(2, 1, GL_UNSIGNED_BYTE, false, stride, offsetof(MeshVertex, tint));
+    if (made.line_count > 0) {
+        made.lines = GlVertexArray::make();
+        made.line_ends = GlBuffer::make();
+        glBindVertexArray(made.lines.id());
+        fill(GL_ARRAY_BUFFER, made.line_ends, mesh->edges);
+        describe(0, 3, GL_FLOAT, false, sizeof(glm::vec3), 0);
+    }
+    glBindVertexArray(0);
+    return made;
+}
+
+} // namespace
+
+void GpuMesh::draw_faces() const {
+    glBindVertexArray(faces.id());
+    glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+void GpuMesh::draw_lines() const {
+    if (line_count == 0) return;
+    glBindVertexArray(lines.id());
+    glDrawArrays(GL_LINES, 0, line_count);
+}
+
+const GpuMesh& GpuMeshes::of(const SharedMesh& mesh) {
+    auto found = meshes_.find(mesh.get());
+    if (found == meshes_.end()) found = meshes_.emplace(mesh.get(), uploaded(mesh)).first;
+    found->second.used = picture_;
+    return found->second;
+}
+
+void GpuMeshes::end_picture() {
+    std::erase_if(meshes_,
+                  [&](const auto& entry) { return entry.second.used + patience < picture_; });
+    ++picture_;
+}
+
 namespace {
 
 /// The way up in the view's frame.
@@ -263,6 +335,99 @@ void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, 
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     meshes_.of(ball_).draw_faces();
+}
+
+namespace {
+
+/// How far corners darken, as a share of the height of what is seen at the target.
+constexpr double reach_share = 0.055;
+
+GlTexture texture(const Viewport& size, GLint format, GLenum channels, GLenum type) {
+    GlTexture made = GlTexture::make();
+    glBindTexture(GL_TEXTURE_2D, made.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, format, size.width, size.height, 0, channels, type, nullptr);
+    const GLint filter = channels == GL_RED ? GL_LINEAR : GL_NEAREST;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return made;
+}
+
+GlFramebuffer framebuffer(GLenum place, const GlTexture& texture) {
+    GlFramebuffer made = GlFramebuffer::make();
+    glBindFramebuffer(GL_FRAMEBUFFER, made.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, place, GL_TEXTURE_2D, texture.id(), 0);
+    if (place == GL_DEPTH_ATTACHMENT) {
+        glDrawBuffer(GL_NONE);
+        glReadBuffer(GL_NONE);
+    }
+    return made;
+}
+
+bool is_complete(const GlFramebuffer& framebuffer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+} // namespace
+
+core::Result<HollowPass> HollowPass::make() {
+    HollowPass pass;
+    FEELER_TRY(pass.hollows_,
+               ShaderProgram::make(shaders::background_vertex, shaders::hollow_fragment));
+    FEELER_TRY(pass.smooth_,
+               ShaderProgram::make(shaders::background_vertex, shaders::smooth_fragment));
+    pass.no_attributes_ = GlVertexArray::make();
+    return pass;
+}
+
+bool HollowPass::resize(const Viewport& size) {
+    if (size.width == size_.width && size.height == size_.height) return true;
+    depths_ = texture(size, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
+    rough_ = texture(size, GL_R8, GL_RED, GL_UNSIGNED_BYTE);
+    result_ = texture(size, GL_R8, GL_RED, GL_UNSIGNED_BYTE);
+    to_depths_ = framebuffer(GL_DEPTH_ATTACHMENT, depths_);
+    to_rough_ = framebuffer(GL_COLOR_ATTACHMENT0, rough_);
+    to_result_ = framebuffer(GL_COLOR_ATTACHMENT0, result_);
+    const bool complete =
+        is_complete(to_depths_) && is_complete(to_rough_) && is_complete(to_result_);
+    size_ = complete ? size : Viewport{0, 0};
+    return complete;
+}
+
+unsigned HollowPass::draw(const ViewFrame& frame, BodyPass& bodies) {
+    const Viewport size{(frame.viewport.width + 1) / 2, (frame.viewport.height + 1) / 2};
+    if (!resize(size)) return 0;
+    glViewport(0, 0, size.width, size.height);
+    glBindFramebuffer(GL_FRAMEBUFFER, to_depths_.id());
+    glEnable(GL_DEPTH_TEST);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    bodies.draw_depths(frame);
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(no_attributes_.id());
+    const double seen = pixel_size(frame.camera, size, frame.camera.target) * size.height;
+    hollows_.use();
+    hollows_.set_sampler("depths", 0);
+    hollows_.set("clip_from_view", frame.clip_from_view);
+    hollows_.set("view_from_clip", glm::inverse(frame.clip_from_view));
+    hollows_.set("reach", static_cast<float>(reach_share * seen));
+    hollows_.set("pixels", static_cast<float>(0.5 * frame.clip_from_view[1][1] * size.height
+                                              * reach_share * seen));
+    glBindTexture(GL_TEXTURE_2D, depths_.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, to_rough_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    smooth_.use();
+    smooth_.set_sampler("depths", 0);
+    smooth_.set_sampler("hollows", 1);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, rough_.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, to_result_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    glActiveTexture(GL_TEXTURE0);
+    glEnable(GL_DEPTH_TEST);
+    return result_.id();
 }
 
 } // namespace render

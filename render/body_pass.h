@@ -1,9 +1,37 @@
 #pragma once
 
-#include "render/gpu_meshes.h"
+#include <unordered_map>
+
+#include "render/gl_objects.h"
+#include "render/triangle_mesh.h"
 #include "render/view_frame.h"
 
 namespace render {
+
+/// A mesh on the graphics card.
+struct GpuMesh {
+    GlVertexArray faces, lines;
+    GlBuffer vertices, indices, line_ends;
+    int index_count = 0, line_count = 0;
+    SharedMesh of; // keeps its address
+    uint64_t used = 0;
+
+    void draw_faces() const;
+    void draw_lines() const;
+};
+
+/// Meshes that were drawn of late.
+class GpuMeshes {
+public:
+    /// The mesh on the card, brought there if need be.
+    const GpuMesh& of(const SharedMesh& mesh);
+    /// To be called after each picture: gives back what has not been drawn for a while.
+    void end_picture();
+
+private:
+    std::unordered_map<const TriangleMesh*, GpuMesh> meshes_;
+    uint64_t picture_ = 0;
+};
 
 /// Draws what is solid: bodies, stock, faces of a section.
 class BodyPass {
@@ -46,6 +74,25 @@ private:
     GpuMeshes meshes_;
     GlVertexArray no_attributes_;
     SharedMesh ball_;
+};
+
+/// Works out how dark it is in corners and hollows, from the depths of what is opaque.
+class HollowPass {
+public:
+    static core::Result<HollowPass> make();
+
+    /// A texture over the whole picture, 1 where nothing darkens; 0 if the card has no room for it.
+    /// At half the picture's size.
+    unsigned draw(const ViewFrame& frame, BodyPass& bodies);
+
+private:
+    bool resize(const Viewport& size);
+
+    ShaderProgram hollows_, smooth_;
+    Viewport size_{0, 0};
+    GlTexture depths_, rough_, result_;
+    GlFramebuffer to_depths_, to_rough_, to_result_;
+    GlVertexArray no_attributes_;
 };
 
 } // namespace render

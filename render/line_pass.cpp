@@ -1,5 +1,8 @@
 #include "render/line_pass.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <limits>
 
 #include <epoxy/gl.h>
@@ -7,6 +10,139 @@
 #include "render/shaders.h"
 
 namespace render {
+namespace {
+
+using Texel = std::array<uint32_t, 4>;
+
+/// As the shader of lines reads it.
+Texel texel_of(const PathPoint& p) {
+    return {std::bit_cast<uint32_t>(p.place.x), std::bit_cast<uint32_t>(p.place.y),
+            std::bit_cast<uint32_t>(p.place.z),
+            p.block << 4U | static_cast<uint32_t>(p.state) << 2U | (p.rapid ? 2U : 0U)
+                | (p.begins ? 1U : 0U)};
+}
+
+} // namespace
+
+void GpuLines::fill(std::span<const PathPoint> points) {
+    chunks_.clear();
+    size_ = points.size();
+    if (!no_attributes_) no_attributes_ = GlVertexArray::make();
+    std::vector<Texel> texels;
+    for (size_t first = 0; first + 1 < points.size(); first += chunk) {
+        const size_t last = std::min(first + chunk + 1, points.size());
+        texels.clear();
+        for (size_t i = first; i < last; ++i) texels.push_back(texel_of(points[i]));
+        Chunk made{GlBuffer::make(), GlTexture::make()};
+        glBindBuffer(GL_TEXTURE_BUFFER, made.buffer.id());
+        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(texels.size() * sizeof(Texel)),
+                     texels.data(), GL_STATIC_DRAW);
+        glBindTexture(GL_TEXTURE_BUFFER, made.texture.id());
+        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, made.buffer.id());
+        chunks_.push_back(std::move(made));
+    }
+}
+
+void GpuLines::draw(size_t first, size_t last) const {
+    if (chunks_.empty()) return;
+    glBindVertexArray(no_attributes_.id());
+    glActiveTexture(GL_TEXTURE0);
+    // Piece i goes from point i to point i + 1.
+    const size_t from = first > 0 ? first - 1 : 0, to = std::min(last, size_) - 1;
+    for (size_t c = 0; c < chunks_.size(); ++c) {
+        const size_t begin = std::max(from, c * chunk), end = std::min(to, (c + 1) * chunk);
+        if (begin >= end) continue;
+        glBindTexture(GL_TEXTURE_BUFFER, chunks_[c].texture.id());
+        glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * (begin - c * chunk)),
+                     static_cast<GLsizei>(6 * (end - begin)));
+    }
+}
+
+namespace {
+
+/// Points that one piece may stand for: bounds the search, which looks at all of them again.
+constexpr size_t most = 48;
+
+bool go_together(const PathPoint& a, const PathPoint& b) {
+    return !b.begins && a.state == b.state && a.rapid == b.rapid;
+}
+
+double distance_to(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b) {
+    const glm::vec3 by = b - a;
+    const float size = glm::dot(by, by);
+    const float share = size > 0.0F ? std::clamp(glm::dot(p - a, by) / size, 0.0F, 1.0F) : 0.0F;
+    return glm::distance(p, a + share * by);
+}
+
+/// Whether the piece from one point to another passes all between them by.
+bool stands_for(const std::vector<PathPoint>& points, size_t from, size_t to, double tolerance) {
+    for (size_t i = from + 1; i < to; ++i)
+        if (distance_to(points[i].place, points[from].place, points[to].place) > tolerance)
+            return false;
+    return true;
+}
+
+bool may_be_seen(const core::Aabb& box, const Mat4& clip) {
+    if (box.empty()) return false;
+    std::array<int, 6> beyond{};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 p = clip
+                             * glm::dvec4((corner & 1) != 0 ? box.max.x : box.min.x,
+                                          (corner & 2) != 0 ? box.max.y : box.min.y,
+                                          (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
+        for (size_t i = 0; i < 3; ++i) {
+            const double along = p[static_cast<int>(i)];
+            beyond[2 * i] += along < -1.02 * p.w ? 1 : 0;
+            beyond[2 * i + 1] += along > 1.02 * p.w ? 1 : 0;
+        }
+    }
+    return std::none_of(beyond.begin(), beyond.end(), [](int count) { return count == 8; });
+}
+
+} // namespace
+
+std::vector<PathPoint> simplified(const std::vector<PathPoint>& points, double tolerance) {
+    std::vector<PathPoint> kept;
+    if (points.empty()) return kept;
+    kept.push_back(points[0]);
+    for (size_t at = 0; at + 1 < points.size();) {
+        size_t to = at + 1;
+        while (to + 1 < points.size() && to - at < most && !points[at + 1].begins
+               && go_together(points[to], points[to + 1])
+               && stands_for(points, at, to + 1, tolerance))
+            ++to;
+        kept.push_back(points[to]);
+        at = to;
+    }
+    return kept;
+}
+
+std::vector<PathRange> visible_ranges(const ToolPath& path, const Mat4& clip_from_scene) {
+    std::vector<PathRange> ranges;
+    for (size_t g = 0; g < path.groups.size(); ++g) {
+        if (!may_be_seen(path.groups[g], clip_from_scene)) continue;
+        const size_t end = std::min((g + 1) * ToolPath::group, path.boxes.size());
+        for (size_t b = g * ToolPath::group; b < end; ++b) {
+            if (!may_be_seen(path.boxes[b], clip_from_scene)) continue;
+            const size_t first = b * ToolPath::stretch;
+            const size_t last = std::min(first + ToolPath::stretch, path.points.size());
+            if (!ranges.empty() && ranges.back().last == first)
+                ranges.back().last = last;
+            else
+                ranges.push_back({first, last});
+        }
+    }
+    return ranges;
+}
+
+double nearest_pixel(const ToolPath& path, const Camera& camera, const Viewport& viewport) {
+    if (camera.projection == Projection::orthographic || path.bounds.empty())
+        return pixel_size(camera, viewport, camera.target);
+    const Vec3 nearest = glm::clamp(eye(camera), path.bounds.min, path.bounds.max);
+    const double away = glm::distance(nearest, eye(camera));
+    return pixel_size(camera, viewport, eye(camera) - away * axes(camera).backward);
+}
+
 namespace {
 
 bool is_urgent(const PathPoint& p) {

@@ -1,12 +1,52 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "render/gpu_lines.h"
-#include "render/path_levels.h"
+#include "render/camera.h"
+#include "render/gl_objects.h"
+#include "render/tool_path.h"
 #include "render/view_frame.h"
 
 namespace render {
+
+/// Pieces of a path on the graphics card, in textures of as many points as every card takes.
+class GpuLines {
+public:
+    static constexpr size_t chunk = 65535; // pieces to a texture
+
+    void fill(std::span<const PathPoint> points);
+    /// Draws the pieces that end at points first .. last - 1 with the program in use.
+    void draw(size_t first, size_t last) const;
+    size_t size() const { return size_; }
+
+private:
+    struct Chunk {
+        GlBuffer buffer;
+        GlTexture texture;
+    };
+    std::vector<Chunk> chunks_;
+    size_t size_ = 0;
+    GlVertexArray no_attributes_;
+};
+
+/// The path with fewer points: none that was left out is farther than `tolerance` from the piece
+/// that passes it by. Pieces become one only if they are of one state and both rapids or not; it
+/// belongs to the last of their blocks.
+std::vector<PathPoint> simplified(const std::vector<PathPoint>& points, double tolerance);
+
+/// Points first .. last - 1 of a path, whose pieces are drawn.
+struct PathRange {
+    size_t first = 0, last = 0;
+
+    bool operator==(const PathRange&) const = default;
+};
+
+/// The stretches of a path that may be seen in a picture, in order, those side by side as one.
+std::vector<PathRange> visible_ranges(const ToolPath& path, const Mat4& clip_from_scene);
+
+/// Millimetres that a pixel covers where the path is nearest to the eye.
+double nearest_pixel(const ToolPath& path, const Camera& camera, const Viewport& viewport);
 
 /// Draws the path, and lines that nothing hides.
 class LinePass {

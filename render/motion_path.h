@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sim/path.h"
+#include "core/motion/path.h"
 #include "core/sim/setup.h"
 #include "render/tool_path.h"
 

@@ -1,13 +1,16 @@
 #include "app/commands/batch_ending.h"
 
+#include <cstdlib>
 #include <filesystem>
 
-#include "app/batch/shard_file.h"
+#include <unistd.h>
+
 #include "app/commands/output.h"
-#include "app/report/batch_report.h"
-#include "app/report/html_batch.h"
-#include "app/report/junit_report.h"
-#include "app/report/sarif_report.h"
+#include "app/library/shard/shard.h"
+#include "app/report/exchange/junit_report.h"
+#include "app/report/exchange/sarif_report.h"
+#include "app/report/html/html_batch.h"
+#include "app/report/json/batch_report.h"
 
 namespace app {
 namespace {
@@ -48,6 +51,21 @@ ExitCode end_batch(const BatchResult& batch, const Shard* shard,
         all = false;
     }
     return all ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;
+}
+
+void BatchTalk::say(const std::string& text) const {
+    std::fputs(text.c_str(), stream);
+    std::fflush(stream);
+}
+
+BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets) {
+    BatchTalk talk{.style = asked};
+    for (const ReportTarget& target : targets)
+        if (target.path.empty() && target.format != "text") talk.stream = stderr;
+    const char* no_colour = std::getenv("NO_COLOR");
+    const bool may_colour = !no_colour || *no_colour == '\0';
+    talk.style.colour = may_colour && ::isatty(::fileno(talk.stream)) == 1;
+    return talk;
 }
 
 } // namespace app

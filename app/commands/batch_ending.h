@@ -1,10 +1,26 @@
 #pragma once
 
-#include "app/batch/shard.h"
-#include "app/commands/batch_talk.h"
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "app/commands/check_options.h"
 #include "app/commands/read_files.h"
+#include "app/library/shard/shard.h"
+#include "app/report/text/batch_text.h"
 
 namespace app {
+
+/// Where lines for a person go: to standard output, unless a report for others does.
+struct BatchTalk {
+    std::FILE* stream = stdout;
+    BatchStyle style;
+
+    void say(const std::string& text) const;
+};
+
+/// Coloured on a terminal, unless NO_COLOR is set.
+BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets);
 
 /// Writes the reports of a batch, each whole or not at all; `shard`, which may be null, is the one
 /// of format "shard". None takes the place of a file that was read. Errors go to standard error.

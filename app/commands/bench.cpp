@@ -2,7 +2,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
-#include "app/report/bench_report.h"
+#include "app/report/text/bench_report.h"
 
 namespace app {
 namespace {

@@ -1,24 +1,143 @@
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/batch/build_version.h"
-#include "app/batch/shard_file.h"
-#include "app/batch/store_file.h"
+#include "app/base/stopwatch.h"
 #include "app/commands/batch_ending.h"
-#include "app/commands/batch_store.h"
+#include "app/commands/check_options.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
-#include "app/session/stopwatch.h"
+#include "app/library/run/batch_run.h"
+#include "app/library/shard/shard.h"
+#include "app/library/store/result_key.h"
+#include "app/library/store/result_store.h"
+#include "app/library/store/store_file.h"
 
 namespace app {
+
+/// Results of earlier batches, as far as there are any. What is wrong with the database is told
+/// once, and the batch goes on: without what it cannot do, and without the database altogether if
+/// it cannot even be read.
+class BatchStore {
+public:
+    /// The database that was asked for, else that of the first folder or project file that was
+    /// named, with those beside it; none for files alone. While files are watched there is always
+    /// one, in memory if nowhere else.
+    explicit BatchStore(const CheckOptions& options);
+
+    /// The file of the database; empty if there is none.
+    const std::string& path() const { return path_; }
+
+    /// For another run of the batch: a database that could not be used may be now.
+    void begin_again();
+
+    /// Lets a batch ask it, and keep in it what it finds out.
+    void serve(BatchHooks& hooks);
+
+    /// Waits until all of it is written.
+    void flush();
+
+    /// How many results were found again.
+    size_t found() const { return found_; }
+
+private:
+    void give_up(const core::Error& error);
+    std::optional<ProgramResult> find(const CheckJob& job);
+
+    std::unique_ptr<ResultStore> store_;
+    std::unique_ptr<StoresBeside> beside_; // null if a database was asked for
+    std::mutex guard_;
+    bool is_told_ = false;
+    std::atomic<bool> is_lost_ = false; // the database, for this run
+    size_t found_ = 0;
+    std::string path_;
+};
+
+namespace {
+
+/// Empty: results are not kept.
+std::string place_of_store(const CheckOptions& options) {
+    if (options.no_cache) return {};
+    if (!options.cache.empty()) return options.cache;
+    std::error_code ignored;
+    for (const std::string& word : options.programs) {
+        if (std::filesystem::is_directory(word, ignored))
+            return default_store_path(word, options.share);
+        const std::filesystem::path path(word);
+        if (path.extension() == ".toml")
+            return default_store_path(path.parent_path().string(), options.share);
+    }
+    return {};
+}
+
+} // namespace
+
+BatchStore::BatchStore(const CheckOptions& options) {
+    path_ = place_of_store(options);
+    const std::string place = path_.empty() && options.watch ? Database::in_memory : path_;
+    if (place.empty()) return;
+    auto store =
+        ResultStore::open(place, build_version(), std::make_shared<Patience>(is_interrupted));
+    if (!store) {
+        give_up(store.error());
+        return;
+    }
+    store_ = std::make_unique<ResultStore>(*std::move(store));
+    if (options.cache.empty() && !path_.empty())
+        beside_ = std::make_unique<StoresBeside>(place, *store_);
+}
+
+void BatchStore::give_up(const core::Error& error) {
+    const std::scoped_lock lock(guard_);
+    if (std::exchange(is_told_, true)) return;
+    print_error(error);
+    print_note("feeler: results are not kept; the check goes on\n");
+}
+
+void BatchStore::begin_again() {
+    if (store_) store_->try_again();
+    is_lost_ = false;
+    found_ = 0;
+}
+
+std::optional<ProgramResult> BatchStore::find(const CheckJob& job) {
+    if (is_lost_) return beside_ ? beside_->find(job) : std::nullopt;
+    auto found = store_->find(job);
+    if (!found) {
+        is_lost_ = true;
+        give_up(found.error());
+    }
+    if (found && *found) return *std::move(found);
+    return beside_ ? beside_->find(job) : std::nullopt;
+}
+
+void BatchStore::flush() {
+    if (!store_) return;
+    if (auto written = store_->flush(); !written) give_up(written.error());
+}
+
+void BatchStore::serve(BatchHooks& hooks) {
+    if (!store_) return;
+    hooks.known = [this](const CheckJob& job) {
+        auto found = find(job);
+        const std::scoped_lock lock(guard_);
+        found_ += found ? 1 : 0;
+        return found;
+    };
+    hooks.keep = [this](const CheckJob& job, const CheckRun& run, const ProgramResult& result) {
+        if (auto kept = store_->keep(job, run, result); !kept) give_up(kept.error());
+    };
+}
+
 namespace {
 
 /// Options that mean nothing for many programs.

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "app/batch/share.h"
-#include "app/batch/watched_files.h"
-#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
+#include "app/commands/program_arguments.h"
+#include "app/library/store/shard_number.h"
+#include "app/library/watch/watched_files.h"
 
 namespace app {
 

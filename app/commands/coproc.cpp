@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
-#include "app/report/coprocessor_report.h"
+#include "app/coproc/study/coprocessor_report.h"
 #include "hwsim/vcd_trace.h"
 
 namespace app {

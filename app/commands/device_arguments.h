@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/viewer/window.h"
+#include "app/view/ui/window.h"
 
 namespace app {
 

@@ -1,12 +1,12 @@
 #include <memory>
 
-#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
-#include "app/report/diff_report.h"
+#include "app/report/text/diff_report.h"
 
 namespace app {
 namespace {

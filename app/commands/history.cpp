@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/build_version.h"
-#include "app/batch/store_file.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
-#include "app/report/history_report.h"
+#include "app/library/store/result_key.h"
+#include "app/library/store/store_file.h"
+#include "app/report/history/history_report.h"
 
 namespace app {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/build_version.h"
-#include "app/batch/shard_file.h"
-#include "app/batch/shard_merge.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/library/shard/shard.h"
+#include "app/library/shard/shard_merge.h"
+#include "app/library/store/result_key.h"
 #include "core/base/file_reads.h"
 
 namespace app {

@@ -4,10 +4,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "app/batch/file_place.h"
-#include "app/batch/file_stamp.h"
+#include "app/base/file_stamp.h"
 #include "app/commands/commands.h"
+#include "app/library/watch/watched_files.h"
 #include "core/base/result.h"
 
 namespace app {
@@ -60,5 +61,27 @@ void print_note(const std::string& text);
 
 /// Prints an error: what the command then ends with.
 ExitCode failed(const core::Error& error);
+
+/// What the passes of a watch write. A file that one of them has written tells of that version: it
+/// does not outlive a pass that could not write it anew.
+class PassOutputs {
+public:
+    explicit PassOutputs(const std::vector<std::string>& paths);
+
+    /// A pass begins.
+    void begin_pass();
+
+    /// It is over: takes away what it has not written but one before it has, and says so. What was
+    /// there before the watch, what somebody else has written since, and what is read, stays.
+    void end_pass(const WatchedFiles& read);
+
+private:
+    struct Output {
+        std::string path;
+        FileStamp before = {}; // as the last pass left it that wrote it
+    };
+
+    std::vector<Output> outputs_;
+};
 
 } // namespace app

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/report/text_layout.h"
+#include "app/base/text.h"
 
 namespace app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "app/batch/batch_run.h"
+#include "app/library/run/batch_run.h"
 
 namespace app {
 

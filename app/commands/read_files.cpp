@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "app/batch/file_stamp.h"
+#include "app/base/file_stamp.h"
 #include "app/commands/output.h"
 
 namespace app {

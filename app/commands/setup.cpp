@@ -4,8 +4,8 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
-#include "app/report/setup_text.h"
-#include "app/session/inferred_setup.h"
+#include "app/setup/inference/inferred_setup.h"
+#include "app/setup/setup_text.h"
 
 namespace app {
 namespace {

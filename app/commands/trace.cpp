@@ -6,10 +6,9 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
-#include "app/report/trace_report.h"
-#include "app/report/warning_log.h"
+#include "app/report/text/trace_report.h"
 #include "app/setup/setup_file.h"
-#include "gcode/interpreter.h"
+#include "gcode/exec/interpreter.h"
 
 namespace app {
 namespace {

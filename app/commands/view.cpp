@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/check_arguments.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_arguments.h"
 #include "app/commands/output.h"
+#include "app/commands/program_arguments.h"
 
 namespace app {
 namespace {

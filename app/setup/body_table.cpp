@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/setup/text_lines.h"
+#include "app/base/text.h"
 #include "core/base/file_reads.h"
 #include "core/dbm/stock_record.h"
-#include "core/geom/box_mesh.h"
+#include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
-#include "core/sim/allowance.h"
+#include "core/sim/clearance.h"
 
 namespace app {
 namespace {

@@ -1,12 +1,27 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
 
-#include "app/setup/frames.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
+#include "core/base/transform.h"
+#include "core/motion/machine.h"
 
 namespace app {
+
+/// Where named frames stand in the machine: "machine", the work offsets, the bodies so far.
+struct Frames {
+    std::map<std::string, core::Transform> machine_from;
+
+    std::optional<core::Transform> find(const std::string& name) const {
+        const auto found = machine_from.find(name);
+        if (found == machine_from.end()) return std::nullopt;
+        return found->second;
+    }
+};
 
 /// Where the meshes of a table come from, and where it is said what had to be repaired.
 struct MeshSource {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "gcode/modal_state.h"
+#include "core/motion/machine.h"
+#include "gcode/language/environment.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 
@@ -25,5 +27,18 @@ struct IniFile {
 /// Errors: io when it cannot be read; syntax, with its line, for units that are neither mm nor
 ///         inches; unsupported for #INCLUDE.
 core::Result<IniFile> read_ini(const std::string& path);
+
+/// Gives the axes of a machine the limits, speeds, accelerations and homes that LinuxCNC's ini file
+/// states and nobody else did: [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a machine
+/// whose joints are its axes, in the order of X Y Z A B C U V W.
+///
+/// `places`: limits and homes, too; they mean nothing where work offsets are made up.
+///
+/// Result: what a user should know of it; empty where nothing was taken.
+std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
+                             bool places);
+
+/// The folders in a list that ':' separates.
+std::vector<std::string> split_search_path(const std::string& text);
 
 } // namespace app

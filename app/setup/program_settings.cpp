@@ -7,10 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "app/base/text.h"
 #include "app/setup/ini_file.h"
-#include "app/setup/tool_file.h"
-#include "app/setup/variables_file.h"
+#include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
+#include "gcode/language/parameters.h"
 
 namespace app {
 namespace {
@@ -144,6 +145,89 @@ std::optional<gcode::Position> position_in(const std::string& text) {
         any = true;
     }
     return any ? std::optional(position) : std::nullopt;
+}
+
+namespace {
+
+constexpr double highest_machine_code = 9999.0;
+
+std::string path_of(TableReader& table, const char* key, const std::filesystem::path& folder) {
+    const auto name = table.string(key);
+    return name ? (folder / *name).string() : std::string();
+}
+
+void read_start(TableReader& table, gcode::Position& start) {
+    for (size_t axis = 0; axis < gcode::axis_count; ++axis)
+        start[axis] = table.number(std::string(1, gcode::axis_letters[axis]).c_str());
+    table.finish();
+}
+
+void read_machine_codes(TableReader& table, std::set<int>& codes) {
+    for (const double code : table.numbers("machine_codes", 0).value_or(std::vector<double>{})) {
+        if (code >= 0.0 && code <= highest_machine_code && code == static_cast<int>(code))
+            codes.insert(static_cast<int>(code));
+        else
+            table.refuse("machine_codes", fmt::format("{} is not the number of an M code", code));
+    }
+}
+
+} // namespace
+
+ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder) {
+    ProgramSettings settings;
+    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
+                                                 "siemens-iso", "heidenhain"}))
+        settings.dialect = gcode::dialect_named(*name);
+    settings.block_delete = table.boolean("block_delete");
+    if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);
+    if (const auto unit = table.word("unit", {"mm", "inch"}))
+        settings.machine_unit = *unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    if (const auto steps = table.word("no_decimal_point", {"units", "steps"}))
+        settings.counts_smallest_steps = *steps == "steps";
+    settings.parameters = path_of(table, "parameters", folder);
+    settings.tool_table = path_of(table, "tool_table", folder);
+    for (const std::string& name :
+         table.strings("search_path", 0).value_or(std::vector<std::string>{}))
+        settings.search_path.push_back((folder / name).string());
+    if (const auto blocks = table.integer("max_blocks")) {
+        if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
+        settings.max_blocks = static_cast<uint64_t>(*blocks);
+    }
+    settings.speed_by_hand = table.boolean("speed_by_hand");
+    if (const auto tool = table.integer("tool_at_start"))
+        settings.tool_at_start = core::ToolNumber{*tool};
+    if (const auto spindle =
+            table.word("spindle_at_start", {"stopped", "clockwise", "counterclockwise"}))
+        settings.spindle_at_start = *spindle == "clockwise" ? core::SpindleDirection::clockwise
+                                    : *spindle == "stopped"
+                                        ? core::SpindleDirection::stopped
+                                        : core::SpindleDirection::counterclockwise;
+    read_machine_codes(table, settings.machine_codes);
+    table.finish();
+    return settings;
+}
+
+core::Result<std::map<int, double>> read_variables(const std::string& path) {
+    FEELER_TRY(const std::vector<std::string> lines, lines_of_file(path));
+    std::map<int, double> variables;
+    for (size_t line = 1; line <= lines.size(); ++line) {
+        const std::vector<std::string> words = words_of_line(lines[line - 1]);
+        if (words.empty() || words[0][0] == ';' || words[0][0] == '#') continue;
+        const auto number = number_in(words[0]);
+        const auto value = words.size() > 1 ? number_in(words[1]) : std::nullopt;
+        const bool more = words.size() > 2 && words[2][0] != ';' && words[2][0] != '#';
+        if (!number || !value || more)
+            return tl::unexpected(line_error(
+                path, line, "a line of a variables file is a number and its value: 5221 -350.0"));
+        if (!(*number >= 1.0 && *number <= gcode::highest_parameter)
+            || *number != static_cast<int>(*number))
+            return tl::unexpected(
+                line_error(path, line, fmt::format("there is no parameter #{}", words[0])));
+        if (!variables.emplace(static_cast<int>(*number), *value).second)
+            return tl::unexpected(
+                line_error(path, line, fmt::format("#{} is there twice", words[0])));
+    }
+    return variables;
 }
 
 } // namespace app

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "app/setup/table_reader.h"
 #include "core/base/result.h"
-#include "gcode/environment.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 
@@ -42,5 +45,14 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
 /// The place in a text such as `X=10,Y=-5.5,A=90` or `X10 Y-5.5`: mm and degrees; axes that are not
 /// named stay unknown. Empty when it is no such text.
 std::optional<gcode::Position> position_in(const std::string& text);
+
+/// Reads `[program]` of a set-up; relative paths start from `folder`.
+ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder);
+
+/// The numbered parameters of a LinuxCNC variables file: a number and its value on each line.
+///
+/// Errors: io when it cannot be read; syntax, with its line, for one that says something else or a
+///         number that no parameter has.
+core::Result<std::map<int, double>> read_variables(const std::string& path);
 
 } // namespace app

@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/setup_text.h"
+#include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"
 
 namespace app {
@@ -119,6 +125,227 @@ core::Result<void> apply(const SetupEdits& edits, SetupFile& file) {
     if (edits.tool_at_start && !file.setup.tool_at_start)
         file.setup.tool_at_start = edits.tool_at_start;
     return {};
+}
+
+namespace {
+
+/// Visits every node below one, with its key; elements of lists have that of the list.
+void visit(const toml::node& node, const std::string& key,
+           const std::function<void(const std::string&, const toml::node&)>& see) {
+    see(key, node);
+    if (const toml::table* table = node.as_table())
+        for (const auto& [name, value] : *table)
+            visit(value, std::string(std::string_view(name)), see);
+    if (const toml::array* list = node.as_array())
+        for (const toml::node& value : *list) visit(value, key, see);
+}
+
+/// Lines of a text, counted from 1, as tables of TOML stand in them.
+class Lines {
+public:
+    explicit Lines(const std::string& text) {
+        std::istringstream all(text);
+        for (std::string line; std::getline(all, line);) lines_.push_back(line);
+    }
+
+    /// Whether a line is the head of a table or of one of a list.
+    bool is_head(size_t line) const {
+        const std::string& text = lines_[line - 1];
+        const size_t at = text.find_first_not_of(" \t");
+        return at != std::string::npos && text[at] == '[';
+    }
+    void replace(size_t first, size_t end, std::string with) {
+        while (!with.empty() && with.front() == '\n') with.erase(0, 1);
+        if (with.ends_with('\n')) with.pop_back();
+        lines_.erase(lines_.begin() + static_cast<ptrdiff_t>(first) - 1,
+                     lines_.begin() + static_cast<ptrdiff_t>(end) - 1);
+        lines_.insert(lines_.begin() + static_cast<ptrdiff_t>(first) - 1, std::move(with));
+    }
+    /// Where what belongs to a table ends that begins in `first`: before the blank lines and
+    /// comments that lead to the next one.
+    size_t end_of(size_t first, const std::set<size_t>& heads) const {
+        const auto next = heads.upper_bound(first);
+        size_t end = next == heads.end() ? lines_.size() + 1 : *next;
+        const auto leads_on = [&](const std::string& text) {
+            const size_t at = text.find_first_not_of(" \t\r");
+            return at == std::string::npos || text[at] == '#';
+        };
+        while (end > first + 1 && leads_on(lines_[end - 2])) --end;
+        return end;
+    }
+    void append(const std::string& text) { lines_.push_back(text); }
+    std::string text() const {
+        std::string all;
+        for (const std::string& line : lines_) all += line + "\n";
+        return all;
+    }
+    size_t count() const { return lines_.size(); }
+
+private:
+    std::vector<std::string> lines_;
+};
+
+/// A table that takes the place of another one, or is new where `first` is 0.
+struct NewTable {
+    size_t first = 0, end = 0;
+    std::string text;
+};
+
+size_t line_of(const toml::node& node) { return node.source().begin.line; }
+
+/// Where tables begin that have a head of their own.
+std::set<size_t> heads_of(const toml::table& root, const Lines& lines) {
+    std::set<size_t> heads;
+    visit(root, "", [&](const std::string& key, const toml::node& node) {
+        const toml::table* table = node.as_table();
+        if (!table || table->is_inline() || key.empty()) return;
+        const size_t line = line_of(node);
+        if (line >= 1 && line <= lines.count() && lines.is_head(line)) heads.insert(line);
+    });
+    return heads;
+}
+
+bool others_stand_on_stock(const toml::table& root) {
+    bool any = false;
+    visit(root, "", [&](const std::string& key, const toml::node& node) {
+        any = any || (key == "frame" && node.value<std::string>() == "stock");
+    });
+    return any;
+}
+
+core::Result<std::string> new_stock(const toml::table& root, const core::Solid& stock) {
+    const toml::table* old = root["stock"].as_table();
+    const bool was_placed = old && (old->contains("at") || old->contains("rotate_deg"));
+    const bool is_placed = std::holds_alternative<core::SolidCylinder>(stock.shape);
+    if ((was_placed || is_placed) && others_stand_on_stock(root))
+        return core::fail(core::ErrorCode::unsupported,
+                          "other bodies stand in the stock's frame, which would move: write the "
+                          "stock into the file by hand");
+    core::Solid with_tolerance = stock;
+    if (old) with_tolerance.tolerance = (*old)["tolerance"].value_or(0.0);
+    const std::string frame = old ? (*old)["frame"].value_or(std::string("G54")) : "G54";
+    return stock_table(with_tolerance, frame);
+}
+
+const toml::table* old_tool(const toml::table& root, core::ToolNumber number) {
+    const toml::array* tools = root["tool"].as_array();
+    if (!tools) return nullptr;
+    for (const toml::node& node : *tools)
+        if (const toml::table* tool = node.as_table())
+            if ((*tool)["number"].value<int64_t>() == int64_t(core::value_of(number))) return tool;
+    return nullptr;
+}
+
+/// The general allowance of a list of them, the one without a pair.
+const toml::table* old_general(const toml::table& root) {
+    const toml::array* rules = root["allowance"].as_array();
+    if (!rules) return nullptr;
+    for (const toml::node& node : *rules)
+        if (const toml::table* rule = node.as_table(); rule && !rule->contains("between"))
+            return rule;
+    return nullptr;
+}
+
+/// What stands in the root of the file is before all tables.
+NewTable new_allowance(const toml::table& root, double allowance, const std::set<size_t>& heads,
+                       size_t lines) {
+    const std::string number = toml_number(allowance);
+    if (const toml::table* rule = old_general(root)) {
+        const size_t first = line_of(*rule);
+        return {first, 0, "[[allowance]]\ndistance = " + number};
+    }
+    if (root["allowance"].is_array()) return {0, 0, "\n[[allowance]]\ndistance = " + number};
+    const std::string text = "allowance = " + number;
+    if (const toml::node* old = root.get("allowance")) {
+        const size_t line = line_of(*old);
+        return {line, line + 1, text};
+    }
+    const size_t before = heads.empty() ? lines + 1 : *heads.begin();
+    return {before, before, text + "\n"};
+}
+
+/// Puts an edited table into the tree that the new text must mean.
+void put(toml::table& root, const std::string& text, core::ToolNumber number) {
+    toml::table fresh = toml::parse(text);
+    toml::table tool = *fresh["tool"].as_array()->get(0)->as_table();
+    if (!root.contains("tool")) root.insert_or_assign("tool", toml::array{});
+    toml::array& tools = *root["tool"].as_array();
+    for (toml::node& node : tools)
+        if ((*node.as_table())["number"].value<int64_t>() == int64_t(core::value_of(number))) {
+            *node.as_table() = std::move(tool);
+            return;
+        }
+    tools.push_back(std::move(tool));
+}
+
+void put(toml::table& root, double allowance) {
+    toml::array* rules = root["allowance"].as_array();
+    if (!rules) {
+        root.insert_or_assign("allowance", allowance);
+        return;
+    }
+    for (toml::node& node : *rules)
+        if (toml::table& rule = *node.as_table(); !rule.contains("between")) {
+            rule = toml::table{{"distance", allowance}};
+            return;
+        }
+    rules->push_back(toml::table{{"distance", allowance}});
+}
+
+} // namespace
+
+core::Result<std::string> rewritten_setup(const std::string& text, const SetupEdits& edits) {
+    FEELER_TRY(const toml::table before, parsed_toml(text));
+    Lines lines(text);
+    const std::set<size_t> heads = heads_of(before, lines);
+    toml::table wanted = before;
+    std::vector<NewTable> tables;
+    const auto replace = [&](const toml::table* old, std::string with) {
+        tables.push_back({old ? line_of(*old) : 0, 0, std::move(with)});
+    };
+    if (edits.stock) {
+        FEELER_TRY(const std::string stock, new_stock(before, *edits.stock));
+        wanted.insert_or_assign("stock", *toml::parse(stock)["stock"].as_table());
+        replace(before["stock"].as_table(), stock);
+    }
+    for (const auto& [number, stated] : edits.tools) {
+        const std::string tool = tool_table(stated.tool);
+        put(wanted, tool, number);
+        replace(old_tool(before, number), tool);
+    }
+    if (edits.allowance) {
+        put(wanted, *edits.allowance);
+        tables.push_back(new_allowance(before, *edits.allowance, heads, lines.count()));
+    }
+    for (NewTable& table : tables)
+        if (table.first > 0 && table.end == 0) table.end = lines.end_of(table.first, heads);
+    // From the end on, so that the lines before stay where they are.
+    std::stable_sort(tables.begin(), tables.end(),
+                     [](const NewTable& a, const NewTable& b) { return a.first > b.first; });
+    std::string added;
+    for (const NewTable& table : tables) {
+        if (table.first == 0) added += table.text;
+        if (table.first > 0) lines.replace(table.first, table.end, table.text);
+    }
+    const std::string cut = lines.text() + added;
+    if (const auto read = parsed_toml(cut); read && *read == wanted) return cut;
+    std::ostringstream whole;
+    whole << wanted << "\n";
+    return whole.str();
+}
+
+bool names_relative_files(const std::string& text) {
+    const auto root = parsed_toml(text);
+    if (!root) return false;
+    static const std::set<std::string> keys = {
+        "mesh",       "model",       "file",         "ini",         "parameters",
+        "tool_table", "search_path", "tool_library", "holder_file", "holder_mesh"};
+    bool any = false;
+    visit(*root, "", [&](const std::string& key, const toml::node& node) {
+        const auto path = node.value<std::string>();
+        any = any || (keys.contains(key) && path && std::filesystem::path(*path).is_relative());
+    });
+    return any;
 }
 
 } // namespace app

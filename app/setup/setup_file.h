@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "app/setup/program_settings.h"
-#include "app/tools/found_tool.h"
+#include "app/setup/table_reader.h"
+#include "app/setup/tools/found_tool.h"
 #include "core/base/result.h"
+#include "core/sim/finding.h"
 #include "core/sim/setup.h"
-#include "gcode/environment.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 
@@ -42,5 +44,17 @@ struct SetupFile {
 /// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value, a mesh that
 ///         is no solid, a tool that cannot be.
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over = {});
+
+/// The name of the file that says what the programs of a folder are checked against.
+constexpr const char* project_file_name = "feeler.toml";
+
+/// The set-up that stands beside a program under its name, `plate.toml` for `plate.nc`; empty when
+/// there is none. A project file is none. What has that name counts, also a link that leads nowhere
+/// or a folder: whoever reads it then says so.
+std::string setup_beside(const std::string& program);
+
+/// The severities that a table `[rules]` gives to rules by name; the key `but`, if any, is left to
+/// the caller. A name that is no rule is refused with the nearest that is one.
+core::RuleSeverities read_severities(TableReader& table, const std::string& but = {});
 
 } // namespace app

@@ -1,6 +1,6 @@
 #include "core/base/transform.h"
 
-#include "core/base/angle.h"
+#include "core/base/units.h"
 
 namespace core {
 

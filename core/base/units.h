@@ -8,4 +8,24 @@ inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 inline constexpr double seconds_per_minute = 60.0;
 
+struct SinCos {
+    double sin = 0.0;
+    double cos = 1.0;
+};
+
+/// Sine and cosine with the same bits on every processor, within 1 ulp of the truth; the C
+/// library's differ where fused multiply-add is missing.
+///
+/// Units:  radians, up to 1e6 either way; beyond, off by up to 1e-16 of the angle. Not a number for
+///         an angle that is not finite.
+SinCos sin_cos(double angle);
+
+/// The same for degrees of any size; multiples of 90 are exact.
+SinCos sin_cos_deg(double angle_deg);
+
+/// The angle in -pi..pi of the direction (cosine, sine), which need not have length 1.
+///
+/// Result: within 3 ulp, the same bits everywhere; 0 for (0, 0).
+double angle_of(double sine, double cosine);
+
 } // namespace core

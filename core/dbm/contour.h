@@ -1,9 +1,48 @@
 #pragma once
 
-#include "core/dbm/feature_point.h"
-#include "core/dbm/surface_point.h"
+#include <span>
+
+#include "core/base/vec.h"
+#include "core/dbm/cut_model.h"
 
 namespace core {
+
+/// The plane on which a surface lies near one of its points: normals are out of the body.
+struct TangentPlane {
+    Vec3 place = Vec3(0.0);
+    Vec3 normal = Vec3(0.0); // length 1
+};
+
+/// The point of a box that lies on all the tangent planes of a surface at once, as nearly as
+/// possible: on a face if they are one plane, on an edge or corner where they are not; else as near
+/// to the middle of the points as the planes leave it.
+///
+/// Source: Ju, Losasso, Schaefer, Warren: Dual contouring of Hermite data, 2002.
+Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room);
+
+/// A point of a stock's surface.
+struct SurfacePoint {
+    Vec3 point = Vec3(0.0);
+    Vec3 normal = Vec3(0.0);       // of length 1, out of the stock
+    std::optional<uint32_t> block; // whose move made it; none for the raw stock
+};
+
+/// One end of an interval on a line.
+struct LineEnd {
+    int axis = 0, u = 0, v = 0;
+    size_t interval = 0;
+    bool upper = false;
+};
+
+/// The surface at the end of an interval.
+///
+/// Result: the normal is that of the surface which the end lies on: of the swept volume of the move
+///         that cut there, or of the raw stock. On an edge it is that of one of the faces.
+/// Cost:   a search of at most 40 steps along the move for each convex piece of the cutter.
+SurfacePoint surface_point(const CutModel& model, const LineEnd& end);
+
+/// The surface at all ends of one family, in order: row by row, upwards along the line.
+std::vector<SurfacePoint> surface_points(const CutModel& model, int axis);
 
 // Dual contouring of a stock, the steps that every way to go through the cells shares. Nodes are
 // where the lines of the three families meet: node (i, j, k) is on the lines i - 1, j - 1, k - 1,

@@ -1,14 +1,93 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "core/dbm/cutter.h"
 #include "core/dbm/solid.h"
-#include "core/dbm/sweep_log.h"
 #include "core/dbm/tile_boxes.h"
 
 namespace core {
+
+/// A list that only grows, but for its last element, in chunks that copies share: a copy costs a
+/// pointer per chunk.
+template <typename T>
+class SharedLog {
+public:
+    static constexpr size_t chunk_size = 64;
+
+    size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    const T& operator[](size_t i) const { return (*chunks_[i / chunk_size])[i % chunk_size]; }
+    const T& back() const { return (*this)[size_ - 1]; }
+
+    void push_back(const T& value) {
+        if (size_ % chunk_size == 0)
+            chunks_.push_back(std::make_shared<std::vector<T>>());
+        else
+            own_last_chunk();
+        chunks_.back()->push_back(value);
+        ++size_;
+    }
+    void replace_back(const T& value) {
+        own_last_chunk();
+        chunks_.back()->back() = value;
+    }
+
+private:
+    void own_last_chunk() {
+        if (chunks_.back().use_count() > 1)
+            chunks_.back() = std::make_shared<std::vector<T>>(*chunks_.back());
+    }
+
+    std::vector<std::shared_ptr<std::vector<T>>> chunks_;
+    size_t size_ = 0;
+};
+
+/// One move of a cutter that was carried out, with the box of what it may have removed.
+struct LoggedSweep {
+    CutterSweep sweep;
+    Aabb box;
+};
+
+/// The moves that were carried out, in order. A move that goes on where the last one ended, with
+/// the same cutter held the same way, takes some 36 bytes.
+class SweepLog {
+public:
+    size_t size() const { return entries_.size(); }
+    void push_back(const CutterSweep& sweep);
+
+    LoggedSweep operator[](size_t i) const;
+    uint32_t block(size_t i) const { return entries_[i].block; }
+    /// The box of what move `i` may have removed.
+    Aabb box(size_t i) const;
+
+private:
+    /// A cutter and how it is held; `body` is its box about its tip.
+    struct Attitude {
+        std::shared_ptr<const Cutter> cutter;
+        Mat3 orientation;
+        Aabb body;
+    };
+    struct Entry {
+        uint32_t end; // the move goes from place end - 1 to place end
+        uint32_t attitude;
+        uint32_t block;
+    };
+    SharedLog<Attitude> attitudes_;
+    SharedLog<Vec3> places_;
+    SharedLog<Entry> entries_;
+};
+
+/// The numbers first .. last of moves in a log.
+struct SweepRun {
+    uint32_t first = 0, last = 0;
+};
+
+/// Adds the newest move to a list of runs.
+void append(SharedLog<SweepRun>& runs, uint32_t number);
 
 /// A stock as it is after some cuts: the discrete boundary model, an outer model that holds every
 /// point of the stock, and the cuts themselves, from which either can be had again at any finer h.

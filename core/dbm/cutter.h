@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/dbm/solid.h"
-#include "core/dbm/tilted_line.h"
+#include "core/dbm/swept_line.h"
 
 namespace core {
 

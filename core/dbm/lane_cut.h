@@ -2,7 +2,7 @@
 
 #include "core/dbm/lane_plan.h"
 #include "core/dbm/scan_grid.h"
-#include "core/dbm/scan_tile.h"
+#include "core/dbm/scan_lines.h"
 
 namespace core {
 

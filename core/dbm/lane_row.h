@@ -8,7 +8,7 @@
 
 #include <hwy/highway.h>
 
-#include "core/dbm/scan_tile.h"
+#include "core/dbm/scan_lines.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace core {

@@ -5,6 +5,72 @@
 namespace core {
 namespace {
 
+/// An interval with what made its ends.
+struct Marked {
+    Interval interval;
+    EndMarks marks;
+};
+
+Marked at(const ScanTile& tile, size_t place, size_t k) {
+    return {{tile.layers[k].lower[place], tile.layers[k].upper[place]}, tile.marks_of(place, k)};
+}
+
+void put(ScanTile& tile, size_t place, size_t k, const Marked& what) {
+    if (k == tile.layers.size()) {
+        tile.layers.emplace_back();
+        if (!tile.marks.empty()) tile.keep_marks();
+    }
+    tile.layers[k].lower[place] = what.interval.lower;
+    tile.layers[k].upper[place] = what.interval.upper;
+    if (tile.marks.empty()) return;
+    tile.marks[k].lower[place] = what.marks.lower;
+    tile.marks[k].upper[place] = what.marks.upper;
+    tile.marks[k].lower_tilt[place] = what.marks.lower_tilt;
+    tile.marks[k].upper_tilt[place] = what.marks.upper_tilt;
+}
+
+constexpr Marked nothing{{infinity, -infinity}, {}};
+
+} // namespace
+
+ScanTile::Layer::Layer() {
+    lower.fill(infinity);
+    upper.fill(-infinity);
+}
+
+void set_line(ScanTile& tile, size_t place, const LineView& matter) {
+    const size_t before = tile.line(place).size();
+    for (size_t k = 0; k < matter.size(); ++k) put(tile, place, k, {matter[k], {}});
+    for (size_t k = matter.size(); k < before; ++k) put(tile, place, k, nothing);
+}
+
+double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made) {
+    const size_t size = tile.line(place).size();
+    double removed = 0.0;
+    std::vector<Marked> kept;
+    for (size_t k = 0; k < size; ++k) {
+        const Marked old = at(tile, place, k);
+        const auto& [lower, upper] = old.interval;
+        if (!(lower < cut.upper && upper > cut.lower)) {
+            kept.push_back(old);
+            continue;
+        }
+        removed += std::min(upper, cut.upper) - std::max(lower, cut.lower);
+        if (lower < cut.lower)
+            kept.push_back({{lower, cut.lower},
+                            {old.marks.lower, made.upper, old.marks.lower_tilt, made.upper_tilt}});
+        if (upper > cut.upper)
+            kept.push_back({{cut.upper, upper},
+                            {made.lower, old.marks.upper, made.lower_tilt, old.marks.upper_tilt}});
+    }
+    if (removed == 0.0) return 0.0;
+    for (size_t k = 0; k < kept.size(); ++k) put(tile, place, k, kept[k]);
+    for (size_t k = kept.size(); k < size; ++k) put(tile, place, k, nothing);
+    return removed;
+}
+
+namespace {
+
 constexpr int tiles_for(int lines) {
     return (lines + ScanLines::tile_side - 1) / ScanLines::tile_side;
 }

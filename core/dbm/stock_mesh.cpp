@@ -5,7 +5,6 @@
 
 #include "core/dbm/contour.h"
 #include "core/dbm/dual_cell.h"
-#include "core/dbm/feature_point.h"
 
 namespace core {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <map>
 
-#include "core/geom/box_mesh.h"
+#include "core/geom/mesh.h"
 
 namespace core {
 namespace {

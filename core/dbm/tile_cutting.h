@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/dbm/cut_model.h"
+#include "core/dbm/cutter.h"
 #include "core/dbm/lane_cut.h"
 
 namespace core {
@@ -53,5 +54,13 @@ TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, cons
 /// The same for columns; what is removed is not counted.
 TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
                         const ReadySweep& ready);
+
+/// The box of what a sweep can remove from a stock, out of which the cutter standing at `from` has
+/// been taken already; `top` is above all stock.
+///
+/// Proof: a point that the cutter comes to hold, and did not hold at `from`, lies on the way of a
+/// point of its surface where the surface faces the motion. The box is that of those points and
+/// their way.
+Aabb front_bounds(const CutterSweep& sweep, double top);
 
 } // namespace core

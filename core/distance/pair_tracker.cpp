@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/distance/search_memory.h"
+#include "core/distance/point_search.h"
 #include "core/geom/rigid_motion.h"
 
 namespace core {

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <span>
+
+#include "core/base/result.h"
+#include "core/base/vec.h"
+
 namespace core {
 
 /// How far the computed distance of two bodies may be off, mm. `reach` bounds every length that
@@ -14,5 +19,10 @@ constexpr double scan_rounding(double reach) { return 1e-9 + 1e-11 * reach; }
 
 /// Lengths beyond this are refused, mm.
 constexpr double farthest_coordinate = 1e12;
+
+/// The number of points, if a body can be made of them.
+///
+/// Errors: no point; a coordinate that is not finite or beyond 1e12 mm; more than 2^31 points.
+Result<size_t> checked_points(std::span<const Vec3> points);
 
 } // namespace core

@@ -1,10 +1,41 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/result.h"
 #include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/distance/closest_pair.h"
-#include "core/distance/sphere_tree.h"
 
 namespace core {
+
+/// The paper's hierarchy over the points of a body: each node holds its points in a sphere round
+/// the middle of their box; a leaf is one point.
+struct SphereTree {
+    struct Node {
+        Vec3 centre = Vec3(0.0);
+        double radius = 0.0;
+        uint32_t right = 0; // the left child is the next node; 0 marks a leaf
+        uint32_t point = 0; // of a leaf: its index in the points given
+
+        bool is_leaf() const { return right == 0; }
+    };
+
+    std::vector<Node> nodes; // depth first, the root in front; 2 n - 1 of them for n points
+    std::vector<uint32_t> leaf_of_point; // by the index of a point: its node
+};
+
+/// Builds the tree: each node is split at the median along its box's longest side, equal
+/// coordinates by index.
+///
+/// Errors: no point; a coordinate that is not finite or beyond 1e12 mm; more than 2^31 points.
+/// Cost:   O(n log n) time, 88 bytes per point.
+/// Source: Uddin, Yamazaki, Study of Distance Computation between Objects Represented by Discrete
+///         Boundary Model, 2010, 4.2.1. The paper does not say where a node is split; the median is
+///         ours.
+Result<SphereTree> sphere_tree(std::span<const Vec3> points);
 
 /// Finds the closest pair of points by the paper's search.
 ///

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "core/distance/shape_outline.h"
+#include "core/distance/upright_sweep.h"
 
 namespace core {
 namespace {

@@ -5,8 +5,8 @@
 #include <cassert>
 #include <numeric>
 
-#include "core/distance/point_check.h"
-#include "core/distance/turned_box.h"
+#include "core/distance/point_tree.h"
+#include "core/distance/rounding.h"
 
 namespace core {
 

@@ -1,10 +1,132 @@
 #include "core/geom/gjk.h"
 
 #include <algorithm>
-
-#include "core/geom/simplex.h"
+#include <cassert>
 
 namespace core {
+namespace {
+
+/// Farthest point of an upright truncated cone about Z.
+Vec3 cone_support(const ProfileElement& cone, const Vec3& direction) {
+    const double across = std::hypot(direction.x, direction.y);
+    const double lower = cone.r0 * across + cone.z0 * direction.z;
+    const double upper = cone.r1 * across + cone.z1 * direction.z;
+    const double r = upper > lower ? cone.r1 : cone.r0;
+    const double z = upper > lower ? cone.z1 : cone.z0;
+    if (across == 0.0) return {r, 0.0, z};
+    return {direction.x * (r / across), direction.y * (r / across), z};
+}
+
+Vec3 core_support(const ConvexShape& shape, const Vec3& direction) {
+    if (shape.core == ConvexShape::Core::cone) {
+        if (shape.upright) return cone_support(shape.cone, direction);
+        const Vec3 local = glm::transpose(shape.orientation) * direction;
+        return shape.orientation * cone_support(shape.cone, local);
+    }
+    size_t best = 0;
+    double farthest = glm::dot(shape.points[0], direction);
+    for (size_t i = 1; i < shape.point_count; ++i) {
+        const double along = glm::dot(shape.points[i], direction);
+        if (along <= farthest) continue;
+        farthest = along;
+        best = i;
+    }
+    return shape.points[best];
+}
+
+} // namespace
+
+ConvexShape convex(const Triangle& triangle) {
+    ConvexShape shape;
+    shape.point_count = 3;
+    shape.points[0] = triangle.a;
+    shape.points[1] = triangle.b;
+    shape.points[2] = triangle.c;
+    return shape;
+}
+
+ConvexShape convex(const Aabb& box) {
+    ConvexShape shape;
+    shape.point_count = 8;
+    for (size_t i = 0; i < 8; ++i)
+        shape.points[i] = {i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
+                           i & 4U ? box.max.z : box.min.z};
+    return shape;
+}
+
+ConvexShape convex_segment(const Vec3& a, const Vec3& b) {
+    ConvexShape shape;
+    shape.point_count = 2;
+    shape.points[0] = a;
+    shape.points[1] = b;
+    return shape;
+}
+
+ConvexShape convex(const ProfileElement& element) {
+    ConvexShape shape;
+    shape.margin = element.margin;
+    if (element.r0 == 0.0 && element.r1 == 0.0) { // a ball, or the sweep of one along its axis
+        shape.point_count = 2;
+        shape.points[0] = {0.0, 0.0, element.z0};
+        shape.points[1] = {0.0, 0.0, element.z1};
+        return shape;
+    }
+    shape.core = ConvexShape::Core::cone;
+    shape.cone = element;
+    return shape;
+}
+
+ConvexShape convex_sphere(double radius) {
+    ConvexShape shape;
+    shape.point_count = 1;
+    shape.margin = radius;
+    return shape;
+}
+
+ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape) {
+    assert(shape.place_count == 1);
+    ConvexShape result = shape;
+    for (size_t i = 0; i < shape.point_count; ++i)
+        result.points[i] = target_from_shape.rotation * shape.points[i];
+    result.orientation = target_from_shape.rotation * shape.orientation;
+    result.upright = result.orientation == Mat3(1.0);
+    result.places[0].at = target_from_shape * shape.places[0].at;
+    return result;
+}
+
+ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> places) {
+    assert(!places.empty() && places.size() <= ConvexShape::max_places && shape.place_count == 1);
+    ConvexShape result = shape;
+    result.place_count = static_cast<uint8_t>(places.size());
+    const double last = std::max<double>(1.0, static_cast<double>(places.size()) - 1.0);
+    for (size_t i = 0; i < places.size(); ++i)
+        result.places[i] = {shape.places[0].at + places[i], static_cast<double>(i) / last};
+    return result;
+}
+
+SupportPoint support(const ConvexShape& shape, const Vec3& direction) {
+    size_t best = 0;
+    double farthest = glm::dot(shape.places[0].at, direction);
+    for (size_t i = 1; i < shape.place_count; ++i) {
+        const double along = glm::dot(shape.places[i].at, direction);
+        if (along <= farthest) continue;
+        farthest = along;
+        best = i;
+    }
+    return {core_support(shape, direction) + shape.places[best].at, shape.places[best].time};
+}
+
+Aabb bounds(const ConvexShape& shape) {
+    Aabb box;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 direction(0.0);
+        direction[axis] = 1.0;
+        box.max[axis] = support(shape, direction).point[axis] + shape.margin;
+        box.min[axis] = support(shape, -direction).point[axis] - shape.margin;
+    }
+    return box;
+}
+
 namespace {
 
 constexpr int max_steps = 100;
@@ -140,6 +262,122 @@ Separation separation(const ConvexShape& a, const ConvexShape& b, const Separati
                          || found.upper - found.lower <= std::max(goal.tolerance, gjk_touching);
     if (!is_done) step_back(a, b, goal, found);
     return found;
+}
+
+namespace {
+
+/// Weights of the point of a face, edge or corner that is nearest to the origin; up to three used.
+struct Nearest {
+    std::array<int, 3> index{};
+    std::array<double, 3> weight{};
+    int count = 0;
+    Vec3 point = Vec3(0.0);
+};
+
+Nearest corner(const Simplex& s, int i) {
+    return {{i, 0, 0}, {1.0, 0.0, 0.0}, 1, s.vertices[static_cast<size_t>(i)].difference};
+}
+
+Nearest nearest_on_edge(const Simplex& s, int i, int j) {
+    const Vec3 a = s.vertices[static_cast<size_t>(i)].difference;
+    const Vec3 b = s.vertices[static_cast<size_t>(j)].difference;
+    const Vec3 ab = b - a;
+    const double along = -glm::dot(a, ab);
+    const double length = glm::dot(ab, ab);
+    if (along <= 0.0 || length == 0.0) return corner(s, i);
+    if (along >= length) return corner(s, j);
+    const double t = along / length;
+    return {{i, j, 0}, {1.0 - t, t, 0.0}, 2, a + t * ab};
+}
+
+bool nearer(const Nearest& a, const Nearest& b) {
+    return glm::dot(a.point, a.point) < glm::dot(b.point, b.point);
+}
+
+Nearest nearest_on_face(const Simplex& s, int i, int j, int k) {
+    const Vec3 a = s.vertices[static_cast<size_t>(i)].difference;
+    const Vec3 b = s.vertices[static_cast<size_t>(j)].difference;
+    const Vec3 c = s.vertices[static_cast<size_t>(k)].difference;
+    const Vec3 normal = glm::cross(b - a, c - a);
+    const double area = glm::dot(normal, normal);
+    // Barycentric coordinates of the origin's projection; all positive means it lies in the face.
+    const double u = glm::dot(glm::cross(b, c), normal);
+    const double v = glm::dot(glm::cross(c, a), normal);
+    const double w = glm::dot(glm::cross(a, b), normal);
+    if (area > 0.0 && u > 0.0 && v > 0.0 && w > 0.0) {
+        const double sum = u + v + w;
+        Nearest inside{{i, j, k}, {u / sum, v / sum, w / sum}, 3, {}};
+        inside.point = inside.weight[0] * a + inside.weight[1] * b + inside.weight[2] * c;
+        return inside;
+    }
+    Nearest best = nearest_on_edge(s, i, j);
+    for (const Nearest& edge : {nearest_on_edge(s, j, k), nearest_on_edge(s, i, k)})
+        if (nearer(edge, best)) best = edge;
+    return best;
+}
+
+/// Whether the origin lies in the tetrahedron, borders included, never in a flat one; sets the
+/// weights of the origin if it does.
+bool hold_origin(Simplex& s) {
+    const auto at = [&](size_t i) { return s.vertices[i].difference; };
+    const auto volume = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+        return glm::dot(p, glm::cross(q, r));
+    };
+    const Vec3 edges[] = {at(1) - at(0), at(2) - at(0), at(3) - at(0)};
+    const double all = volume(edges[0], edges[1], edges[2]);
+    const double scale = glm::length(edges[0]) * glm::length(edges[1]) * glm::length(edges[2]);
+    if (std::abs(all) <= 1e-12 * scale) return false;
+    const double weights[] = {volume(at(1), at(2), at(3)) / all, volume(at(0), at(3), at(2)) / all,
+                              volume(at(0), at(1), at(3)) / all, volume(at(0), at(2), at(1)) / all};
+    for (const double weight : weights)
+        if (!(weight >= 0.0)) return false;
+    // Of a flat tetrahedron far away these are nothing but rounding. Only the point they stand for
+    // proves anything.
+    const double sum = weights[0] + weights[1] + weights[2] + weights[3];
+    Vec3 point(0.0);
+    double reach = 0.0;
+    for (size_t i = 0; i < 4; ++i) {
+        s.vertices[i].weight = weights[i] / sum;
+        point += s.vertices[i].weight * at(i);
+        reach = std::max(reach, glm::length(at(i)));
+    }
+    return glm::length(point) <= 1e-13 * reach;
+}
+
+Nearest nearest_on_tetrahedron(const Simplex& s) {
+    Nearest best = nearest_on_face(s, 0, 1, 2);
+    for (const Nearest& face :
+         {nearest_on_face(s, 0, 1, 3), nearest_on_face(s, 0, 2, 3), nearest_on_face(s, 1, 2, 3)})
+        if (nearer(face, best)) best = face;
+    return best;
+}
+
+Nearest nearest_of(const Simplex& s) {
+    switch (s.count) {
+    case 1:
+        return corner(s, 0);
+    case 2:
+        return nearest_on_edge(s, 0, 1);
+    case 3:
+        return nearest_on_face(s, 0, 1, 2);
+    default:
+        return nearest_on_tetrahedron(s);
+    }
+}
+
+} // namespace
+
+Vec3 reduce_to_nearest(Simplex& simplex) {
+    if (simplex.count == 4 && hold_origin(simplex)) return Vec3(0.0);
+    const Nearest nearest = nearest_of(simplex);
+    Simplex kept;
+    kept.count = nearest.count;
+    for (size_t i = 0; i < static_cast<size_t>(nearest.count); ++i) {
+        kept.vertices[i] = simplex.vertices[static_cast<size_t>(nearest.index[i])];
+        kept.vertices[i].weight = nearest.weight[i];
+    }
+    simplex = kept;
+    return nearest.point;
 }
 
 } // namespace core

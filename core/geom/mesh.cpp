@@ -1,5 +1,10 @@
 #include "core/geom/mesh.h"
 
+#include <bit>
+#include <cstring>
+
+#include <fmt/format.h>
+
 namespace core {
 
 Aabb Mesh::bounds() const {
@@ -17,6 +22,73 @@ double signed_volume(const Mesh& mesh) {
         six_volumes += glm::dot(t.a - origin, glm::cross(t.b - origin, t.c - origin));
     }
     return six_volumes / 6.0;
+}
+
+Mesh mesh_of(const Aabb& box) {
+    Mesh mesh;
+    for (unsigned i = 0; i < 8; ++i)
+        mesh.vertices.emplace_back(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
+                                   i & 4U ? box.max.z : box.min.z);
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
+namespace {
+
+/// The bytes of a number, the lowest first.
+template <typename T>
+void put(std::string& bytes, T value) {
+    static_assert(std::endian::native == std::endian::little);
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes.append(raw, sizeof value);
+}
+
+void put(std::string& bytes, const glm::vec3& v) {
+    for (int i = 0; i < 3; ++i) put(bytes, v[i]);
+}
+
+} // namespace
+
+std::string stl_bytes(const Mesh& mesh, const std::string& comment) {
+    std::string bytes = comment.substr(0, 80);
+    bytes.resize(80, ' ');
+    bytes.reserve(84 + 50 * mesh.triangles.size());
+    put(bytes, static_cast<uint32_t>(mesh.triangles.size()));
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Triangle t = mesh.triangle(i);
+        const Vec3 across = glm::cross(t.b - t.a, t.c - t.a);
+        const double area = glm::length(across);
+        put(bytes, glm::vec3(area > 0.0 ? across / area : Vec3(0.0)));
+        for (const Vec3& corner : {t.a, t.b, t.c}) put(bytes, glm::vec3(corner));
+        put(bytes, uint16_t{0});
+    }
+    return bytes;
+}
+
+std::string ply_bytes(const Mesh& mesh, const std::vector<std::string>& comments,
+                      std::span<const Colour> colours) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\n";
+    for (const std::string& comment : comments) bytes += "comment " + comment + "\n";
+    bytes += fmt::format("element vertex {}\n", mesh.vertices.size());
+    for (const char axis : {'x', 'y', 'z'}) bytes += fmt::format("property double {}\n", axis);
+    if (!colours.empty())
+        for (const char* name : {"red", "green", "blue"})
+            bytes += fmt::format("property uchar {}\n", name);
+    bytes += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                         mesh.triangles.size());
+    bytes.reserve(bytes.size() + 27 * mesh.vertices.size() + 13 * mesh.triangles.size());
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) {
+        for (int k = 0; k < 3; ++k) put(bytes, mesh.vertices[i][k]);
+        if (!colours.empty())
+            for (const uint8_t part : colours[i]) put(bytes, part);
+    }
+    for (const Mesh::Corners& corners : mesh.triangles) {
+        put(bytes, uint8_t{3});
+        for (const uint32_t corner : corners) put(bytes, static_cast<int32_t>(corner));
+    }
+    return bytes;
 }
 
 } // namespace core

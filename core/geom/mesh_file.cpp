@@ -1,19 +1,394 @@
 #include "core/geom/mesh_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/base/file_reads.h"
-#include "core/geom/mesh_check.h"
+#include "core/base/result.h"
+#include "core/base/union_find.h"
+#include "core/geom/line_crossing.h"
+#include "core/geom/mesh.h"
 #include "core/geom/mesh_text.h"
-#include "core/geom/polygon_soup.h"
-#include "core/geom/stl_bytes.h"
 
 namespace core {
+
+/// What a binary STL whose bytes are in order holds.
+struct StlCount {
+    size_t triangles = 0;
+    size_t degenerate = 0; // those that name a corner twice
+};
+
+/// Whether the bytes have the length that a binary STL states in its own header.
+bool has_length_of_binary_stl(std::string_view bytes);
+
+/// Errors: no triangles, a length that is not 84 + 50 n, a coordinate that is not finite.
+Result<StlCount> checked_binary_stl(std::string_view bytes);
+
+namespace {
+
+constexpr size_t header_length = 84;
+constexpr size_t triangle_length = 50;
+
+uint32_t stated_count(std::string_view bytes) {
+    std::array<unsigned char, 4> b{};
+    std::memcpy(b.data(), bytes.data() + 80, 4);
+    return uint32_t{b[0]} | uint32_t{b[1]} << 8U | uint32_t{b[2]} << 16U | uint32_t{b[3]} << 24U;
+}
+
+size_t stated_length(std::string_view bytes) {
+    return header_length + triangle_length * size_t{stated_count(bytes)};
+}
+
+using StlCorner = std::array<float, 3>;
+
+StlCorner corner_at(std::string_view bytes, size_t triangle, size_t corner) {
+    StlCorner point{};
+    std::memcpy(point.data(),
+                bytes.data() + header_length + triangle * triangle_length + 12 * (corner + 1), 12);
+    return point;
+}
+
+bool is_finite_corner(const StlCorner& c) {
+    return std::isfinite(c[0]) && std::isfinite(c[1]) && std::isfinite(c[2]);
+}
+
+} // namespace
+
+bool has_length_of_binary_stl(std::string_view bytes) {
+    return bytes.size() >= header_length && bytes.size() == stated_length(bytes);
+}
+
+Result<StlCount> checked_binary_stl(std::string_view bytes) {
+    if (bytes.size() < header_length)
+        return fail(ErrorCode::syntax,
+                    fmt::format("a binary STL has a header of 84 bytes, the file "
+                                "{}",
+                                bytes.size()));
+    const uint32_t count = stated_count(bytes);
+    if (bytes.size() != stated_length(bytes))
+        return fail(ErrorCode::syntax,
+                    fmt::format("its header states {} triangles, which take {} bytes, but the file "
+                                "has {}",
+                                count, stated_length(bytes), bytes.size()));
+    if (count == 0) return fail(ErrorCode::missing_value, "there are no triangles in it");
+    StlCount found{.triangles = count, .degenerate = 0};
+    for (size_t i = 0; i < count; ++i) {
+        const StlCorner a = corner_at(bytes, i, 0), b = corner_at(bytes, i, 1),
+                        c = corner_at(bytes, i, 2);
+        if (!is_finite_corner(a) || !is_finite_corner(b) || !is_finite_corner(c))
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("triangle {} has a coordinate that is not finite", i + 1));
+        if (a == b || b == c || c == a) ++found.degenerate;
+    }
+    return found;
+}
+
+namespace {
+
+void turn(Mesh::Corners& triangle) { std::swap(triangle[1], triangle[2]); }
+
+/// Joins the pieces that need each other at an edge of more than two uses: those that do not pass
+/// it as often one way as the other.
+void join_at_edge(std::span<const EdgeUse> uses, UnionFind& pieces) {
+    std::map<uint32_t, int> balance;
+    for (const EdgeUse& use : uses) balance[pieces.root(use.triangle)] += use.upwards ? 1 : -1;
+    std::optional<uint32_t> first;
+    for (const auto& [piece, sum] : balance) {
+        if (sum == 0) continue;
+        if (first) pieces.join(*first, piece);
+        first = first.value_or(piece);
+    }
+}
+
+/// A shell's own triangles, its box and its volume.
+struct Shell {
+    std::vector<uint32_t> triangles;
+    Aabb box;
+    double volume = 0.0;
+};
+
+std::vector<Shell> collect(const Mesh& mesh, const Shells& shells) {
+    std::vector<Shell> all(shells.count);
+    const Vec3 origin = mesh.bounds().center();
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        Shell& shell = all[shells.of_triangle[i]];
+        const Triangle t = mesh.triangle(i);
+        shell.triangles.push_back(i);
+        for (const Vec3& corner : {t.a, t.b, t.c}) shell.box.extend(corner);
+        shell.volume += glm::dot(t.a - origin, glm::cross(t.b - origin, t.c - origin)) / 6.0;
+    }
+    return all;
+}
+
+bool holds(const Aabb& outer, const Aabb& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min))
+           && glm::all(glm::lessThanEqual(inner.max, outer.max));
+}
+
+/// Whether `inner`, by its first triangle, lies within `outer`.
+bool holds(const Mesh& mesh, const Shell& outer, const Shell& inner) {
+    if (!(std::abs(outer.volume) > std::abs(inner.volume)) || !holds(outer.box, inner.box))
+        return false;
+    const Triangle t = mesh.triangle(inner.triangles.front());
+    const Vec3 p = (t.a + t.b + t.c) / 3.0;
+    int winding = 0;
+    for (const uint32_t i : outer.triangles) {
+        const ProjectedTriangle flat = project(mesh.triangle(i), 0);
+        const int step = crossing_step(flat, Vec2(p.y, p.z));
+        if (step != 0 && crossing_depth(flat, Vec2(p.y, p.z)) < p.x) winding += step;
+    }
+    return winding != 0;
+}
+
+/// The shell around this one that has none around itself; `shell` if nothing is around it.
+uint32_t outermost_around(const Mesh& mesh, const std::vector<Shell>& shells, uint32_t shell) {
+    uint32_t outermost = shell;
+    for (uint32_t i = 0; i < shells.size(); ++i)
+        if (std::abs(shells[i].volume) > std::abs(shells[outermost].volume)
+            && holds(mesh, shells[i], shells[shell]))
+            outermost = i;
+    return outermost;
+}
+
+} // namespace
+
+std::vector<EdgeUse> edge_uses(const Mesh& mesh) {
+    std::vector<EdgeUse> uses;
+    uses.reserve(3 * mesh.triangles.size());
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t from = mesh.triangles[i][k], to = mesh.triangles[i][(k + 1) % 3];
+            uses.push_back({std::min(from, to), std::max(from, to), i, from < to});
+        }
+    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    return uses;
+}
+
+size_t end_of_edge(const std::vector<EdgeUse>& uses, size_t first) {
+    size_t last = first;
+    while (last < uses.size() && uses[last].low == uses[first].low
+           && uses[last].high == uses[first].high)
+        ++last;
+    return last;
+}
+
+Shells shells_of(const Mesh& mesh) {
+    const std::vector<EdgeUse> uses = edge_uses(mesh);
+    UnionFind pieces(mesh.triangles.size());
+    for (size_t i = 0, end = 0; i < uses.size(); i = end) {
+        end = end_of_edge(uses, i);
+        if (end - i == 2) pieces.join(uses[i].triangle, uses[i + 1].triangle);
+    }
+    for (size_t i = 0, end = 0; i < uses.size(); i = end) {
+        end = end_of_edge(uses, i);
+        if (end - i > 2) join_at_edge(std::span(uses).subspan(i, end - i), pieces);
+    }
+    Shells shells;
+    std::vector<uint32_t> number(mesh.triangles.size());
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const uint32_t root = pieces.root(i);
+        if (root == i) number[i] = shells.count++;
+        shells.of_triangle.push_back(number[root]);
+    }
+    return shells;
+}
+
+size_t turn_to_agree(Mesh& mesh) {
+    struct Neighbour {
+        uint32_t triangle;
+        bool agrees;
+    };
+    std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
+    const std::vector<EdgeUse> uses = edge_uses(mesh);
+    for (size_t i = 0, end = 0; i < uses.size(); i = end) {
+        end = end_of_edge(uses, i);
+        if (end - i != 2) continue;
+        const bool agrees = uses[i].upwards != uses[i + 1].upwards;
+        neighbours[uses[i].triangle].push_back({uses[i + 1].triangle, agrees});
+        neighbours[uses[i + 1].triangle].push_back({uses[i].triangle, agrees});
+    }
+    enum class State : uint8_t { unseen, stays, turned };
+    std::vector<State> state(mesh.triangles.size(), State::unseen);
+    size_t turned = 0;
+    for (uint32_t first = 0; first < state.size(); ++first) {
+        if (state[first] != State::unseen) continue;
+        state[first] = State::stays;
+        for (std::vector<uint32_t> open = {first}; !open.empty();) {
+            const uint32_t at = open.back();
+            open.pop_back();
+            for (const Neighbour& next : neighbours[at]) {
+                if (state[next.triangle] != State::unseen) continue;
+                const bool turns = (state[at] == State::turned) == next.agrees;
+                state[next.triangle] = turns ? State::turned : State::stays;
+                if (turns) turn(mesh.triangles[next.triangle]);
+                turned += turns;
+                open.push_back(next.triangle);
+            }
+        }
+    }
+    return turned;
+}
+
+size_t turn_outwards(Mesh& mesh) {
+    const Shells numbers = shells_of(mesh);
+    const std::vector<Shell> shells = collect(mesh, numbers);
+    std::vector<uint32_t> to_turn;
+    for (uint32_t i = 0; i < shells.size(); ++i)
+        if (shells[outermost_around(mesh, shells, i)].volume < 0.0) to_turn.push_back(i);
+    for (const uint32_t i : to_turn)
+        for (const uint32_t triangle : shells[i].triangles) turn(mesh.triangles[triangle]);
+    return to_turn.size();
+}
+
+namespace {
+
+constexpr double farthest_coordinate = 1e6; // mm; a kilometre is no workpiece
+
+std::string place_of(const Vec3& p) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+}
+
+Result<bool> check_coordinates(const Mesh& mesh) {
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (const uint32_t corner : mesh.triangles[i]) {
+            if (corner >= mesh.vertices.size())
+                return fail(ErrorCode::invalid_value,
+                            fmt::format("triangle {} names vertex {}, but there are {}, counted "
+                                        "from 0",
+                                        i + 1, corner, mesh.vertices.size()));
+            const Vec3& p = mesh.vertices[corner];
+            if (!is_finite(p))
+                return fail(ErrorCode::invalid_value,
+                            fmt::format("triangle {} has a coordinate that is not finite", i + 1));
+            if (glm::any(glm::greaterThan(glm::abs(p), Vec3(farthest_coordinate))))
+                return fail(ErrorCode::invalid_value,
+                            fmt::format("triangle {} lies at {} mm, more than a kilometre away",
+                                        i + 1, place_of(p)));
+        }
+    return true;
+}
+
+/// The mesh with coinciding corners shared and unused ones left out.
+Mesh welded(const Mesh& mesh) {
+    std::vector<uint32_t> order(mesh.vertices.size());
+    std::iota(order.begin(), order.end(), uint32_t{0});
+    const auto key = [&](uint32_t i) {
+        const Vec3& p = mesh.vertices[i];
+        return std::tie(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    std::vector<uint32_t> same(mesh.vertices.size()); // the least index at the same place
+    for (size_t i = 0; i < order.size(); ++i)
+        same[order[i]] =
+            i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
+
+    Mesh out;
+    std::vector<uint32_t> place(mesh.vertices.size(), UINT32_MAX);
+    for (Mesh::Corners triangle : mesh.triangles) {
+        for (uint32_t& corner : triangle) {
+            uint32_t& kept = place[same[corner]];
+            if (kept == UINT32_MAX) {
+                kept = static_cast<uint32_t>(out.vertices.size());
+                out.vertices.push_back(mesh.vertices[same[corner]] + Vec3(0.0)); // no -0
+            }
+            corner = kept;
+        }
+        out.triangles.push_back(triangle);
+    }
+    return out;
+}
+
+size_t drop_degenerate(Mesh& mesh) {
+    return std::erase_if(mesh.triangles, [](const Mesh::Corners& t) {
+        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+    });
+}
+
+/// How many edges an odd number of triangles meets, and how many are not passed as often one way as
+/// the other.
+struct EdgeCount {
+    size_t open = 0;
+    size_t unbalanced = 0;
+    EdgeUse an_open_one{};
+    EdgeUse an_unbalanced_one{};
+};
+
+EdgeCount count_edges(const Mesh& mesh) {
+    const std::vector<EdgeUse> uses = edge_uses(mesh);
+    EdgeCount count;
+    for (size_t i = 0, end = 0; i < uses.size(); i = end) {
+        end = end_of_edge(uses, i);
+        int balance = 0;
+        for (size_t k = i; k < end; ++k) balance += uses[k].upwards ? 1 : -1;
+        if ((end - i) % 2 != 0 && count.open++ == 0) count.an_open_one = uses[i];
+        if (balance != 0 && count.unbalanced++ == 0) count.an_unbalanced_one = uses[i];
+    }
+    return count;
+}
+
+tl::unexpected<Error> fail_at_edge(const Mesh& mesh, size_t edges, const char* what,
+                                   const EdgeUse& at) {
+    return fail(ErrorCode::invalid_value,
+                fmt::format("the mesh is not closed: {} {}, one of them from {} to {}", edges, what,
+                            place_of(mesh.vertices[at.low]), place_of(mesh.vertices[at.high])));
+}
+
+/// Errors unless every edge is passed as often one way as the other; turns triangles if that helps.
+Result<bool> close(Mesh& mesh, std::vector<std::string>& repairs) {
+    EdgeCount count = count_edges(mesh);
+    if (count.open > 0)
+        return fail_at_edge(mesh, count.open, "edges have no second triangle", count.an_open_one);
+    if (count.unbalanced == 0) return true;
+    const size_t turned = turn_to_agree(mesh);
+    count = count_edges(mesh);
+    if (count.unbalanced > 0)
+        return fail_at_edge(mesh, count.unbalanced, "edges have triangles that face both ways",
+                            count.an_unbalanced_one);
+    repairs.push_back(fmt::format("{} triangles faced the other way than their neighbours and were "
+                                  "turned",
+                                  turned));
+    return true;
+}
+
+} // namespace
+
+Result<Mesh> checked_solid(Mesh mesh, std::vector<std::string>& repairs) {
+    if (mesh.triangles.empty())
+        return fail(ErrorCode::missing_value, "there are no triangles in it");
+    FEELER_TRY([[maybe_unused]] const bool in_range, check_coordinates(mesh));
+    mesh = welded(mesh);
+    if (const size_t dropped = drop_degenerate(mesh); dropped > 0)
+        repairs.push_back(
+            fmt::format("{} triangles that name a corner twice were left out", dropped));
+    mesh = welded(mesh); // without the corners of those
+    FEELER_TRY([[maybe_unused]] const bool closed, close(mesh, repairs));
+    if (const size_t turned = turn_outwards(mesh); turned > 0)
+        repairs.push_back(fmt::format("{} of its shells faced inwards and were turned", turned));
+    const double longest = glm::length(mesh.bounds().size());
+    if (mesh.triangles.empty() || !(signed_volume(mesh) > 1e-12 * longest * longest * longest))
+        return fail(ErrorCode::invalid_value, "the mesh encloses no volume");
+    return mesh;
+}
+
 namespace {
 
 constexpr uintmax_t largest_file = uintmax_t{2} << 30U; // bytes

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "core/geom/mesh_text.h"
-#include "core/geom/mesh_words.h"
 
 namespace core {
 namespace {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/geom/mesh.h"
 
 namespace core {
 
@@ -39,5 +40,15 @@ RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by);
 
 /// A profile that holds every point nearer than `by` to the given one.
 RevolvedProfile grown(const RevolvedProfile& profile, double by);
+
+/// The smallest body of revolution about Z that holds a mesh, as cones one upon the other from its
+/// lowest point to its highest.
+///
+/// Result: nothing of the mesh stands out of it. It is wider than need be by at most `tolerance`
+/// and
+///         what the chord of an edge's way round the axis adds over a 400th of the height; where
+///         the vertices have more than 400 heights also by what flanks widen over some of them.
+/// Cost:   triangles times heights, at most 800 of them.
+RevolvedProfile revolved_hull(const Mesh& mesh, double tolerance);
 
 } // namespace core

@@ -1,6 +1,6 @@
 #include "core/geom/rigid_motion.h"
 
-#include "core/base/angle.h"
+#include "core/base/units.h"
 
 namespace core {
 namespace {

@@ -1,13 +1,44 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/base/transform.h"
 #include "core/geom/gjk.h"
 #include "core/geom/mesh.h"
-#include "core/geom/oriented_box.h"
 
 namespace core {
+
+/// A box at any angle.
+struct OrientedBox {
+    Vec3 center = Vec3(0.0);
+    Mat3 axes = Mat3(1.0); // one to a column, at right angles
+    Vec3 half = Vec3(0.0); // half sizes along them
+
+    /// Half the extent along a direction of length 1.
+    double half_along(const Vec3& direction) const {
+        return glm::dot(glm::abs(direction * axes), half);
+    }
+};
+
+/// How far the columns are from unit length and right angles: the entries of M'M - 1, added up.
+double lean(const Mat3& m);
+
+/// No fitted box leans more.
+constexpr double box_lean = 2e-15;
+
+/// A box round the triangles, rounding included: along their principal axes, along the longest side
+/// of one of them, or along the axes of the frame, whichever has the least surface.
+OrientedBox fitted_box(std::span<const Triangle> triangles);
+
+inline OrientedBox moved(const OrientedBox& box, const Transform& target_from_box) {
+    return {target_from_box * box.center, target_from_box.rotation * box.axes, box.half};
+}
+
+/// A lower bound of the distance of two boxes while the second moves on straight by `sweep`: exact
+/// where their faces are parallel. Rounding is not subtracted.
+double distance_bound(const OrientedBox& a, const OrientedBox& b, const Vec3& sweep);
 
 /// Boxes round the triangles of a mesh, for searches that need few of them.
 struct TriangleBvh {

@@ -1,6 +1,63 @@
 #include "core/sim/clearance.h"
 
+#include <algorithm>
+#include <array>
+
 namespace core {
+namespace {
+
+constexpr double default_contact = 0.05; // for pairs that may touch
+constexpr double stock_distance = 1.0;   // of the holder and the machine from the stock
+constexpr double fixture_distance = 2.0;
+
+/// What a rule may call a body: by its own name, or by its kind.
+struct Names {
+    std::string own, kind;
+
+    bool include(const std::string& name) const { return name == own || name == kind; }
+};
+
+/// The last rule that names the pair wins.
+std::optional<Allowance> ruled(const Setup& setup, const Names& part, const Names& body) {
+    std::optional<Allowance> found;
+    for (const AllowanceRule& rule : setup.allowances) {
+        const auto names = [&](size_t i, size_t j) {
+            return part.include(rule.between[i]) && body.include(rule.between[j]);
+        };
+        if (names(0, 1) || names(1, 0)) found = Allowance{rule.distance, rule.contact};
+    }
+    return found;
+}
+
+Names names_of_body(const Setup& setup, const Pair& pair) {
+    if (!pair.fixture) return {"stock", "stock"};
+    const Fixture& fixture = setup.fixtures[*pair.fixture];
+    return {fixture.name, fixture.is_machine ? "machine" : "fixture"};
+}
+
+} // namespace
+
+Allowance allowance_of(const Setup& setup, const Pair& pair) {
+    if (!setup.allowances.empty()) {
+        const Names part{part_name(setup, pair), name_of(pair.part)};
+        if (const auto rule = ruled(setup, part, names_of_body(setup, pair))) return *rule;
+    }
+    if (pair.fixture) return {setup.allowance.value_or(fixture_distance), 0.0};
+    if (pair.part >= PartKind::holder) return {setup.allowance.value_or(stock_distance), 0.0};
+    return {0.0, default_contact};
+}
+
+double search_limit_of(const Setup& setup) {
+    double largest = setup.allowance.value_or(0.0);
+    for (const AllowanceRule& rule : setup.allowances) largest = std::max(largest, rule.distance);
+    return std::max(setup.search_limit, largest + 1.0);
+}
+
+bool names_a_kind(std::string_view name) {
+    constexpr std::array<std::string_view, 7> kinds = {"flutes", "shank",   "holder", "nose",
+                                                       "stock",  "fixture", "machine"};
+    return std::find(kinds.begin(), kinds.end(), name) != kinds.end();
+}
 
 const std::string& part_name(const Setup& setup, const Pair& pair) {
     static const std::string names[] = {name_of(PartKind::flutes), name_of(PartKind::shank),
@@ -66,6 +123,49 @@ const PairClearance* deciding_pair(const std::vector<PairClearance>& pairs) {
             worst = &pair;
     }
     return worst;
+}
+
+RoundedCorners corners_at_start(const Machine& machine) {
+    return {.by = machine.corner_tolerance.value_or(0.0)};
+}
+
+bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
+    const bool rounds = change.blending == Blending::continuous;
+    const std::optional<double> stated =
+        change.tolerance ? change.tolerance : machine.corner_tolerance;
+    corners.by = rounds ? std::max(stated.value_or(0.0), change.joining) : 0.0;
+    return rounds && !stated;
+}
+
+double off_way(const Pair& pair, double of_block, const RoundedCorners& corners) {
+    return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
+}
+
+bool rises(const Leg& leg) {
+    const auto &from = leg.places.front(), &to = leg.places.back();
+    for (size_t i = 0; i < axis_count; ++i)
+        if (i == 2 ? to[i] < from[i] : to[i] != from[i]) return false;
+    return leg.places.size() <= 2;
+}
+
+bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
+                  bool is_rapid) {
+    if (corners.by_several || (corners.tool && corners.tool != tool)) return false;
+    return rises || (!is_rapid && corners.by == corners.of_cuts);
+}
+
+void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts) {
+    const double off = off_way(pair.pair, of_block, corners);
+    if (off == 0.0) return;
+    pair.lower = std::max(0.0, pair.lower - off);
+    if (pair.verdict == Verdict::collision) return;
+    pair.upper += off;
+    if (pair.allowance.distance > resolution) {
+        pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
+    } else if ((pair.pair.fixture || !follows_cuts) && pair.lower == 0.0
+               && off > contact_depth(pair.allowance)) {
+        pair.verdict = std::max(pair.verdict, Verdict::undecided);
+    }
 }
 
 } // namespace core

@@ -1,12 +1,35 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
-#include "core/sim/allowance.h"
+#include "core/motion/event.h"
+#include "core/motion/machine.h"
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 
 namespace core {
+
+struct Pair;
+
+/// What a pair must keep: a distance, and how much overlap is contact when the distance is 0.
+struct Allowance {
+    double distance = 0.0;
+    double contact = 0.0;
+};
+
+/// What a pair must keep, by the set-up's rules or else by default.
+Allowance allowance_of(const Setup& setup, const Pair& pair);
+
+/// How far away bodies are to be looked for: as far as the set-up says, and beyond its largest
+/// allowance.
+double search_limit_of(const Setup& setup);
+
+/// Whether a name stands for a kind of bodies in allowances: flutes, shank, holder, nose, stock,
+/// fixture, machine.
+bool names_a_kind(std::string_view name);
 
 /// A part of the tool's side and what it must not touch: the stock, or a fixture by its index.
 struct Pair {
@@ -58,5 +81,51 @@ void merge(PairClearance& known, const PairClearance& later);
 
 /// The pair that decides a block: the worst verdict, among equals the least margin.
 const PairClearance* deciding_pair(const std::vector<PairClearance>& pairs);
+
+/// How far the control's rounding of corners may take the tool off its programmed way, mm.
+///
+/// Where a corner is rounded hangs on the next motion, on speeds and on short moves that the
+/// control joins, so all of a feed is taken to be as far off as its corners. Rapids are not
+/// rounded.
+struct RoundedCorners {
+    double by = 0.0;                // of feeds from now on; 0 under G61 and G61.1
+    double of_cuts = 0.0;           // of those that have cut: the stock is known no better
+    std::optional<ToolNumber> tool; // that has cut so
+    bool by_several = false;        // tools
+
+    /// Takes a feed that cuts.
+    void note_cut(const std::optional<ToolNumber>& by_tool) {
+        if (by == 0.0) return;
+        by_several = by_several || (tool && tool != by_tool);
+        tool = by_tool;
+        of_cuts = std::max(of_cuts, by);
+    }
+};
+
+/// What is stated before the program says anything.
+RoundedCorners corners_at_start(const Machine& machine);
+
+/// Takes a change of the path mode; whether it leaves a tolerance that nobody stated.
+bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine);
+
+/// How far the bodies of a pair may be off over a block whose feeds are by `of_block`.
+double off_way(const Pair& pair, double of_block, const RoundedCorners& corners);
+
+/// Whether a leg is straight and goes nowhere but up, or nowhere.
+bool rises(const Leg& leg);
+
+/// Whether a motion goes where its tool has cut, however corners were rounded: it is off as its
+/// cuts were, or leaves them upwards, all of its legs (`rises`).
+bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
+                  bool is_rapid);
+
+/// Takes off the lower bound of a pair, and adds to the upper one, how far its bodies may be off.
+///
+/// Of a pair that may touch, the verdict about the stock stays where `follows_cuts` says that the
+/// same tool is off as its cuts were, or leaves them upwards: it is where it has cut. Else it stays
+/// if all that may stand of a corner is less than the contact depth.
+///
+/// `of_block`: by how much feeds of the block may be off; 0 if there was none.
+void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts);
 
 } // namespace core

@@ -3,7 +3,9 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/ids.h"
 
@@ -42,5 +44,17 @@ void settle_severity(const Setup& setup, Finding& finding);
 /// The rule whose name takes the fewest letters changed, put in or left out to make it from this
 /// one.
 std::string nearest_rule(const std::string& name);
+
+/// A rule by its stable name, with the severity that it has unless the set-up says otherwise.
+struct RuleEntry {
+    const char* name;
+    Severity severity;
+};
+
+/// Every rule a set-up may name.
+std::span<const RuleEntry> rule_table();
+
+/// Their names.
+std::vector<std::string> rule_names();
 
 } // namespace core

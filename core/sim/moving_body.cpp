@@ -1,6 +1,6 @@
 #include "core/sim/moving_body.h"
 
-#include "core/distance/shape_outline.h"
+#include "core/distance/upright_sweep.h"
 
 namespace core {
 namespace {

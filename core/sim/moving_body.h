@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/sim/kinematics.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/setup.h"
 
 namespace core {

@@ -6,7 +6,7 @@
 
 #include "core/base/union_find.h"
 #include "core/dbm/stock_record.h"
-#include "core/geom/nearest_surface.h"
+#include "core/geom/triangle_distance.h"
 #include "core/sim/verdict.h"
 
 namespace core {

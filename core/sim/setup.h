@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/distance/body_distance.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/finding.h"
-#include "core/sim/kinematics.h"
 #include "core/sim/part_comparison.h"
 #include "core/sim/tool_assembly.h"
 

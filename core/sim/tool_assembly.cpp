@@ -1,12 +1,364 @@
 #include "core/sim/tool_assembly.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
-#include "core/sim/tool_head.h"
+#include "core/sim/tool_description.h"
 
 namespace core {
+namespace {
+
+constexpr double right_angle = 0.5 * std::numbers::pi;
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+/// The round edge of a tool: a ball of radius `corner` about a circle of radius `disc`.
+struct Rounding {
+    double disc = 0.0;
+    double corner = 0.0;
+
+    /// Where it is at an angle from straight down, as z and r.
+    ProfileElement at(double angle) const {
+        const double r = disc + corner * std::sin(angle), z = corner * (1.0 - std::cos(angle));
+        return {z, r, z, r, 0.0};
+    }
+    ProfileElement whole() const { return {corner, disc, corner, disc, corner}; }
+};
+
+/// The rounding between two angles as cones, none of them outside it.
+void add_cones(RevolvedProfile& profile, const Rounding& round, double from, double to) {
+    const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / round.corner));
+    const int cones = std::max(4, static_cast<int>(std::ceil((to - from) / step)));
+    profile.form_error = rounding_sag;
+    ProfileElement below = round.at(from);
+    for (int i = 1; i <= cones; ++i) {
+        const bool upright = i == cones && to == right_angle;
+        const ProfileElement above =
+            upright ? ProfileElement{round.corner, round.disc + round.corner, 0.0, 0.0, 0.0}
+                    : round.at(from + (to - from) * i / cones);
+        profile.elements.push_back({below.z0, below.r0, above.z0, above.r0, 0.0});
+        below = above;
+    }
+}
+
+/// The rounding from the tip up to an angle. Its upper half is within the tool if that is high
+/// enough; a ball and a disc are then exact.
+void add_tip(RevolvedProfile& profile, const Rounding& round, double to, double height) {
+    if (height >= 2.0 * round.corner)
+        profile.elements.push_back(round.whole());
+    else
+        add_cones(profile, round, 0.0, to);
+}
+
+ProfileElement upright(double z0, double z1, double r) { return {z0, r, z1, r, 0.0}; }
+
+/// Flutes up to their length, and nothing above.
+ToolHead plain(const ToolDescription& tool, RevolvedProfile flutes) {
+    const ProfileElement& last = flutes.elements.back();
+    const double top = 2.0 * (last.r1 + last.margin);
+    return {std::move(flutes), {}, tool.flute_length, top};
+}
+
+Result<ToolHead> flat(const ToolDescription& tool) {
+    return plain(tool, {{upright(0.0, tool.flute_length, 0.5 * tool.diameter)}});
+}
+
+Result<ToolHead> rounded(const ToolDescription& tool, double corner) {
+    const double r = 0.5 * tool.diameter;
+    if (corner == 0.0) return flat(tool);
+    RevolvedProfile flutes;
+    add_tip(flutes, {r - corner, corner}, right_angle, tool.flute_length);
+    if (tool.flute_length > corner)
+        flutes.elements.push_back(upright(corner, tool.flute_length, r));
+    ToolHead head = plain(tool, std::move(flutes));
+    head.top_diameter = tool.diameter;
+    return head;
+}
+
+Result<ToolHead> ball(const ToolDescription& tool) {
+    const double r = 0.5 * tool.diameter;
+    if (tool.corner_radius && std::abs(*tool.corner_radius - r) > 0.001)
+        return tool_error(tool, fmt::format("corner_radius of a ball is half its diameter, {:g} "
+                                            "mm, not {:g}; leave it out or make it a bull",
+                                            r, *tool.corner_radius));
+    if (tool.flute_length < r)
+        return tool_error(tool, fmt::format("flute_length {:g} is shorter than the ball's radius "
+                                            "{:g}",
+                                            tool.flute_length, r));
+    return rounded(tool, r);
+}
+
+Result<ToolHead> bull(const ToolDescription& tool) {
+    if (!tool.corner_radius) return tool_error(tool, "shape \"bull\" needs corner_radius");
+    const double corner = *tool.corner_radius;
+    if (!(corner >= 0.0 && corner <= 0.5 * tool.diameter))
+        return tool_error(tool, "corner_radius must lie between 0 and half the diameter");
+    if (tool.flute_length <= corner)
+        return tool_error(tool, fmt::format("flute_length {:g} is shorter than corner_radius {:g}",
+                                            tool.flute_length, corner));
+    return rounded(tool, corner);
+}
+
+/// A point or flank from the tip out to the full radius, then upright. A rounding of the tip
+/// meets the flank as a tangent.
+Result<ToolHead> coned(const ToolDescription& tool, double tip, double from_axis) {
+    const double r = 0.5 * tool.diameter, steep = std::tan(from_axis);
+    const double corner = tool.corner_radius.value_or(0.0);
+    const Rounding round{tip - corner, corner};
+    const double angle = right_angle - from_axis;
+    const double z0 = corner > 0.0 ? round.at(angle).z0 : 0.0;
+    const double r0 = corner > 0.0 ? round.at(angle).r0 : tip;
+    if (tool.flute_length <= z0)
+        return tool_error(tool, fmt::format("flute_length {:g} ends within the rounding of the "
+                                            "tip, which is {:g} high",
+                                            tool.flute_length, z0));
+    RevolvedProfile flutes;
+    if (corner > 0.0) add_tip(flutes, round, angle, tool.flute_length);
+    const double height = z0 + (r - r0) / steep;
+    // A flank longer than the flutes ends with them, before it reaches the full diameter.
+    const double end = std::min(height, tool.flute_length);
+    const double r_end = height >= tool.flute_length ? r0 + (end - z0) * steep : r;
+    flutes.elements.push_back({z0, r0, end, r_end, 0.0});
+    if (height < tool.flute_length)
+        flutes.elements.push_back(upright(height, tool.flute_length, r));
+    return plain(tool, std::move(flutes));
+}
+
+Result<ToolHead> drill(const ToolDescription& tool) {
+    const double point = tool.point_deg.value_or(118.0);
+    if (point == 180.0) return flat(tool);
+    if (!(point > 0.0 && point < 180.0))
+        return tool_error(tool, "point_deg must lie between 0 and 180");
+    return coned(tool, 0.0, radians(0.5 * point));
+}
+
+Result<ToolHead> tapered(const ToolDescription& tool) {
+    if (!tool.angle_deg)
+        return tool_error(tool, fmt::format("{} tools need angle_deg, the flank's angle from the "
+                                            "axis",
+                                            name_of(tool.shape)));
+    if (!(*tool.angle_deg > 0.0 && *tool.angle_deg < 90.0))
+        return tool_error(tool, "angle_deg, the flank's angle from the axis, must lie between 0 "
+                                "and 90 degrees");
+    const double corner = tool.corner_radius.value_or(0.0);
+    const double tip = tool.tip_diameter > 0.0 ? 0.5 * tool.tip_diameter : corner;
+    if (!(tip >= 0.0 && 2.0 * tip < tool.diameter))
+        return tool_error(tool, "tip_diameter must be below diameter");
+    if (!(corner >= 0.0 && corner <= tip))
+        return tool_error(tool, fmt::format("corner_radius {:g} is more than half of tip_diameter "
+                                            "{:g}",
+                                            corner, tool.tip_diameter));
+    return coned(tool, tip, radians(*tool.angle_deg));
+}
+
+Result<ToolHead> tslot(const ToolDescription& tool) {
+    const double r = 0.5 * tool.diameter, height = tool.flute_length;
+    const double corner = tool.corner_radius.value_or(0.0);
+    if (corner == 0.0) return flat(tool);
+    if (!(corner > 0.0 && corner < r && 2.0 * corner <= height))
+        return tool_error(tool, fmt::format("corner_radius {:g} does not fit twice into "
+                                            "flute_length {:g}, and once into half the diameter "
+                                            "{:g}",
+                                            corner, height, r));
+    const double inner = r - corner;
+    RevolvedProfile flutes{{{corner, inner, corner, inner, corner}}};
+    if (2.0 * corner < height) {
+        flutes.elements.push_back(upright(corner, height - corner, r));
+        flutes.elements.push_back({height - corner, inner, height - corner, inner, corner});
+    }
+    return ToolHead{std::move(flutes), {}, height, 2.0 * inner};
+}
+
+Result<ToolHead> dovetail(const ToolDescription& tool) {
+    if (!tool.angle_deg || !(*tool.angle_deg > 0.0 && *tool.angle_deg < 90.0))
+        return tool_error(tool, "dovetail needs angle_deg, the flank's angle from the axis, "
+                                "between 0 and 90");
+    const double r = 0.5 * tool.diameter, height = tool.flute_length;
+    const double corner = tool.corner_radius.value_or(0.0),
+                 steep = std::tan(radians(*tool.angle_deg));
+    if (!(corner >= 0.0 && corner < r && 2.0 * corner <= height))
+        return tool_error(tool, fmt::format("corner_radius {:g} does not fit twice into "
+                                            "flute_length {:g}",
+                                            corner, height));
+    const Rounding round{r - corner, corner};
+    const ProfileElement flank = round.at(right_angle + radians(*tool.angle_deg));
+    const double z0 = corner > 0.0 ? flank.z0 : 0.0, r0 = corner > 0.0 ? flank.r0 : r;
+    const double top = r0 - (height - z0) * steep;
+    if (!(top > 0.0 && z0 < height))
+        return tool_error(tool, fmt::format("at {:g} degrees the flank meets the axis below "
+                                            "flute_length {:g}",
+                                            *tool.angle_deg, height));
+    RevolvedProfile flutes;
+    if (corner > 0.0) flutes.elements.push_back(round.whole());
+    flutes.elements.push_back({z0, r0, height, top, 0.0});
+    return ToolHead{std::move(flutes), {}, height, 2.0 * top};
+}
+
+Result<ToolHead> lollipop(const ToolDescription& tool) {
+    const double r = 0.5 * tool.diameter;
+    if (!tool.neck_diameter) return tool_error(tool, "lollipop needs neck_diameter");
+    const double neck = 0.5 * *tool.neck_diameter;
+    if (!(neck > 0.0 && neck < r))
+        return tool_error(tool, fmt::format("neck_diameter {:g} must be above 0 and below "
+                                            "diameter {:g}",
+                                            2.0 * neck, tool.diameter));
+    const double ball_end = r + std::sqrt(r * r - neck * neck);
+    const double flutes = tool.flute_length > 0.0 ? tool.flute_length : ball_end;
+    if (flutes < r)
+        return tool_error(tool, fmt::format("flute_length {:g} is shorter than the ball's radius "
+                                            "{:g}",
+                                            flutes, r));
+    ToolHead head{.length = std::max(flutes, ball_end), .top_diameter = 2.0 * neck};
+    const Rounding round{0.0, r};
+    if (flutes >= ball_end) {
+        head.flutes.elements.push_back(round.whole());
+        if (flutes > ball_end) head.behind.elements.push_back(upright(ball_end, flutes, neck));
+    } else {
+        const double end = std::acos(std::clamp(1.0 - flutes / r, -1.0, 1.0));
+        add_cones(head.flutes, round, 0.0, right_angle);
+        if (end > right_angle) add_cones(head.flutes, round, right_angle, end);
+        add_cones(head.behind, round, end, std::numbers::pi - std::asin(neck / r));
+    }
+    return head;
+}
+
+/// One row of teeth of a thread mill from `z` up: the basic profile of its thread, whose crest is
+/// an eighth and whose root a quarter of the pitch wide.
+void add_row(RevolvedProfile& flutes, double z, double pitch, double crest, double root) {
+    const double flank = 0.3125 * pitch, half_root = 0.125 * pitch, flat = 0.125 * pitch;
+    flutes.elements.push_back(upright(z, z + half_root, root));
+    z += half_root;
+    flutes.elements.push_back({z, root, z + flank, crest, 0.0});
+    flutes.elements.push_back(upright(z + flank, z + flank + flat, crest));
+    flutes.elements.push_back({z + flank + flat, crest, z + 2.0 * flank + flat, root, 0.0});
+    z += 2.0 * flank + flat;
+    flutes.elements.push_back(upright(z, z + half_root, root));
+}
+
+Result<ToolHead> threadmill(const ToolDescription& tool) {
+    if (!tool.pitch) return flat(tool);
+    const double pitch = *tool.pitch, angle = tool.thread_deg.value_or(60.0);
+    if (!(pitch > 0.0 && pitch <= tool.flute_length))
+        return tool_error(tool, fmt::format("pitch {:g} must be above 0 and at most flute_length "
+                                            "{:g}",
+                                            pitch, tool.flute_length));
+    if (!(angle > 0.0 && angle < 180.0))
+        return tool_error(tool, "thread_deg must lie between 0 and 180");
+    constexpr double whole = 1.0 + 1e-9; // ten rows of 0.1 are ten
+    const int most = static_cast<int>(tool.flute_length / pitch * whole);
+    const int rows = tool.teeth.value_or(most);
+    constexpr int too_many = 200;
+    if (rows < 1 || rows > most || rows > too_many)
+        return tool_error(tool, fmt::format("teeth = {}: flute_length {:g} has room for 1 to {}",
+                                            rows, tool.flute_length, std::min(most, too_many)));
+    const double crest = 0.5 * tool.diameter;
+    const double root = crest - 0.3125 * pitch / std::tan(radians(0.5 * angle));
+    if (!(root > 0.0))
+        return tool_error(
+            tool, fmt::format("pitch {:g} is too large for diameter {:g}", pitch, tool.diameter));
+    RevolvedProfile flutes;
+    for (int i = 0; i < rows; ++i) add_row(flutes, i * pitch, pitch, crest, root);
+    if (rows * pitch < tool.flute_length)
+        flutes.elements.push_back(upright(rows * pitch, tool.flute_length, root));
+    return ToolHead{std::move(flutes), {}, tool.flute_length, 2.0 * root};
+}
+
+/// A piece of an outline goes to the flutes as far as they reach, the rest to what is behind.
+void add_piece(ToolHead& head, const ProfileElement& piece, double flutes_end) {
+    if (piece.z0 >= flutes_end) return head.behind.elements.push_back(piece);
+    if (piece.z1 <= flutes_end) return head.flutes.elements.push_back(piece);
+    const double share = (flutes_end - piece.z0) / (piece.z1 - piece.z0);
+    const double r = piece.r0 + share * (piece.r1 - piece.r0);
+    head.flutes.elements.push_back({piece.z0, piece.r0, flutes_end, r, 0.0});
+    head.behind.elements.push_back({flutes_end, r, piece.z1, piece.r1, 0.0});
+}
+
+Result<ToolHead> outlined(const ToolDescription& tool) {
+    if (tool.outline.size() < 2)
+        return tool_error(tool, "profile needs at least two [r, z] points");
+    if (tool.outline[0][1] != 0.0) return tool_error(tool, "profile must begin at the tip, z = 0");
+    const double top = tool.outline.back()[1];
+    if (tool.flute_length > top + 0.001)
+        return tool_error(tool, fmt::format("flute_length {:g} goes beyond the profile, which ends "
+                                            "at {:g}",
+                                            tool.flute_length, top));
+    const double flutes_end = tool.flute_length > 0.0 ? tool.flute_length : top;
+    ToolHead head{.length = top, .top_diameter = 2.0 * tool.outline.back()[0]};
+    for (size_t i = 0; i < tool.outline.size(); ++i) {
+        const auto [r, z] = tool.outline[i];
+        if (!std::isfinite(r) || !std::isfinite(z) || r < 0.0)
+            return tool_error(tool, "profile points need a finite z and an r that is not negative");
+        if (i == 0) continue;
+        const auto [r_below, z_below] = tool.outline[i - 1];
+        if (z < z_below) return tool_error(tool, "profile must go from the tip up");
+        if (z > z_below && (r > 0.0 || r_below > 0.0))
+            add_piece(head, {z_below, r_below, z, r, 0.0}, flutes_end);
+    }
+    if (head.flutes.empty()) return tool_error(tool, "profile encloses nothing");
+    return head;
+}
+
+Result<ToolHead> shaped(const ToolDescription& tool) {
+    switch (tool.shape) {
+    case ToolShape::ball:
+        return ball(tool);
+    case ToolShape::bull:
+        return bull(tool);
+    case ToolShape::drill:
+        return drill(tool);
+    case ToolShape::taper:
+    case ToolShape::chamfer:
+        return tapered(tool);
+    case ToolShape::tslot:
+        return tslot(tool);
+    case ToolShape::dovetail:
+        return dovetail(tool);
+    case ToolShape::lollipop:
+        return lollipop(tool);
+    case ToolShape::threadmill:
+        return threadmill(tool);
+    case ToolShape::profile:
+        return outlined(tool);
+    case ToolShape::flat:
+        break;
+    }
+    return tool.corner_radius ? bull(tool) : flat(tool);
+}
+
+/// The neck stands on the head; it is part of the shank, which is what does not cut.
+Result<void> add_neck(const ToolDescription& tool, ToolHead& head) {
+    if (!tool.neck_diameter) {
+        if (tool.neck_length) return tool_error(tool, "neck_length needs neck_diameter");
+        return {};
+    }
+    if (!(*tool.neck_diameter > 0.0 && *tool.neck_diameter <= tool.diameter))
+        return tool_error(tool, fmt::format("neck_diameter {:g} must be above 0 and at most "
+                                            "diameter {:g}",
+                                            *tool.neck_diameter, tool.diameter));
+    const bool undercuts = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
+    if (undercuts && *tool.neck_diameter > head.top_diameter + 1e-6)
+        return tool_error(tool, fmt::format("neck_diameter {:g} is wider than the top of the head, "
+                                            "{:g}",
+                                            *tool.neck_diameter, head.top_diameter));
+    if (!tool.neck_length) return {};
+    head.behind.elements.push_back(
+        upright(head.length, head.length + *tool.neck_length, 0.5 * *tool.neck_diameter));
+    head.length += *tool.neck_length;
+    head.top_diameter = *tool.neck_diameter;
+    return {};
+}
+
+} // namespace
+
+Result<ToolHead> tool_head(const ToolDescription& tool) {
+    if (auto wrong = check_keys(tool); !wrong) return tl::unexpected(wrong.error());
+    FEELER_TRY(ToolHead head, shaped(tool));
+    if (auto wrong = add_neck(tool, head); !wrong) return tl::unexpected(wrong.error());
+    return head;
+}
+
 namespace {
 
 constexpr double same_length = 0.001; // mm; catalogues round

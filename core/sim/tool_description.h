@@ -7,7 +7,7 @@
 
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "core/sim/event.h"
+#include "core/motion/event.h"
 
 namespace core {
 
@@ -66,5 +66,11 @@ struct ToolDescription {
 
 /// An error that names the tool.
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why);
+
+/// Looks at every size by itself: it must be a length or angle that a tool can have, and mean
+/// something for the shape.
+///
+/// Errors: invalid_value, naming the tool and the key.
+Result<void> check_keys(const ToolDescription& tool);
 
 } // namespace core

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/database.h"
+#include "app/library/store/database.h"
 #include "tests/app/checked.h"
 
 namespace app_test {

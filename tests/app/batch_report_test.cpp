@@ -5,13 +5,13 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "app/report/batch_report.h"
-#include "app/report/batch_text.h"
-#include "app/report/html_batch.h"
-#include "app/report/junit_report.h"
-#include "app/report/rule_help.h"
-#include "app/report/sarif_report.h"
-#include "core/sim/rule_table.h"
+#include "app/report/exchange/junit_report.h"
+#include "app/report/exchange/rule_help.h"
+#include "app/report/exchange/sarif_report.h"
+#include "app/report/html/html_batch.h"
+#include "app/report/json/batch_report.h"
+#include "app/report/text/batch_text.h"
+#include "core/sim/finding.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/shell.h"
 

@@ -4,10 +4,9 @@
 
 #include <gmock/gmock.h>
 
-#include "app/batch/batch_run.h"
-#include "app/batch/memory_budget.h"
-#include "app/report/batch_report.h"
-#include "app/report/batch_text.h"
+#include "app/library/run/batch_run.h"
+#include "app/report/json/batch_report.h"
+#include "app/report/text/batch_text.h"
 #include "tests/support/program_writer.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/bench/bench_means.h"
-#include "app/report/bench_report.h"
+#include "app/bench/bench_table.h"
+#include "app/report/text/bench_report.h"
 
 namespace app {
 namespace {

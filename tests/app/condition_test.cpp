@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/session/condition.h"
+#include "app/debug/condition.h"
 
 namespace app_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/report/coprocessor_report.h"
+#include "app/coproc/study/coprocessor_report.h"
 #include "hwsim/vcd_trace.h"
 #include "tests/support/scoped_folder.h"
 

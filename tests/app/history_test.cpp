@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/batch/result_store.h"
-#include "app/batch/store_file.h"
+#include "app/library/store/result_store.h"
+#include "app/library/store/store_file.h"
 #include "tests/app/checked.h"
 
 namespace app_test {

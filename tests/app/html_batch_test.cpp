@@ -4,12 +4,9 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "app/batch/outcome.h"
-#include "app/report/html_batch.h"
-#include "app/report/html_batch_columns.h"
-#include "app/report/html_batch_facts.h"
-#include "app/report/rule_tally.h"
-#include "app/report/skipped_group.h"
+#include "app/library/result/batch_result.h"
+#include "app/report/html/html_batch.h"
+#include "app/report/text/batch_text.h"
 #include "tests/support/large_batch.h"
 #include "tests/support/page_data.h"
 

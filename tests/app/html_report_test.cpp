@@ -4,11 +4,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "app/report/html_blocks.h"
-#include "app/report/html_bounds.h"
-#include "app/report/html_columns.h"
-#include "app/report/html_report.h"
-#include "app/report/html_text.h"
+#include "app/report/html/html_report.h"
+#include "app/report/html/html_text.h"
 #include "tests/support/page_data.h"
 
 namespace app {

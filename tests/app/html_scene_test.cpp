@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/report/html_cards.h"
-#include "app/report/html_scene.h"
-#include "app/report/pictured_run.h"
+#include "app/report/html/html_cards.h"
+#include "app/report/html/pictured_run.h"
 #include "render/body_mesh.h"
 
 namespace app {

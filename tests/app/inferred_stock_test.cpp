@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/session/check_run.h"
-#include "app/session/program_kind.h"
-#include "app/session/stated_stock.h"
+#include "app/check/check_run.h"
+#include "app/setup/inference/stated_stock.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/input_files.h"
-#include "app/session/check_run.h"
-#include "app/session/digest.h"
+#include "app/base/sha256.h"
+#include "app/check/check_run.h"
+#include "app/library/store/input_files.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/session/inspected_value.h"
+#include "app/debug/inspected_value.h"
 
 namespace app_test {
 namespace {

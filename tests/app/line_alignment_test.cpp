@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/line_alignment.h"
+#include "app/library/result/program_diff.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/session/m_codes.h"
+#include "app/check/block_events.h"
 
 namespace app_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "app/batch/shard_file.h"
+#include "app/library/shard/shard.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "app/commands/output.h"
-#include "app/commands/pass_outputs.h"
 #include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 

@@ -1,13 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/batch/program_diff.h"
-#include "app/report/batch_text.h"
-#include "app/report/diff_report.h"
-#include "app/report/distance_report.h"
-#include "app/report/history_report.h"
-#include "app/report/text_layout.h"
-#include "app/report/text_report.h"
+#include "app/base/text.h"
+#include "app/library/result/program_diff.h"
+#include "app/report/history/history_report.h"
+#include "app/report/text/batch_text.h"
+#include "app/report/text/bench_report.h"
+#include "app/report/text/diff_report.h"
+#include "app/report/text/text_report.h"
 
 namespace app {
 namespace {

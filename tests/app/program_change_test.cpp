@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/batch/block_text.h"
-#include "app/batch/program_change.h"
+#include "app/library/result/program_diff.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/batch/program_diff.h"
+#include "app/library/result/program_diff.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

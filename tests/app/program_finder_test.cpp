@@ -2,10 +2,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/batch/file_kind.h"
-#include "app/batch/glob.h"
-#include "app/batch/plain_path.h"
-#include "app/batch/program_finder.h"
+#include "app/base/file_stamp.h"
+#include "app/library/find/folder_walk.h"
+#include "app/library/find/program_finder.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "app/batch/batch_job.h"
-#include "app/batch/project_file.h"
+#include "app/library/find/project_file.h"
+#include "app/library/run/batch_job.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/prompt/command_table.h"
-#include "app/prompt/prompt.h"
+#include "app/debug/prompt/command_table.h"
+#include "app/debug/prompt/prompt.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/base/text.h"
 #include "app/commands/progress.h"
-#include "app/report/csv_report.h"
-#include "app/report/json_report.h"
-#include "app/report/text_layout.h"
-#include "app/report/text_report.h"
+#include "app/report/exchange/csv_report.h"
+#include "app/report/json/json_report.h"
+#include "app/report/text/text_report.h"
 
 namespace app {
 namespace {

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/build_version.h"
-#include "app/batch/database.h"
-#include "app/batch/result_key.h"
-#include "app/batch/result_store.h"
-#include "app/batch/store_file.h"
-#include "app/session/digest.h"
+#include "app/base/sha256.h"
+#include "app/library/store/database.h"
+#include "app/library/store/result_key.h"
+#include "app/library/store/result_store.h"
+#include "app/library/store/store_file.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/saved_setup.h"
+#include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
-#include "app/report/saved_setup.h"
-#include "app/session/setup_sheet.h"
-#include "app/session/tool_field.h"
-#include "app/setup/setup_rewrite.h"
+#include "app/setup/setup_edits.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {

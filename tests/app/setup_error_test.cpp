@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/report/text_report.h"
+#include "app/report/text/text_report.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

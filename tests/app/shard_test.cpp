@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "app/batch/shard_file.h"
-#include "app/batch/shard_merge.h"
+#include "app/library/shard/shard.h"
+#include "app/library/shard/shard_merge.h"
 
 namespace {
 

@@ -1,14 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/batch/program_diff.h"
-#include "app/prompt/place_text.h"
-#include "app/report/batch_report.h"
-#include "app/report/csv_report.h"
-#include "app/report/diff_report.h"
-#include "app/report/distance_report.h"
-#include "app/report/history_report.h"
-#include "app/report/text_report.h"
+#include "app/debug/prompt/state_text.h"
+#include "app/library/result/program_diff.h"
+#include "app/report/exchange/csv_report.h"
+#include "app/report/history/history_report.h"
+#include "app/report/json/batch_report.h"
+#include "app/report/text/bench_report.h"
+#include "app/report/text/diff_report.h"
+#include "app/report/text/text_report.h"
 
 namespace app {
 namespace {

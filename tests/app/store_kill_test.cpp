@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/batch/database.h"
-#include "app/batch/result_store.h"
-#include "app/session/digest.h"
+#include "app/base/sha256.h"
+#include "app/library/store/database.h"
+#include "app/library/store/result_store.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

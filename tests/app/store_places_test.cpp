@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/batch/quoted_path.h"
-#include "app/batch/store_places.h"
+#include "app/library/store/relative_paths.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/batch/result_store.h"
-#include "app/session/digest.h"
+#include "app/base/sha256.h"
+#include "app/library/store/result_store.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/tools/program_tools.h"
+#include "app/setup/tools/program_tools.h"
 
 namespace app {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "app/report/text_report.h"
-#include "app/tools/tool_library.h"
+#include "app/report/text/text_report.h"
+#include "app/setup/tools/tool_library.h"
 #include "core/sim/tool_assembly.h"
 #include "tests/support/scoped_folder.h"
 

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "app/report/text_report.h"
+#include "app/report/text/text_report.h"
 #include "app/setup/holder_library.h"
 #include "app/setup/setup_file.h"
-#include "app/setup/shipped_holders.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

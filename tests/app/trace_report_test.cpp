@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/report/json_line.h"
-#include "app/report/trace_report.h"
+#include "app/report/text/trace_report.h"
 
 namespace app {
 namespace {

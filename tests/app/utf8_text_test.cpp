@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/setup/utf8_text.h"
+#include "app/base/text.h"
 
 namespace {
 

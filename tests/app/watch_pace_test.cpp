@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/batch/watch_pace.h"
+#include "app/library/watch/watched_files.h"
 
 namespace app {
 namespace {

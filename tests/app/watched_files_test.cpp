@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "app/batch/folder_walk.h"
-#include "app/batch/program_finder.h"
-#include "app/batch/watched_files.h"
-#include "gcode/program_folder.h"
+#include "app/library/find/folder_walk.h"
+#include "app/library/find/program_finder.h"
+#include "app/library/watch/watched_files.h"
+#include "gcode/language/program_folder.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/session/debug_session.h"
+#include "app/debug/debug_session.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "hwsim/traversal.h"
+#include "hwsim/search.h"
 
 namespace bench {
 

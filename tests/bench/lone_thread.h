@@ -1,9 +1,7 @@
 #pragma once
 
-#include "hwsim/box_unit.h"
-#include "hwsim/device_config.h"
-#include "hwsim/line_cache.h"
-#include "hwsim/pair_unit.h"
+#include "hwsim/registers.h"
+#include "hwsim/search_element.h"
 
 namespace bench {
 

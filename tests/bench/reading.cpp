@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "gcode/interpreter.h"
+#include "gcode/exec/interpreter.h"
 
 namespace {
 

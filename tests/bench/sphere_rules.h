@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "hwsim/traversal.h"
+#include "hwsim/search.h"
 #include "tests/bench/sphere_model.h"
 
 namespace bench {

@@ -4,7 +4,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
-feeler=$(realpath "${1:-$root/build/test/app/feeler}")
+feeler=$(realpath "${1:-$root/build/release/app/feeler}")
 shares=4
 formats=(text json jsonl csv junit sarif)
 

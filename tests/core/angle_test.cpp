@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/angle.h"
 #include "core/base/transform.h"
+#include "core/base/units.h"
 
 namespace core {
 namespace {

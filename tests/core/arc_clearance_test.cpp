@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/simulator.h"
+#include "core/sim/run/simulator.h"
 
 namespace core {
 namespace {

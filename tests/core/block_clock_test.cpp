@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/block_clock.h"
-#include "core/sim/kinematics.h"
+#include "core/motion/kinematics.h"
+#include "core/sim/run/block_clock.h"
 #include "tests/support/machines.h"
 
 namespace core {

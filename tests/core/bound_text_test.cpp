@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/sim/bound_text.h"
-#include "core/sim/finding_text.h"
+#include "core/sim/run/finding_text.h"
+#include "core/sim/verdict.h"
 #include "tests/support/random_setup.h"
 
 namespace core {

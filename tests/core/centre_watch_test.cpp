@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/sim/simulator.h"
+#include "core/sim/run/simulator.h"
 
 namespace core {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/kinematics.h"
+#include "core/motion/kinematics.h"
 #include "tests/support/machines.h"
 
 namespace core {

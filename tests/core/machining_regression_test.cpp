@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/simulator.h"
+#include "core/sim/run/simulator.h"
 #include "tests/support/machines.h"
 
 namespace core {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/geom/mesh_check.h"
+#include "core/geom/mesh_file.h"
 #include "tests/support/meshes.h"
 
 namespace core {

@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/geom/mesh_check.h"
 #include "core/geom/mesh_file.h"
 #include "tests/support/meshes.h"
 #include "tests/support/stl_writer.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/mesh_shells.h"
+#include "core/geom/mesh_file.h"
 #include "tests/support/meshes.h"
 
 namespace core {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/orientation.h"
+#include "core/geom/line_crossing.h"
 
 namespace core {
 namespace {

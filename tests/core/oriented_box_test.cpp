@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geom/gjk.h"
-#include "core/geom/oriented_box.h"
+#include "core/geom/triangle_bvh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_oracle.h"
 

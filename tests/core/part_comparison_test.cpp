@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/mesh_check.h"
-#include "core/geom/nearest_surface.h"
+#include "core/geom/mesh_file.h"
+#include "core/geom/triangle_distance.h"
 #include "core/sim/part_comparison.h"
 #include "tests/support/meshes.h"
 

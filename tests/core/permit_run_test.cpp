@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/permit_run.h"
+#include "core/sim/run/permit_run.h"
 
 namespace core {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/revolved_hull.h"
+#include "core/geom/profile.h"
 #include "tests/support/meshes.h"
 #include "tests/support/profile_oracle.h"
 

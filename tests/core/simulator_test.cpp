@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/sim/simulator.h"
-#include "core/sim/tool_head.h"
+#include "core/sim/run/simulator.h"
+#include "core/sim/tool_assembly.h"
 
 namespace core {
 namespace {

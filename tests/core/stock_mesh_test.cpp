@@ -5,11 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/dbm/contour.h"
 #include "core/dbm/dual_cell.h"
-#include "core/dbm/feature_point.h"
 #include "core/dbm/stock_mesh.h"
-#include "core/geom/mesh_bytes.h"
-#include "core/geom/mesh_check.h"
+#include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
 #include "tests/support/scoped_folder.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dbm/stock_record.h"
-#include "core/geom/box_mesh.h"
+#include "core/geom/mesh.h"
 #include "tests/support/stock_oracle.h"
 
 namespace core {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/dbm/surface_point.h"
+#include "core/dbm/contour.h"
 #include "tests/support/meshes.h"
 #include "tests/support/stock_oracle.h"
 

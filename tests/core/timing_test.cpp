@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/sim/timing.h"
+#include "core/motion/timing.h"
 #include "tests/support/timing_oracle.h"
 
 namespace core {

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "gcode/interpreter.h"
-#include "gcode/lowering.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/lower/lowering.h"
 #include "tests/fuzz/chosen_program.h"
 
 namespace test_support {

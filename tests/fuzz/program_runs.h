@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "gcode/dialect.h"
+#include "gcode/language/dialect.h"
 
 namespace test_support {
 

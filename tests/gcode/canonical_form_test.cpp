@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/lexer.h"
+#include "gcode/language/lexer.h"
 #include "tests/support/canonical_program.h"
 #include "tests/support/plain_trace.h"
 #include "tests/support/program_generator.h"

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/codes.h"
+#include "gcode/language/codes.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/lowering.h"
+#include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

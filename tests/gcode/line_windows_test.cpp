@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/interpreter.h"
-#include "gcode/source.h"
-#include "gcode/trace.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/lower/trace.h"
+#include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"
 
 namespace gcode {

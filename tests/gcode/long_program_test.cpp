@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "gcode/interpreter.h"
+#include "gcode/exec/interpreter.h"
 #include "tests/support/scoped_folder.h"
 
 namespace gcode {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gcode/lowering.h"
+#include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "gcode/lowering.h"
-#include "gcode/spline_chords.h"
+#include "gcode/cycles/spline.h"
+#include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/parser.h"
+#include "gcode/read/parser.h"
 
 namespace gcode {
 namespace {

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/parser.h"
-#include "gcode/plain_words.h"
+#include "gcode/read/parser.h"
+#include "gcode/read/plain_words.h"
 
 namespace gcode {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/interpreter.h"
-#include "gcode/trace.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/lower/trace.h"
 
 namespace gcode {
 

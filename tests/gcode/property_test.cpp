@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/lowering.h"
+#include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

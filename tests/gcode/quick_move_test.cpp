@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/quick_move.h"
+#include "gcode/exec/quick_move.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

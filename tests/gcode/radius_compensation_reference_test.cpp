@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/radius_compensation.h"
+#include "gcode/contour/radius_compensation.h"
 #include "tests/support/scoped_folder.h"
 
 namespace gcode {

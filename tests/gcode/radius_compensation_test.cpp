@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/radius_compensation.h"
+#include "gcode/contour/radius_compensation.h"
 
 namespace gcode {
 namespace {

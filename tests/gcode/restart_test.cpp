@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/restart.h"
+#include "gcode/exec/restart.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

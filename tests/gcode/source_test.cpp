@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "gcode/source.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/threading.h"
+#include "gcode/cycles/threading.h"
 #include "tests/support/reference.h"
 
 namespace gcode {

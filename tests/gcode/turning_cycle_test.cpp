@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/turning_cycle.h"
+#include "gcode/cycles/turning_cycle.h"
 #include "tests/support/reference.h"
 
 namespace gcode {

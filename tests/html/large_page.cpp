@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "app/report/html_batch.h"
+#include "app/report/html/html_batch.h"
 #include "tests/support/large_batch.h"
 
 /// Writes the page of 10,000 programs and that of none to the files that are named.

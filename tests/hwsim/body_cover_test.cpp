@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/box_mesh.h"
+#include "core/geom/mesh.h"
 #include "hwsim/body_cover.h"
 #include "hwsim/tool_model.h"
 

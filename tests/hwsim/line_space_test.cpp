@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "hwsim/model_tree.h"
+#include "hwsim/stock_model.h"
 
 namespace hwsim {
 namespace {

@@ -3,8 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "hwsim/model_tree.h"
 #include "hwsim/specification.h"
+#include "hwsim/stock_model.h"
 
 namespace hwsim {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/session/allowed_rules.h"
+#include "app/check/conclusion.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "app/session/coprocessor_run.h"
-#include "gcode/dialect.h"
+#include "app/coproc/study/coprocessor_run.h"
+#include "gcode/language/dialect.h"
 #include "tests/support/device_judgement.h"
 
 namespace app {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/report/text_layout.h"
+#include "app/base/text.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/session/check_run.h"
+#include "app/check/check_run.h"
 #include "tests/support/device_judgement.h"
 
 namespace real_test {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geom/box_mesh.h"
+#include "core/geom/mesh.h"
 #include "render/body_mesh.h"
 #include "render/setup_scene.h"
 #include "render/stock_surface.h"

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "render/body_mesh.h"
+#include "render/line_pass.h"
 #include "render/motion_path.h"
-#include "render/path_levels.h"
-#include "render/profile_outline.h"
 #include "render/setup_scene.h"
 #include "tests/render/sample_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/session/debug_session.h"
+#include "app/debug/debug_session.h"
 #include "tests/session/walked_program.h"
 
 namespace session_test {

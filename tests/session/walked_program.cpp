@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/report/json_report.h"
-#include "app/session/block_runner.h"
-#include "app/session/prepared_check.h"
+#include "app/check/prepared_check.h"
+#include "app/check/program_runner.h"
+#include "app/report/json/json_report.h"
 
 namespace session_test {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session/debug_session.h"
+#include "app/debug/debug_session.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

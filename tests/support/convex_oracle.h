@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/geom/convex.h"
+#include "core/geom/gjk.h"
 
 namespace test_support {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/session/program_runner.h"
+#include "app/check/program_runner.h"
 
 namespace test_support {
 

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "app/session/check_run.h"
-#include "app/session/engine_agreement.h"
-#include "hwsim/device_port.h"
+#include "app/check/check_run.h"
+#include "app/coproc/study/coprocessor_report.h"
+#include "hwsim/driver.h"
 
 namespace test_support {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "app/batch/batch_result.h"
+#include "app/library/result/batch_result.h"
 
 namespace test_support {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sim/machine.h"
+#include "core/motion/machine.h"
 
 namespace test_support {
 

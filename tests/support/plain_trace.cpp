@@ -1,6 +1,6 @@
 #include "tests/support/plain_trace.h"
 
-#include "gcode/trace.h"
+#include "gcode/lower/trace.h"
 #include "tests/support/reference_interpreter.h"
 
 namespace test_support {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "gcode/environment.h"
-#include "gcode/interpreter.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/language/environment.h"
 #include "tests/support/plain_command.h"
 
 namespace test_support {

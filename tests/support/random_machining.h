@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/sim/simulator.h"
+#include "core/sim/run/simulator.h"
 #include "tests/support/random_setup.h"
 
 namespace test_support {

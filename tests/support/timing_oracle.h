@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/sim/timing.h"
+#include "core/motion/timing.h"
 
 namespace test_support {
 

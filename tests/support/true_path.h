@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "core/base/transform.h"
-#include "core/sim/axes.h"
-#include "core/sim/event.h"
+#include "core/motion/event.h"
 #include "tests/support/true_profile.h"
 
 namespace test_support {

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/command.h"
-#include "app/viewer/key_codes.h"
+#include "app/view/ui/command.h"
 
 namespace {
 

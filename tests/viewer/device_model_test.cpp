@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/command.h"
-#include "app/viewer/perform.h"
-#include "app/viewer/window_title.h"
+#include "app/view/ui/command.h"
+#include "app/view/ui/perform.h"
+#include "app/view/ui/window.h"
 #include "tests/viewer/made_study.h"
 
 namespace {

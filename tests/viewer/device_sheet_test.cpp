@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/device_sheet.h"
+#include "app/view/model/device_sheet.h"
 #include "tests/viewer/made_study.h"
 
 namespace {

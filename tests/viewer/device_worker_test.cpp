@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/view_model.h"
+#include "app/view/model/view_model.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/viewer/rows.h"
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/viewer/file_watch.h"
+#include "app/view/model/file_watch.h"
 
 namespace {
 

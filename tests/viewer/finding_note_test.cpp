@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "app/commands/output.h"
-#include "app/viewer/navigation.h"
-#include "app/viewer/window_files.h"
+#include "app/view/model/navigation.h"
+#include "app/view/ui/window_files.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

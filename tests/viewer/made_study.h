@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/viewer/device_study.h"
+#include "app/view/model/device_worker.h"
 #include "tests/viewer/rows.h"
 
 namespace viewer_test {

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/navigation.h"
-#include "app/viewer/scene_of.h"
-#include "app/viewer/setup_summary.h"
+#include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
 #include "tests/viewer/rows.h"
 
 namespace {

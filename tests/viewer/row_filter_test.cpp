@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/viewer/row_filter.h"
+#include "app/view/model/row_filter.h"
 #include "tests/viewer/rows.h"
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/viewer/view_model.h"
+#include "app/view/model/view_model.h"
 
 namespace viewer_test {
 

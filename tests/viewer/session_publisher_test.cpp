@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/session_publisher.h"
-#include "app/viewer/view_model.h"
+#include "app/view/model/session_worker.h"
+#include "app/view/model/view_model.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

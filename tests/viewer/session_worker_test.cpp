@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "app/commands/output.h"
-#include "app/viewer/navigation.h"
-#include "app/viewer/perform.h"
-#include "app/viewer/session_worker.h"
+#include "app/view/model/navigation.h"
+#include "app/view/model/session_worker.h"
+#include "app/view/ui/perform.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

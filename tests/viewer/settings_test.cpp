@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/settings.h"
+#include "app/view/model/settings.h"
 
 namespace {
 

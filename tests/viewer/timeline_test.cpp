@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/viewer/timeline.h"
+#include "app/view/model/timeline.h"
 #include "tests/viewer/rows.h"
 
 namespace {

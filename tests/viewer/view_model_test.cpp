@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/viewer/navigation.h"
+#include "app/view/model/navigation.h"
 #include "tests/viewer/rows.h"
 
 namespace viewer_test {

@@ -35,7 +35,7 @@ function(bundle result)
 endfunction()
 
 bundle(text)
-file(WRITE ${OUTPUT} "#include \"app/report/html_assets.h\"
+file(WRITE ${OUTPUT} "#include \"app/report/html/html_page.h\"
 
 namespace app {
 

@@ -1,0 +1,75 @@
+#include "app/base/file_stamp.h"
+
+#include <algorithm>
+
+#include <sys/stat.h>
+
+namespace app {
+namespace {
+
+using namespace std::chrono_literals;
+
+int64_t nanoseconds(const timespec& time) {
+    return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
+}
+
+/// An older file that was put in the place of another keeps the time of its bytes.
+std::chrono::nanoseconds last_change(const FileStamp& stamp) {
+    return std::chrono::nanoseconds(std::max(stamp.modified, stamp.changed));
+}
+
+} // namespace
+
+FileStamp stamp_of(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return {};
+    return {.is_there = true,
+            .is_folder = S_ISDIR(status.st_mode),
+            .is_file = S_ISREG(status.st_mode),
+            .device = static_cast<uint64_t>(status.st_dev),
+            .number = static_cast<uint64_t>(status.st_ino),
+            .size = static_cast<uint64_t>(status.st_size),
+            .modified = nanoseconds(status.st_mtim),
+            .changed = nanoseconds(status.st_ctim)};
+}
+
+std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
+    // Between reading a file and looking at its time; the clock of files has ticks of some ms.
+    const bool has_whole_seconds = last_change(stamp) % 1s == 0ns; // or two of them, as FAT does
+    return has_whole_seconds ? 2500ms : 50ms;
+}
+
+bool is_fresh(const FileStamp& stamp) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return stamp.is_there && last_change(stamp) > now - tick_of(stamp);
+}
+
+std::filesystem::path place_of(const std::filesystem::path& path) {
+    constexpr int most_links = 40; // as the system
+    std::error_code ignored;
+    std::filesystem::path place = std::filesystem::absolute(path, ignored);
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(place, ignored); ++i)
+        place = place.parent_path() / std::filesystem::read_symlink(place, ignored);
+    return std::filesystem::weakly_canonical(place, ignored);
+}
+
+std::string FileIdentities::of(const std::filesystem::path& path) {
+    const std::filesystem::path plain = plain_path(path);
+    const std::string folder = plain.has_parent_path() ? plain.parent_path().string() : ".";
+    const auto [known, is_new] = folders_.try_emplace(folder);
+    if (is_new) {
+        std::error_code failure;
+        known->second = std::filesystem::canonical(folder, failure);
+        if (failure) known->second = folder;
+    }
+    return (known->second / plain.filename()).string();
+}
+
+std::string plain_path(const std::filesystem::path& path) {
+    std::filesystem::path plain;
+    for (const std::filesystem::path& part : path)
+        if (part != "." && !part.empty()) plain /= part;
+    return plain.empty() ? "." : plain.string();
+}
+
+} // namespace app

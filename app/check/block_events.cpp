@@ -1,0 +1,92 @@
+#include "app/check/block_events.h"
+
+#include <cctype>
+#include <cstdlib>
+#include <string>
+
+namespace app {
+namespace {
+
+/// T0 empties the spindle, unless a tool has that number.
+void take_tool_zero(core::Event& event) {
+    auto* change = std::get_if<core::ToolChange>(&event);
+    if (change && !change->tool) change->tool = core::ToolNumber{0};
+}
+
+/// Whether a code is carried out behind the motion of its block, on all controls: M0, M1 and M60
+/// stop the program there. Of others the builder decides.
+bool comes_after_motion(int code) { return code == 0 || code == 1 || code == 60; }
+
+bool is_of_line(const core::FixtureMove& move, const gcode::BlockResult& block) {
+    return move.line && block.file.empty() && block.line == *move.line;
+}
+
+/// What a block does to the fixtures, before and after its motions.
+struct FixtureEvents {
+    std::vector<core::Event> before, after;
+};
+
+FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+    FixtureEvents events;
+    for (const size_t i : fixture_moves_of(setup, block)) {
+        const core::FixtureMove& move = setup.fixture_moves[i];
+        const bool coded = !is_of_line(move, block);
+        // Where nobody knows the order, a fixture is there while the block moves: where it goes
+        // from, and where it goes to.
+        (coded ? events.after : events.before).emplace_back(core::FixtureChange{move.from, false});
+        if (!move.to) continue;
+        (coded && comes_after_motion(*move.code) ? events.after : events.before)
+            .emplace_back(core::FixtureChange{*move.to, true});
+    }
+    return events;
+}
+
+void take_any_speed(core::Event& event) {
+    auto* spindle = std::get_if<core::SpindleChange>(&event);
+    if (spindle && spindle->speed == 0.0) spindle->speed = 1.0;
+}
+
+} // namespace
+
+std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::BlockResult& block) {
+    std::vector<size_t> moves;
+    for (size_t i = 0; i < setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = setup.fixture_moves[i];
+        if (is_of_line(move, block) || (move.code && has_m_code(block.text, *move.code)))
+            moves.push_back(i);
+    }
+    return moves;
+}
+
+std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockResult& block,
+                                   gcode::Lowering& lowering, bool speed_by_hand) {
+    const FixtureEvents fixtures = fixture_events(setup, block);
+    std::vector<core::Event> events = fixtures.before;
+    for (core::Event& event : gcode::lower(block, lowering)) events.push_back(event);
+    events.insert(events.end(), fixtures.after.begin(), fixtures.after.end());
+    for (core::Event& event : events) {
+        if (setup.tools.contains(core::ToolNumber{0})) take_tool_zero(event);
+        if (speed_by_hand) take_any_speed(event);
+    }
+    return events;
+}
+
+bool has_m_code(std::string_view block, int code) {
+    int depth = 0;
+    for (size_t i = 0; i < block.size(); ++i) {
+        const char c = block[i];
+        if (c == ';' && depth == 0) return false;
+        if (c == '(') ++depth;
+        if (c == ')' && depth > 0) --depth;
+        if (depth > 0 || (c != 'M' && c != 'm')) continue;
+        size_t at = i + 1;
+        while (at < block.size() && block[at] == ' ') ++at;
+        std::string digits;
+        while (at < block.size() && std::isdigit(static_cast<unsigned char>(block[at])))
+            digits += block[at++];
+        if (!digits.empty() && digits.size() < 6 && std::atoi(digits.c_str()) == code) return true;
+    }
+    return false;
+}
+
+} // namespace app

@@ -1,0 +1,398 @@
+#include "app/check/conclusion.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "app/setup/inference/program_survey.h"
+#include "core/geom/mesh.h"
+#include "core/sim/run/finding_text.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+/// A program of which no motion could be judged has not been checked.
+void look_for_judged_motions(CheckRun& run) {
+    const CheckedBlock* first = nullptr;
+    for (const CheckedBlock& block : run.blocks) {
+        if (block.result.motion == core::BlockMotion::none) continue;
+        if (block.result.checked) return;
+        if (!first) first = &block;
+    }
+    if (!first) return;
+    core::Finding finding;
+    finding.rule = "undecided";
+    finding.severity = core::Severity::error;
+    finding.block = first->block;
+    finding.message = "No motion of the program could be judged.";
+    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(),
+                                     [](const auto& f) { return f.rule == "first-move"; });
+    finding.cure =
+        !is_lost ? "Mend first what the other findings name."
+                 : "Say where the axes stand at the first block: `start` under [program] in the "
+                   "set-up, or the machine's home.";
+    run.findings.push_back(finding);
+}
+
+/// Nobody shall take a program for checked whose motions were not looked at.
+void say_not_judged(CheckRun& run, const std::string& why) {
+    const auto moves = [](const CheckedBlock& block) {
+        return block.result.motion != core::BlockMotion::none;
+    };
+    if (why.empty() || std::none_of(run.blocks.begin(), run.blocks.end(), moves)) return;
+    core::Finding finding;
+    finding.rule = "undecided";
+    finding.severity = core::Severity::error;
+    finding.message = "The motions were not checked: " + why + ".";
+    finding.cure = "Check the program on the lathe's own control.";
+    run.verdict = std::max(run.verdict, core::Verdict::undecided);
+    run.findings.push_back(finding);
+}
+
+/// Findings in the order of their blocks, those about the program as a whole at the end.
+void put_in_order(std::vector<core::Finding>& findings) {
+    std::stable_sort(findings.begin(), findings.end(), [](const auto& a, const auto& b) {
+        if (!a.block || !b.block) return a.block.has_value() && !b.block;
+        return core::value_of(*a.block) < core::value_of(*b.block);
+    });
+}
+
+} // namespace
+
+void conclude(PreparedCheck& check, core::SimulatorState end,
+              const std::vector<LengthDoubt>& doubts, bool needs_surface) {
+    CheckRun& run = check.run;
+    run.statistics = end.statistics;
+    run.points = core::point_count(end.stock.lines);
+    run.lines = core::line_count(end.stock.lines);
+    for (const std::string& assumption : end.assumptions) run.assumptions.push_back(assumption);
+    look_for_judged_motions(run);
+    // Nobody shall take a program for clear of which a part was not checked.
+    if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
+    put_in_order(run.findings);
+    say_not_judged(run, check.file.not_judged);
+    run.stock = std::move(end.stock);
+    if (!run.stopped && (needs_surface || run.setup.part))
+        run.surface = core::stock_mesh(*run.stock);
+    check_part(run);
+    look_at_both_switch_positions(run, *check.program, check.file.environment);
+    apply_allowed_rules(run, check.file.allow_comments);
+    gather_consequences(run, doubts);
+}
+
+namespace {
+
+std::string lower(std::string_view text) {
+    std::string low(text);
+    for (char& letter : low)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return low;
+}
+
+/// "line 7", "lines 7, 9, 12".
+std::string lines_text(const std::vector<uint32_t>& lines) {
+    std::string text;
+    for (const uint32_t line : lines) text += (text.empty() ? "" : ", ") + std::to_string(line);
+    return (lines.size() == 1 ? "line " : "lines ") + text;
+}
+
+/// Takes a word off the front, if it is there.
+bool take(std::string_view& text, std::string_view word) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    if (text.substr(0, word.size()) != word) return false;
+    text.remove_prefix(word.size());
+    return true;
+}
+
+bool comes_of_a_collision(const CheckRun& run, const core::Finding& finding) {
+    if (finding.rule == "collision") return true;
+    const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
+    return std::any_of(block.pairs.begin(), block.pairs.end(),
+                       [&](const core::PairClearance& pair) {
+                           return pair.verdict == core::Verdict::collision
+                                  && core::part_name(run.setup, pair.pair) == finding.pair[0]
+                                  && core::body_name(run.setup, pair.pair) == finding.pair[1];
+                       });
+}
+
+bool is_allowed(const CheckRun& run, const core::Finding& finding) {
+    if (!finding.block) return false;
+    const std::string& text = run.blocks[core::value_of(*finding.block)].text;
+    if (text.find_first_of("(;") == std::string::npos) return false;
+    const std::vector<AllowedRule> rules = allowed_rules(text);
+    return std::any_of(rules.begin(), rules.end(),
+                       [&](const AllowedRule& rule) { return rule.name == finding.rule; });
+}
+
+core::Finding about_comment(const CheckedBlock& block, const AllowedRule& rule,
+                            core::Severity severity) {
+    core::Finding finding;
+    finding.rule = "program";
+    finding.severity = severity;
+    finding.block = block.block;
+    finding.message = fmt::format("Line {}, column {}: the comment allows {}", block.line,
+                                  rule.column, rule.name);
+    return finding;
+}
+
+/// What is wrong with a name in a comment, if anything is.
+std::optional<core::Finding> doubt_about(const CheckedBlock& block, const AllowedRule& rule,
+                                         bool comments_count) {
+    if (!core::default_severity(rule.name)) {
+        core::Finding finding = about_comment(block, rule, core::Severity::warning);
+        finding.message += ", and there is no rule of that name: nothing is allowed by it.";
+        finding.cure = fmt::format("Write {} if that is meant.", core::nearest_rule(rule.name));
+        return finding;
+    }
+    if (comments_count) return std::nullopt;
+    core::Finding finding = about_comment(block, rule, core::Severity::note);
+    finding.message += ", but the set-up does not permit that: the comment does not count.";
+    finding.cure = "Say allow_comments = true under [rules] if comments shall count.";
+    return finding;
+}
+
+/// Looks at every comment of the lines that were run, once.
+void say_doubtful_comments(CheckRun& run, bool comments_count) {
+    std::set<std::pair<std::string, uint32_t>> seen;
+    std::vector<core::Finding> found;
+    for (const CheckedBlock& block : run.blocks) {
+        if (block.text.find_first_of("(;") == std::string::npos) continue;
+        if (!seen.emplace(block.file, block.line).second) continue;
+        for (const AllowedRule& rule : allowed_rules(block.text))
+            if (auto doubt = doubt_about(block, rule, comments_count))
+                found.push_back(*std::move(doubt));
+    }
+    for (core::Finding& finding : found) {
+        if (const auto set = run.setup.rules.find(finding.rule); set != run.setup.rules.end())
+            finding.severity = set->second;
+        if (finding.severity == core::Severity::off) continue;
+        const auto behind =
+            std::find_if(run.findings.begin(), run.findings.end(), [&](const core::Finding& other) {
+                return !other.block || *other.block > *finding.block;
+            });
+        run.findings.insert(behind, std::move(finding));
+    }
+}
+
+void say_severities(CheckRun& run) {
+    for (const auto& [rule, severity] : run.setup.rules) {
+        const core::Severity own = core::default_severity(rule).value_or(severity);
+        if (severity == own) continue;
+        run.assumptions.push_back(
+            severity == core::Severity::off
+                ? fmt::format("{} is switched off by the set-up; a collision is told all the same",
+                              rule)
+                : fmt::format("the set-up has {} told as {}, not as {}", rule,
+                              core::name_of(severity), core::name_of(own)));
+    }
+}
+
+} // namespace
+
+std::vector<AllowedRule> allowed_rules(std::string_view line) {
+    std::vector<AllowedRule> rules;
+    const std::string low = lower(line);
+    for (size_t at = low.find_first_of("(;"); at != std::string::npos;
+         at = low.find_first_of("(;", at + 1)) {
+        std::string_view rest = std::string_view(low).substr(at + 1);
+        if (!take(rest, "feeler") || !take(rest, ":") || !take(rest, "allow")) continue;
+        const std::string_view names = rest.substr(0, rest.find(')'));
+        const auto before = static_cast<size_t>(names.data() - low.data());
+        constexpr const char* letters = "abcdefghijklmnopqrstuvwxyz0123456789-";
+        for (size_t i = names.find_first_of(letters); i != std::string_view::npos;) {
+            const size_t end = std::min(names.find_first_not_of(letters, i), names.size());
+            rules.push_back({std::string(names.substr(i, end - i)), before + i + 1});
+            i = names.find_first_of(letters, end);
+        }
+    }
+    return rules;
+}
+
+void apply_allowed_rules(CheckRun& run, bool comments_count) {
+    say_severities(run);
+    say_doubtful_comments(run, comments_count);
+    std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by what is said of them
+    const auto judge = [&](const core::Finding& finding) {
+        if (!is_allowed(run, finding)) return false;
+        const uint32_t line = run.blocks[core::value_of(*finding.block)].line;
+        const bool collides = comes_of_a_collision(run, finding);
+        if (comments_count && !collides)
+            allowed[finding.rule].push_back(line);
+        else
+            refused[collides ? "a collision is never allowed"
+                             : "the set-up does not say allow_comments = true under [rules]"]
+                .push_back(line);
+        return comments_count && !collides;
+    };
+    std::erase_if(run.findings, judge);
+    for (const auto& [rule, lines] : allowed)
+        run.assumptions.push_back(fmt::format(
+            "comments in the program allow {} in {}: {} left out", rule, lines_text(lines),
+            lines.size() == 1 ? "one finding is" : fmt::format("{} findings are", lines.size())));
+    for (const auto& [why, lines] : refused)
+        run.assumptions.push_back(fmt::format(
+            "a comment that allows a rule does not count in {}: {}", lines_text(lines), why));
+}
+
+namespace {
+
+/// A motion as a number; what differs in end, kind or arc differs in it, but for rare chances.
+uint64_t digest_of(const core::Motion& motion) {
+    uint64_t digest = 14695981039346656037U;
+    const auto add = [&](double value) {
+        digest = (digest ^ std::hash<double>{}(value)) * 1099511628211U;
+    };
+    add(static_cast<double>(motion.kind));
+    for (const auto& place : {motion.from, motion.to})
+        for (const auto& axis : place) add(axis.value_or(1e300));
+    if (motion.arc) add(motion.arc->angle);
+    return digest;
+}
+
+/// A motion, and the line that it comes from.
+struct Step {
+    uint64_t digest;
+    uint32_t line;
+};
+
+std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment environment,
+                           bool block_delete) {
+    environment.block_delete = block_delete;
+    std::vector<Step> steps;
+    visit_events(program, environment, [&](const ProgramEvent& event) {
+        if (const auto* motion = std::get_if<core::Motion>(&event.event))
+            steps.push_back({digest_of(*motion), event.line});
+    });
+    return steps;
+}
+
+} // namespace
+
+void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
+                                   const gcode::Environment& environment) {
+    const auto note = std::find_if(run.findings.begin(), run.findings.end(),
+                                   [](const auto& f) { return f.rule == "block-delete"; });
+    if (note == run.findings.end()) return;
+    const std::vector<Step> off = steps_of(program, environment, false);
+    const std::vector<Step> on = steps_of(program, environment, true);
+    const auto [here, there] =
+        std::mismatch(off.begin(), off.end(), on.begin(), on.end(),
+                      [](const Step& a, const Step& b) { return a.digest == b.digest; });
+    if (here == off.end() && there == on.end()) {
+        note->message = "Blocks with '/' are run here; the path is the same with the switch on.";
+        note->cure.clear();
+        return;
+    }
+    note->severity = core::severity_of(run.setup, note->rule);
+    note->message = fmt::format("blocks with '/' are run here; with the switch on at the machine "
+                                "the path is another one from line {} on",
+                                here != off.end() ? here->line : there->line);
+}
+
+namespace {
+
+/// Regions beyond these are counted, not told one by one.
+constexpr size_t most_findings = 10;
+
+core::Finding finding_of(const core::DeviationRegion& region) {
+    const bool gouge = region.kind == core::Deviation::gouge;
+    core::Finding finding;
+    finding.rule = gouge ? "gouge" : "rest-material";
+    if (region.block) finding.block = core::BlockIndex{*region.block};
+    const std::string where =
+        fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over some {:.1f} mm2",
+                    region.place.x, region.place.y, region.place.z, region.area);
+    finding.message =
+        fmt::format("{} mm {} {}.", core::at_most(region.amount),
+                    gouge ? "of the part are missing" : "more than the part are left", where);
+    if (gouge)
+        finding.cure = region.block
+                           ? "Look at the path, the tool's sizes and the offsets of this block."
+                           : "The raw stock does not hold the part here: a larger stock, or "
+                             "another place for the part.";
+    finding.shortfall = region.amount;
+    return finding;
+}
+
+void add(CheckRun& run, core::Finding finding) {
+    finding.severity = core::severity_of(run.setup, finding.rule);
+    if (finding.severity != core::Severity::off) run.findings.push_back(std::move(finding));
+}
+
+void add_findings(CheckRun& run, core::Deviation kind) {
+    size_t told = 0, more = 0;
+    for (const core::DeviationRegion& region : run.comparison->regions) {
+        if (region.kind != kind) continue;
+        if (told++ < most_findings)
+            add(run, finding_of(region));
+        else
+            ++more;
+    }
+    if (more == 0) return;
+    core::Finding finding;
+    finding.rule = kind == core::Deviation::gouge ? "gouge" : "rest-material";
+    finding.message = fmt::format("{} more regions are off the part by less than that.", more);
+    add(run, finding);
+}
+
+/// Green within the tolerance; from yellow to red where the part is gouged, from cyan to blue where
+/// too much is left, at five times the tolerance and beyond.
+core::Colour colour_of(double deviation, double tolerance) {
+    const double off = std::abs(deviation);
+    if (off <= tolerance) return {80, 170, 80};
+    const double share = std::clamp((off - tolerance) / (4.0 * tolerance), 0.0, 1.0);
+    const auto fading = static_cast<uint8_t>(220.0 * (1.0 - share));
+    if (deviation < 0.0) return {230, fading, 0};
+    return {0, fading, 230};
+}
+
+} // namespace
+
+void check_part(CheckRun& run) {
+    if (!run.setup.part || !run.surface) return;
+    run.comparison = core::compare_with_part(*run.stock, *run.surface, *run.setup.part);
+    add_findings(run, core::Deviation::gouge);
+    add_findings(run, core::Deviation::excess);
+}
+
+std::string facts_of(const core::PartComparison& comparison, double tolerance) {
+    return fmt::format(
+        "missing up to {} mm, left over up to {} mm; {} beyond {} mm; "
+        "measured every {} mm",
+        core::at_most(comparison.largest_gouge), core::at_most(comparison.largest_excess),
+        comparison.regions.size() == 1 ? "1 region"
+                                       : fmt::format("{} regions", comparison.regions.size()),
+        tolerance, core::at_most_figures(comparison.between_samples, 2));
+}
+
+core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path) {
+    const auto refused = [&](const std::string& why) {
+        return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
+    };
+    FEELER_TRY(const MeshForm form, mesh_form(path));
+    if (form != MeshForm::ply) return refused("cannot hold colours: the name must end in .ply");
+    if (!run.comparison)
+        return refused("was not written: the set-up has no [part] to compare with");
+    if (run.surface->mesh.triangles.empty())
+        return refused("was not written: nothing is left of the stock");
+    const double tolerance = run.setup.part->tolerance;
+    std::vector<core::Colour> colours;
+    for (const double deviation : run.comparison->deviations)
+        colours.push_back(colour_of(deviation, tolerance));
+    return core::ply_bytes(
+        run.surface->mesh,
+        {"what is left of the stock beside the part, by feeler; mm, in the frame of the stock",
+         fmt::format("green: within {} mm of the part", tolerance),
+         fmt::format("yellow to red: part missing, {} to {} mm and more", tolerance,
+                     5.0 * tolerance),
+         fmt::format("cyan to blue: left over, {} to {} mm and more", tolerance, 5.0 * tolerance),
+         fmt::format("colours are the worst beside each corner; measured every {} mm",
+                     core::at_most_figures(run.comparison->between_samples, 2))},
+        colours);
+}
+
+} // namespace app

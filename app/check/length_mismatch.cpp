@@ -1,0 +1,207 @@
+#include "app/check/length_mismatch.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace app {
+namespace {
+
+constexpr double wear = 1.0; // mm that a table may differ from a tool and still mean it
+
+bool is_cause(std::string_view rule) {
+    return rule == "missing-length-offset" || rule == "length-offset-cancelled"
+           || rule == "offset-not-tool";
+}
+
+bool has_cause(std::span<const gcode::Warning> warnings) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [](const gcode::Warning& warning) { return is_cause(warning.rule); });
+}
+
+/// The tool and the counted length after the events of a block.
+struct Counted {
+    std::optional<core::ToolNumber> tool;
+    core::LengthOffsetChange offset;
+    bool is_new = false;
+
+    void take(const core::ToolChange& change) {
+        tool = change.tool;
+        is_new = true;
+    }
+    void take(const core::LengthOffsetChange& change) {
+        offset = change;
+        is_new = true;
+    }
+    template <typename Other>
+    void take(const Other&) {}
+};
+
+/// Whether a finding can come of a tool that stands too low.
+bool may_come_of_length(const core::Finding& finding) {
+    if (is_cause(finding.rule) || finding.rule == "spindle-off") return false;
+    if (finding.rule == "tool-change-unsafe") return false;
+    return finding.rule == "over-travel" || !finding.pair[0].empty() || finding.rule == "air-cut"
+           || finding.rule == "offset-implausible";
+}
+
+/// The letter of the axis that a finding about a limit begins with.
+char axis_of(const core::Finding& finding) { return finding.message.substr(0, 1)[0]; }
+
+/// Whether a finding about the program as it is and one about it with the right length are about
+/// the same thing, be it milder.
+bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
+    if (!found.pair[0].empty()) return found.block == left.block && found.pair == left.pair;
+    if (found.rule != left.rule) return false;
+    if (found.rule == "over-travel")
+        return found.block == left.block && axis_of(found) == axis_of(left);
+    return true; // of a rule that looks at many blocks
+}
+
+/// Whether a finding is gone with the right length, as far as that was tried.
+bool is_consequence(const LengthDoubt& doubt, const core::Finding& finding) {
+    if (!finding.block || *finding.block < doubt.first || *finding.block > doubt.last) return false;
+    if (!doubt.cured_to || *finding.block > *doubt.cured_to) return false;
+    return may_come_of_length(finding)
+           && std::none_of(doubt.left.begin(), doubt.left.end(),
+                           [&](const auto& left) { return are_about_the_same(finding, left); });
+}
+
+/// "the stock", "clamp-1 and the stock", "clamp-1, clamp-2 and the stock".
+std::string listed(const std::set<std::string>& names) {
+    std::string text;
+    size_t left = names.size();
+    for (const std::string& name : names) {
+        if (!text.empty()) text += left == 1 ? " and " : ", ";
+        text += name;
+        --left;
+    }
+    return text;
+}
+
+/// Whether the block of a finding that is about one collides.
+bool collides_in(const CheckRun& run, const core::Finding& finding) {
+    const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
+    return block.verdict == core::Verdict::collision;
+}
+
+/// What a wrong length leads to.
+struct Consequences {
+    std::set<core::BlockIndex> blocks;
+    std::set<std::string> bodies;
+    core::Severity worst = core::Severity::off;
+    bool collides = false;
+
+    void take(const CheckRun& run, const core::Finding& finding) {
+        worst = std::max(worst, finding.severity);
+        const bool goes_too_far = finding.rule == "over-travel";
+        if (finding.pair[0].empty() && !goes_too_far) return;
+        blocks.insert(*finding.block);
+        bodies.insert(goes_too_far                 ? "the limit of Z"
+                      : finding.pair[1] == "stock" ? "the stock"
+                                                   : finding.pair[1]);
+        collides = collides || collides_in(run, finding);
+    }
+};
+
+/// "The tool stands 95.000 mm lower than meant and runs into the stock in 14 blocks from ...".
+std::string sentence(const CheckRun& run, const Consequences& all, double too_low) {
+    const auto line = [&](core::BlockIndex block) {
+        return run.blocks[core::value_of(block)].line;
+    };
+    const std::string where =
+        all.blocks.size() == 1
+            ? fmt::format("in line {}", line(*all.blocks.begin()))
+            : fmt::format("in {} blocks from line {} to line {}", all.blocks.size(),
+                          line(*all.blocks.begin()), line(*all.blocks.rbegin()));
+    return fmt::format("The tool stands {:.3f} mm lower than meant and {} {} {}.", too_low,
+                       all.collides ? "runs into" : "comes too near to", listed(all.bodies), where);
+}
+
+std::optional<core::Finding> cause_of(const CheckRun& run, const LengthDoubt& doubt) {
+    for (const core::Finding& finding : run.findings)
+        if (finding.block == doubt.first && is_cause(finding.rule)) return finding;
+    return std::nullopt;
+}
+
+/// Puts the sentence into the finding of the cause; or, where that is milder than what comes of it,
+/// into the first of what comes of it.
+void tell_together(CheckRun& run, const core::Finding& cause, const Consequences& all,
+                   double too_low, std::optional<core::Finding> first) {
+    if (all.blocks.empty()) return;
+    const std::string what = sentence(run, all, too_low);
+    const auto at = std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
+        return other.block == cause.block && other.rule == cause.rule;
+    });
+    if (!first) {
+        at->message += " " + what;
+        at->cure += " Then check again.";
+        return;
+    }
+    first->message += fmt::format(" It comes of the length offset: see {} in line {}. {}",
+                                  cause.rule, run.blocks[core::value_of(*cause.block)].line, what);
+    first->cure = cause.cure + " Then check again.";
+    run.findings.insert(at + 1, *std::move(first));
+}
+
+} // namespace
+
+void watch_length(LengthWatch& watch, const core::Setup& setup, const core::BlockEvents& block,
+                  std::span<const gcode::Warning> warnings, core::SimulatorState& state) {
+    Counted counted{state.tool, state.length_offset};
+    for (const core::Event& event : block.events)
+        std::visit([&](const auto& one) { counted.take(one); }, event);
+    if (counted.is_new) watch.is_open = state.watch.length_in_doubt = false;
+    if (watch.is_open) watch.doubts.back().last = block.block;
+    const bool is_told = has_cause(warnings);
+    if (!is_told && !(counted.is_new && counted.offset.number)) return;
+    const auto tool = counted.tool ? setup.tools.find(*counted.tool) : setup.tools.end();
+    if (tool == setup.tools.end()) return;
+    const double too_low = tool->second.length - counted.offset.length;
+    if (too_low <= wear) return;
+    state.watch.length_in_doubt = true;
+    if (!is_told) return;
+    watch.doubts.push_back({.first = block.block,
+                            .last = block.block,
+                            .too_low = too_low,
+                            .length = tool->second.length,
+                            .number = counted.offset.number,
+                            .cured_to = {},
+                            .left = {}});
+    watch.is_open = true;
+}
+
+void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
+                          core::SimulatorState& state) {
+    const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
+    if (tool == setup.tools.end()) return;
+    const bool is_short = tool->second.length - state.length_offset.length > wear;
+    watch.is_open = watch.is_open && is_short;
+    state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
+}
+
+void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) {
+    for (const LengthDoubt& doubt : doubts) {
+        const auto cause = cause_of(run, doubt);
+        if (!cause) continue;
+        const auto comes_of_it = [&](const core::Finding& finding) {
+            return is_consequence(doubt, finding);
+        };
+        Consequences all;
+        for (const core::Finding& finding : run.findings)
+            if (comes_of_it(finding)) all.take(run, finding);
+        std::optional<core::Finding> first;
+        if (all.worst > cause->severity && !all.blocks.empty())
+            first = *std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
+                return comes_of_it(other) && other.severity == all.worst
+                       && (!all.collides || collides_in(run, other));
+            });
+        std::copy_if(run.findings.begin(), run.findings.end(), std::back_inserter(run.taken_in),
+                     comes_of_it);
+        std::erase_if(run.findings, comes_of_it);
+        tell_together(run, *cause, all, doubt.too_low, std::move(first));
+    }
+}
+
+} // namespace app

@@ -1,0 +1,181 @@
+#include "app/check/offset_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/sim/run/finding_text.h"
+
+namespace app {
+namespace {
+
+constexpr const char* names[] = {"G54", "G55",   "G56",   "G57",  "G58",
+                                 "G59", "G59.1", "G59.2", "G59.3"};
+constexpr double nearly_all = 0.9;  // of the way that is fed
+constexpr double cut_through = 3.0; // mm below the stock that cutting it off may go
+constexpr double in_the_air = 0.5;  // mm above the stock; what just touches it may be meant to
+constexpr double slack = 0.01;      // mm by which a cut along a face may miss it
+
+/// The tip at both ends of a motion, in the frame of the stock.
+struct TipWay {
+    core::Vec3 from = core::Vec3(0.0), to = core::Vec3(0.0);
+    bool upright = true;
+
+    double low() const { return std::min(from.z, to.z); }
+    double high() const { return std::max(from.z, to.z); }
+};
+
+std::optional<TipWay> tip_way(const core::Setup& setup, const core::Motion& motion, double length) {
+    core::AxisValues places[2] = {};
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        if (!setup.machine.axes[i].present) continue;
+        if (!motion.from[i] || !motion.to[i]) return std::nullopt;
+        places[0][i] = *motion.from[i];
+        places[1][i] = *motion.to[i];
+    }
+    const core::Mount tip{setup.machine.spindle, core::translation({0.0, 0.0, -length})};
+    TipWay way;
+    for (int end = 0; end < 2; ++end) {
+        const core::Transform pose =
+            core::target_from_mover(setup.machine, setup.stock_mount, tip, places[end]);
+        (end == 0 ? way.from : way.to) = pose.translation;
+        way.upright = way.upright && pose.rotation[2].z > 0.9999;
+    }
+    return way;
+}
+
+/// Whether the tool passes over or under the stock, or through it.
+bool crosses(const TipWay& way, const core::Aabb& stock, double radius) {
+    for (int axis = 0; axis < 2; ++axis)
+        if (std::max(way.from[axis], way.to[axis]) + radius < stock.min[axis]
+            || std::min(way.from[axis], way.to[axis]) - radius > stock.max[axis])
+            return false;
+    return true;
+}
+
+void add_feed(OffsetUse& use, const TipWay& way, const core::Aabb& stock, double datum,
+              core::BlockIndex block) {
+    const double length = glm::distance(way.from, way.to);
+    use.way += length;
+    if (way.low() >= stock.max.z - slack) {
+        use.above += length;
+        if (!use.above_block) use.above_block = block;
+    } else if (way.high() <= stock.min.z + slack) {
+        use.below += length;
+        use.under = std::min(use.under, stock.min.z - way.high());
+        if (!use.below_block) use.below_block = block;
+    } else {
+        return;
+    }
+    use.lowest = std::min(use.lowest, way.low() - datum);
+    use.highest = std::max(use.highest, way.low() - datum);
+}
+
+core::Finding finding_of(const core::Setup& setup, size_t index, const OffsetUse& use, bool above) {
+    core::Finding finding;
+    finding.rule = "offset-implausible";
+    finding.severity = core::severity_of(setup, finding.rule);
+    finding.block = above ? use.above_block : use.below_block;
+    finding.message = fmt::format(
+        "Under {} the program feeds between Z{:.3f} and Z{:.3f}, the stock lies between Z{:.3f} "
+        "and Z{:.3f}: {} of it.",
+        names[index], use.lowest, use.highest, use.stock_bottom, use.stock_top,
+        above ? "all is cut above the top" : "the cuts lie below the bottom");
+    finding.cure = fmt::format("Look where the program has its datum, at the top or at the bottom "
+                               "of the stock, and set Z of {} there.",
+                               names[index]);
+    return finding;
+}
+
+} // namespace
+
+void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::InterpreterState& at,
+                   const core::BlockEvents& block, const core::SimulatorState& state) {
+    const size_t index = at.modal.offsets.active;
+    const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
+    if (tool == setup.tools.end() || index >= std::size(names)) return;
+    const core::Aabb& stock = state.stock.outer_box;
+    for (const core::Event& event : block.events) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        const auto way = motion ? tip_way(setup, *motion, tool->second.length) : std::nullopt;
+        const double radius = 0.5 * tool->second.description.diameter;
+        if (!way || !crosses(*way, stock, radius)) continue;
+        OffsetUse& use = watch[index];
+        use.is_judged = use.is_judged && way->upright;
+        if (motion->kind == core::MotionKind::rapid) {
+            // Out of a cut that goes through, a rapid may leave upward.
+            const bool leaves = way->from.z < way->to.z;
+            use.rapids_through =
+                use.rapids_through || (!leaves && way->low() < stock.max.z - slack);
+            continue;
+        }
+        if (!core::turns_to_cut(state.spindle, tool->second) || !at.modal.position[2]) continue;
+        const double datum = way->to.z - *at.modal.position[2];
+        use.stock_bottom = stock.min.z - datum;
+        use.stock_top = stock.max.z - datum;
+        add_feed(use, *way, stock, datum, block.block);
+    }
+}
+
+std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const core::Setup& setup) {
+    std::vector<core::Finding> findings;
+    for (const auto& [index, use] : watch) {
+        if (!use.is_judged || use.way <= 0.0) continue;
+        const bool above =
+            use.above >= nearly_all * use.way && use.highest > use.stock_top + in_the_air;
+        const bool below =
+            use.below >= nearly_all * use.way && (use.rapids_through || use.under > cut_through);
+        if (above || below) findings.push_back(finding_of(setup, index, use, above));
+    }
+    std::erase_if(findings, [](const core::Finding& finding) {
+        return finding.severity == core::Severity::off;
+    });
+    return findings;
+}
+
+namespace {
+
+constexpr double inch = 25.4;
+constexpr double doubt = 2.0; // a part and its stock differ by less
+
+/// Whether a ratio of sizes is that of the two units.
+bool is_units_apart(double ratio) { return ratio > inch / doubt && ratio < inch * doubt; }
+
+} // namespace
+
+void watch_units(UnitsWatch& watch, const core::BlockEvents& block) {
+    for (const core::Event& event : block.events) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        if (!motion || motion->kind == core::MotionKind::rapid) continue;
+        for (const core::AxisPosition& end : {motion->from, motion->to}) {
+            if (!end[0] || !end[1] || !end[2]) continue;
+            watch.box.extend(core::Vec3(*end[0], *end[1], *end[2]));
+            if (!watch.first) watch.first = block.block;
+        }
+    }
+}
+
+std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const core::Setup& setup,
+                                                 const core::Aabb& stock, bool unit_said) {
+    if (!watch.first) return std::nullopt;
+    const core::Vec3 path = watch.box.size(), size = stock.size();
+    const double longest = std::max(path.x, path.y), widest = std::max(size.x, size.y);
+    if (!(longest > 0.0 && widest > 0.0)) return std::nullopt;
+    const bool large = is_units_apart(longest / widest);
+    const bool small = !unit_said && is_units_apart(widest / longest);
+    if (!large && !small) return std::nullopt;
+    core::Finding finding;
+    finding.rule = "units-jump";
+    finding.severity = core::severity_of(setup, finding.rule);
+    finding.block = watch.first;
+    finding.message =
+        fmt::format("The program feeds over {:.1f} mm, the stock is {:.1f} mm: about "
+                    "25.4 times as {}, as if mm and inches were taken for each other.",
+                    longest, widest, large ? "much" : "little");
+    finding.cure = "Look at G20 and G21, and at the unit of the set-up.";
+    if (finding.severity == core::Severity::off) return std::nullopt;
+    return finding;
+}
+
+} // namespace app

@@ -1,0 +1,179 @@
+#include "app/check/prepared_check.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/base/sha256.h"
+#include "app/base/stopwatch.h"
+#include "app/check/program_runner.h"
+#include "app/setup/inference/inferred_setup.h"
+#include "core/base/file_reads.h"
+#include "core/motion/timing.h"
+#include "core/sim/clearance.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+/// The dialect that was stated, else what the program looks like.
+core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
+                                              CheckRun& run) {
+    gcode::DialectId chosen{};
+    if (setup.dialect) {
+        chosen = *setup.dialect;
+    } else {
+        const gcode::Recognition seen = gcode::recognise(program);
+        chosen = seen.dialect;
+        run.assumptions.push_back(
+            fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
+    }
+    if (gcode::dialect(chosen).supported) return chosen;
+    return core::fail(core::ErrorCode::unsupported,
+                      fmt::format("the dialect {} is not supported by this version",
+                                  gcode::dialect(chosen).name));
+}
+
+/// What every check of this version takes for granted.
+void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
+    run.assumptions.push_back(fmt::format("arcs are cut and checked as chords within {} mm of them",
+                                          core::at_most(core::chord_error(setup.mesh_size), 4)));
+    for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
+    run.assumptions.push_back(fmt::format(
+        "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
+    if (setup.stock.tolerance == 0.0)
+        run.assumptions.push_back("the raw stock is exactly as large as the set-up says");
+    run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
+                                  ? "rapids run straight"
+                                  : "rapids run as dog-legs, each axis at its own speed");
+}
+
+core::Error stopped_before(const CheckJob& job) {
+    return {core::ErrorCode::io, {}, "the check was stopped before its first block", job.program};
+}
+
+/// What a check takes beside the model of its stock, bytes: measured of programs of 1,000 to
+/// 400,000 blocks, their text, results and findings among it. A loop makes more of a line than
+/// that.
+double memory_beside_model(const gcode::Program& program) {
+    constexpr double of_any = 16e6, of_line = 600.0;
+    return of_any + of_line * static_cast<double>(program.line_starts.size());
+}
+
+/// Whether any block up to the end or the first error changes the tool.
+bool calls_tools(const PreparedCheck& check) {
+    gcode::Interpreter interpreter(*check.library, check.file.environment);
+    gcode::InterpreterState state = gcode::initial_state(check.file.environment);
+    while (true) {
+        const auto block = interpreter.next(state);
+        if (!block || !*block) return false;
+        for (const gcode::CanonicalCommand& command : (*block)->commands)
+            if (std::holds_alternative<gcode::ChangeTool>(command)) return true;
+    }
+}
+
+void take_tool_at_start(PreparedCheck& check) {
+    core::Setup& setup = check.run.setup;
+    if (setup.tool_at_start || setup.tools.size() != 1 || calls_tools(check)) return;
+    setup.tool_at_start = setup.tools.begin()->first;
+    check.run.assumptions.push_back(
+        fmt::format("the program calls no tool: tool {} is in the spindle",
+                    core::value_of(*setup.tool_at_start)));
+}
+
+/// A program, and the digest of the very bytes that it was read from: a pipe gives them only once.
+core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
+    const core::FileListening listening([&](const core::FileLook& look) {
+        if (look.question == core::FileQuestion::content && look.answer)
+            sha256 = sha256_of(*look.answer);
+    });
+    return gcode::read_program(path);
+}
+
+} // namespace
+
+core::Result<PreparedCheck> read_check(const CheckJob& job) {
+    const Stopwatch reading;
+    PreparedCheck check;
+    CheckRun& run = check.run;
+    run.program_file = job.program;
+    auto program = read_once(job.program, run.sha256);
+    if (!program) return tl::unexpected(named(program.error(), job.program));
+    check.program = std::make_unique<const gcode::Program>(*std::move(program));
+    FEELER_TRY(check.file,
+               job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
+    SetupFile& file = check.file;
+    if (job.setup_was_found)
+        run.assumptions.push_back(
+            fmt::format("the set-up is {}, because it stands beside the program", job.setup));
+    if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
+    const auto dialect = choose_dialect(file, *check.program, run);
+    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    run.dialect = file.environment.dialect = *dialect;
+    file.environment.limits.is_stopped = job.is_stopped;
+    check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock);
+    if (const auto whole = complete_setup(file, *check.program); !whole)
+        return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
+    run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
+                           file.assumptions.end());
+    run.setup = std::move(file.setup);
+    if (job.allowance && !job.edits.allowance) run.setup.allowance = job.allowance;
+    run.setup.detail = job.detail;
+    for (const auto& [rule, severity] : job.rules) run.setup.rules[rule] = severity;
+    if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;
+    if (job.memory_limit) run.setup.memory_limit = *job.memory_limit;
+    run.setup.search_limit = core::search_limit_of(run.setup);
+    check.library = std::make_shared<gcode::ProgramLibrary>(
+        *check.program, gcode::dialect(file.environment.dialect), file.environment.search_path);
+    take_tool_at_start(check);
+    // What was looked over so far is not the whole program. From here on the run asks by itself.
+    if (job.is_stopped && job.is_stopped()) return tl::unexpected(stopped_before(job));
+    file.environment.limits.is_stopped = {};
+    add_standing_assumptions(run.setup, run);
+    run.times.read = reading.seconds();
+    return check;
+}
+
+core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
+    const Stopwatch modelling;
+    CheckRun& run = check.run;
+    run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
+    const bool may_begin = !job.before_model || run.memory > run.setup.memory_limit
+                           || job.before_model(run.memory + memory_beside_model(*check.program));
+    if (!may_begin) return tl::unexpected(stopped_before(job));
+    auto state = core::start_of_run(run.setup, check.file.environment.start);
+    if (!state) return tl::unexpected(named(state.error(), job.setup));
+    check.machine = *std::move(state);
+    core::SpindleChange& spindle = check.machine.spindle;
+    spindle.direction = run.setup.spindle_at_start;
+    if (spindle.direction != core::SpindleDirection::stopped) spindle.speed = 1.0;
+    run.times.model = modelling.seconds();
+    return {};
+}
+
+core::Result<PreparedCheck> prepare_check(const CheckJob& job) {
+    FEELER_TRY(PreparedCheck check, read_check(job));
+    if (const auto placed = place_check(job, check); !placed) return tl::unexpected(placed.error());
+    return check;
+}
+
+std::vector<std::string> timing_notes(const core::Machine& machine) {
+    std::string known, unknown;
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        if (!machine.axes[i].present) continue;
+        std::string& names = machine.axes[i].acceleration ? known : unknown;
+        names += (names.empty() ? "" : ", ") + std::string(1, core::axis_letters[i]);
+    }
+    if (known.empty()) return {"feeds and rapids run at full speed: accelerations are not counted"};
+    std::vector<std::string> notes;
+    if (!unknown.empty())
+        notes.push_back(fmt::format(
+            "axes whose acceleration is not stated are at full speed at once: {}", unknown));
+    notes.push_back(fmt::format("corners are passed within {} mm, unless the program says how "
+                                "(G61, G61.1, G64 P); clearances are those of sharp corners",
+                                core::default_blend_tolerance));
+    notes.push_back("changes of tool and spindle take no time beyond coming to rest");
+    return notes;
+}
+
+} // namespace app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/check/check_run.h"
+#include "core/motion/machine.h"
+
+namespace app {
+
+/// A program and its set-up, read, completed and put in place, before the first block. The program
+/// must stay where it is while it is run.
+struct PreparedCheck {
+    std::unique_ptr<const gcode::Program> program;
+    std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms, for all who run it
+    SetupFile file;                                 // its setup is in `run`
+    CheckRun run;                                   // without blocks
+    core::SimulatorState machine;                   // before the first block
+    bool stock_is_stated = true; // false: it was made from the program's own cuts
+};
+
+/// The same without the machine and the model of the stock, which take the longest: place_check
+/// adds them.
+///
+/// Errors: as run_check.
+core::Result<PreparedCheck> read_check(const CheckJob& job);
+
+/// Errors: as run_check.
+core::Result<void> place_check(const CheckJob& job, PreparedCheck& check);
+
+/// Both.
+///
+/// Errors: as run_check.
+core::Result<PreparedCheck> prepare_check(const CheckJob& job);
+
+/// What the times of a run take for granted on this machine, for its assumptions.
+std::vector<std::string> timing_notes(const core::Machine& machine);
+
+} // namespace app

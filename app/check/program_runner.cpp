@@ -1,0 +1,462 @@
+#include "app/check/program_runner.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/check/block_events.h"
+#include "core/sim/run/finding_text.h"
+#include "gcode/exec/execution.h"
+#include "gcode/exec/restart.h"
+#include "gcode/language/error_rules.h"
+
+namespace app {
+
+CuredRun::CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
+                   const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
+                   const LengthDoubt& doubt)
+    : setup_(setup),
+      speed_by_hand_(speed_by_hand),
+      length_(doubt.length),
+      interpreter_(library, environment),
+      place_(before.at),
+      lowering_(before.lowering),
+      state_(before.state),
+      offsets_(before.offsets) {
+    if (!doubt.number) return;
+    gcode::LengthOffset& entry = place_.tables.write().lengths[*doubt.number];
+    entry.length = length_;
+    entry.wear = 0.0;
+}
+
+void CuredRun::put_length_on() {
+    const gcode::Offsets& offsets = place_.modal.offsets;
+    if (offsets.tool[2] == length_) return;
+    gcode::Offsets cured = offsets;
+    cured.tool[2] = lowering_.offsets.tool[2] = length_;
+    gcode::change_offsets(place_.modal, cured);
+}
+
+void CuredRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
+    is_lost_ = is_lost_ || &setup != &setup_;
+    if (is_lost_) return;
+    put_length_on();
+    const auto next = interpreter_.next(place_);
+    is_lost_ = !next || !*next || (*next)->block != real.block || (*next)->line != real.line
+               || (*next)->file != real.file;
+    if (is_lost_) return;
+    const gcode::BlockResult& block = **next;
+    const std::vector<core::Event> events = events_of(setup_, block, lowering_, speed_by_hand_);
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
+    core::BlockResult result = core::run_block(setup_, of_block, state_);
+    is_lost_ = !result.checked;
+    if (is_lost_) return;
+    for (core::Finding& finding : result.findings) found_.push_back(std::move(finding));
+    watch_offsets(offsets_, setup_, place_, of_block, state_);
+    last_ = block.block;
+}
+
+void CuredRun::end(LengthDoubt& doubt) {
+    const auto tool = state_.tool ? setup_.tools.find(*state_.tool) : setup_.tools.end();
+    if (tool != setup_.tools.end())
+        if (auto air = core::end_air(state_.watch.air, tool->second.description.diameter))
+            found_.push_back(*std::move(air));
+    for (core::Finding& finding : implausible_offsets(offsets_, setup_))
+        found_.push_back(std::move(finding));
+    doubt.cured_to = last_;
+    doubt.left = std::move(found_);
+}
+
+namespace {
+
+/// As a sentence: with a capital, but for names, and a full stop.
+std::string as_sentence(std::string text) {
+    const auto is_small = [&](size_t i) {
+        return i < text.size()
+               && (std::islower(static_cast<unsigned char>(text[i])) || text[i] == ' ');
+    };
+    if (is_small(0) && is_small(1))
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!text.empty() && text.back() != '.') text += '.';
+    return text;
+}
+
+} // namespace
+
+core::Error named(core::Error error, const std::string& file) {
+    if (error.file.empty()) error.file = file;
+    return error;
+}
+
+core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
+    core::Finding finding;
+    finding.rule = warning.rule;
+    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
+    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
+    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
+        finding.severity = set->second;
+    finding.message = as_sentence(warning.message);
+    finding.cure = warning.cure;
+    return finding;
+}
+
+std::optional<std::vector<core::Event>>
+first_events(const std::function<void(const BlockVisit&)>& show) {
+    std::optional<std::vector<core::Event>> found;
+    show([&](const gcode::BlockResult&, std::span<const core::Event> events) {
+        found.emplace(events.begin(), events.end());
+        return false;
+    });
+    return found;
+}
+
+std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
+                                                const gcode::Lowering& lowering) const {
+    if (lowering.moved_tilted)
+        return core::Error{core::ErrorCode::unsupported,
+                           {.line = block.line, .column = 1},
+                           "this block moves in a tilted plane or with a tool that is turned, "
+                           "and the machine of the set-up has no rotary axes that could: add "
+                           "them as [[axis]]",
+                           std::string(block.file)};
+    if (!lowering.other_axis) return std::nullopt;
+    return core::Error{core::ErrorCode::unsupported,
+                       {.line = block.line, .column = 1},
+                       fmt::format("this block moves axis {}, which the machine of the set-up "
+                                   "does not have: add an [[axis]] of that name to its machine",
+                                   gcode::axis_letters[*lowering.other_axis]),
+                       std::string(block.file)};
+}
+
+void BlockRunner::remark_on(const gcode::BlockResult& block, const RunPlace& place,
+                            std::vector<core::Finding>& findings) const {
+    for (const gcode::Warning& warning : block.warnings) {
+        // What the set-up states is stated, be it all zero.
+        const auto active = static_cast<int>(place.control.modal.offsets.active);
+        if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
+            continue;
+        core::Finding finding = remark(*setup_, warning);
+        finding.block = block.block;
+        if (finding.severity != core::Severity::off) findings.push_back(std::move(finding));
+    }
+}
+
+core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
+    before_ = place.control;
+    const auto next = interpreter_.next(place.control);
+    if (!next) return tl::unexpected(named(next.error(), check_.program->file));
+    if (!*next) return std::nullopt;
+    const gcode::BlockResult& block = **next;
+    const gcode::Lowering lowering_before = place.lowering;
+    const std::vector<core::Event> events =
+        events_of(*setup_, block, place.lowering, check_.file.speed_by_hand);
+    const auto give_up = [&](core::Error error) {
+        place.control = before_;
+        place.lowering = lowering_before;
+        return tl::unexpected(named(std::move(error), check_.program->file));
+    };
+    if (auto refused = refusal(block, place.lowering)) return give_up(*std::move(refused));
+    auto judged = judge ? judge(events, place.machine) : core::Judgement();
+    if (!judged)
+        return give_up({judged.error().code,
+                        {.line = block.line, .column = 1},
+                        std::move(judged).error().message,
+                        std::string(block.file)});
+    for (const size_t move : fixture_moves_of(*setup_, block)) place.moves_made.insert(move);
+    BlockStep step{{block.block,
+                    block.line,
+                    std::string(block.text),
+                    std::string(block.file),
+                    block.calls,
+                    {}}};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
+                                     judge ? &*judged : nullptr};
+    watch_length(place.lengths, *setup_, of_block, block.warnings, place.machine);
+    if (before_block)
+        before_block(block,
+                     {before_, lowering_before, place.machine, place.offsets, place.lengths});
+    step.checked.result = core::run_block(*setup_, of_block, place.machine);
+    remark_on(block, place, step.findings);
+    for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
+    watch_offsets(place.offsets, *setup_, place.control, of_block, place.machine);
+    watch_units(place.units, of_block);
+    core::add_block(place.clock, of_block, step.timed);
+    return step;
+}
+
+void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
+                              const BlockVisit& visit) {
+    while (true) {
+        const auto next = interpreter_.next(control);
+        if (!next || !*next) return;
+        if (!visit(**next, events_of(*setup_, **next, lowering, check_.file.speed_by_hand))) return;
+    }
+}
+
+namespace {
+
+/// Drops the pairs that no report tells of: a block keeps the one that decides or else is nearest,
+/// and those that do not keep their allowance. Findings are in the run already.
+void keep_what_tells(core::BlockResult& result) {
+    const auto nearer = [](const core::PairClearance& a, const core::PairClearance& b) {
+        return a.lower < b.lower;
+    };
+    size_t told = result.deciding.value_or(0);
+    if (!result.deciding)
+        told =
+            static_cast<size_t>(std::min_element(result.pairs.begin(), result.pairs.end(), nearer)
+                                - result.pairs.begin());
+    std::vector<core::PairClearance> kept;
+    for (size_t i = 0; i < result.pairs.size(); ++i) {
+        if (i != told && result.pairs[i].verdict == core::Verdict::clear) continue;
+        if (result.deciding == i) result.deciding = kept.size();
+        kept.push_back(result.pairs[i]);
+    }
+    kept.shrink_to_fit();
+    result.pairs = std::move(kept);
+    result.findings.clear();
+    result.findings.shrink_to_fit();
+}
+
+/// What follows from what a control stops at with an alarm; empty for what no rule has a name for.
+std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& error) {
+    core::Finding finding;
+    finding.rule = gcode::rule_of(error);
+    if (finding.rule.empty()) return std::nullopt;
+    finding.severity = core::severity_of(setup, finding.rule);
+    if (finding.severity == core::Severity::off) return std::nullopt;
+    finding.message = error.message + ". The control stops here with an alarm.";
+    finding.cure = finding.rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
+                                             : "Look at the end, the centre and the plane of this "
+                                               "arc.";
+    return finding;
+}
+
+} // namespace
+
+ProgramRunner::ProgramRunner(PreparedCheck& check)
+    : check_(check),
+      run_(check.run),
+      runner_(check),
+      place_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
+    runner_.before_block = [this](const gcode::BlockResult& block, const ProgramPlace& before) {
+        follow_cure(block, before);
+    };
+}
+
+void ProgramRunner::let_judge(decltype(BlockRunner::judge) judge) {
+    runner_.judge = std::move(judge);
+    runner_.before_block = {};
+}
+
+core::Result<void> ProgramRunner::start_at(const std::string& line) {
+    const gcode::Dialect& dialect = gcode::dialect(check_.file.environment.dialect);
+    FEELER_TRY(const uint32_t number, gcode::line_meant(*check_.program, dialect, line));
+    FEELER_TRY(const gcode::Restart restart,
+               gcode::restart_at(*check_.library, check_.file.environment, number,
+                                 run_.setup.tool_at_start));
+    place_.control = restart.state;
+    place_.lowering = gcode::initial_lowering(place_.control);
+    run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
+                                           "that was just switched on",
+                                           number));
+    make_moves_before(number);
+    if (restart.missing.empty()) return {};
+    core::Finding finding;
+    finding.rule = "restart-in-the-middle";
+    finding.severity = core::severity_of(run_.setup, finding.rule);
+    finding.block = core::BlockIndex{0};
+    finding.message =
+        fmt::format("Started here, the program cuts without what the lines before have said: "
+                    "{}.",
+                    fmt::join(restart.missing, ", "));
+    finding.cure = "Enter that by hand first, or start at the tool change before.";
+    if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    return {};
+}
+
+void ProgramRunner::make_moves_before(uint32_t line) {
+    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+        bool made = move.line && *move.line < line;
+        for (uint32_t before = 1; move.code && !made && before < line; ++before) {
+            const auto text = check_.program->find_line(before);
+            made = text && *text && has_m_code(**text, *move.code);
+        }
+        if (!made) continue;
+        place_.moves_made.insert(i);
+        place_.machine.fixtures_there[move.from] = false;
+        if (move.to) place_.machine.fixtures_there[*move.to] = true;
+        run_.assumptions.push_back(
+            fmt::format("{} has been moved, as the lines before the start say",
+                        run_.setup.fixtures[move.from].name));
+    }
+}
+
+void ProgramRunner::stop(core::Error error) {
+    const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
+    if (auto finding = alarm(runner_.setup(), error)) {
+        const bool in_main = error.file == check_.program->file;
+        const auto text = check_.program->find_line(error.where.line);
+        run_.blocks.push_back({block,
+                               error.where.line,
+                               in_main && text && *text ? std::string(**text) : std::string(),
+                               in_main ? std::string() : error.file,
+                               {},
+                               {}});
+        finding->block = block;
+        run_.findings.push_back(*std::move(finding));
+    }
+    run_.stopped = std::move(error);
+}
+
+void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPlace& before) {
+    const LengthWatch& lengths = before.lengths;
+    const bool is_first = lengths.is_open && lengths.doubts.back().first == block.block;
+    if (!lengths.is_open || is_first) end_cure();
+    if (is_first) {
+        followed_ = lengths.doubts.back();
+        cured_ =
+            std::make_unique<CuredRun>(*check_.library, check_.file.environment, runner_.setup(),
+                                       check_.file.speed_by_hand, before, lengths.doubts.back());
+    }
+    if (cured_) cured_->follow(block, runner_.setup());
+}
+
+void ProgramRunner::end_cure() {
+    if (!cured_) return;
+    cured_->end(followed_);
+    cures_.push_back(std::move(followed_));
+    cured_.reset();
+}
+
+std::vector<LengthDoubt> ProgramRunner::length_doubts() const {
+    std::vector<LengthDoubt> doubts = place_.lengths.doubts;
+    for (LengthDoubt& doubt : doubts)
+        for (const LengthDoubt& cure : cures_) {
+            if (cure.first != doubt.first) continue;
+            doubt.cured_to = cure.cured_to;
+            doubt.left = cure.left;
+        }
+    return doubts;
+}
+
+void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
+    for (const core::BlockTime& time : timed) {
+        if (core::value_of(time.block) < first_to_time_) continue;
+        core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+        if (on_timed) on_timed(time);
+    }
+}
+
+void ProgramRunner::hold_against_stock() {
+    for (core::Finding& finding : implausible_offsets(place_.offsets, runner_.setup()))
+        run_.findings.push_back(std::move(finding));
+    if (auto jump =
+            units_off_the_stock(place_.units, runner_.setup(), place_.machine.stock.outer_box,
+                                place_.control.modal.unit_said))
+        run_.findings.push_back(*std::move(jump));
+}
+
+void ProgramRunner::tell_of_moves_not_made() {
+    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+        if (place_.moves_made.contains(i)) continue;
+        core::Finding finding;
+        finding.rule = "fixture-move";
+        finding.severity = core::severity_of(run_.setup, finding.rule);
+        // One set-up may serve programs with and without a code; a line is meant for this one.
+        if (!move.line) finding.severity = std::min(finding.severity, core::Severity::note);
+        if (finding.severity == core::Severity::off) continue;
+        finding.message =
+            fmt::format("{} is never moved: the program {}.", run_.setup.fixtures[move.from].name,
+                        move.line ? fmt::format("carries out no block of line {}", *move.line)
+                                  : fmt::format("has no M{}", *move.code));
+        finding.cure = move.line ? "Let the set-up name a line with a block that runs, or an "
+                                   "M code."
+                                 : "Write the M code that stops the program for the move.";
+        run_.findings.push_back(std::move(finding));
+    }
+}
+
+bool ProgramRunner::advance() {
+    auto step = runner_.step(place_);
+    if (!step || !*step) {
+        if (!step) stop(std::move(step).error());
+        end();
+        return false;
+    }
+    CheckedBlock& checked = (**step).checked;
+    run_.verdict = std::max(run_.verdict, checked.result.verdict);
+    run_.removed += checked.result.removed;
+    for (core::Finding& finding : (**step).findings) run_.findings.push_back(std::move(finding));
+    if (runner_.setup().detail != core::Detail::every_pair) keep_what_tells(checked.result);
+    if (checked.file.empty()) last_line_ = checked.line;
+    run_.blocks.push_back(std::move(checked));
+    enter((**step).timed);
+    return true;
+}
+
+CheckProgress ProgramRunner::progress() const {
+    return {run_.blocks.size(),
+            static_cast<double>(last_line_) / static_cast<double>(check_.program->line_count()),
+            run_.findings.size()};
+}
+
+void ProgramRunner::go_back(const RunPlace& place, size_t blocks, size_t findings) {
+    assert(!place.lengths.is_open);
+    place_ = place;
+    first_to_time_ = blocks;
+    cured_.reset();
+    std::erase_if(cures_,
+                  [&](const LengthDoubt& cure) { return core::value_of(cure.first) >= blocks; });
+    run_.blocks.resize(blocks);
+    run_.findings.resize(findings);
+    run_.stopped.reset();
+    run_.verdict = core::Verdict::clear;
+    run_.removed = 0.0;
+    last_line_ = 0;
+    for (const CheckedBlock& block : run_.blocks) {
+        run_.verdict = std::max(run_.verdict, block.result.verdict);
+        run_.removed += block.result.removed;
+        if (block.file.empty()) last_line_ = block.line;
+    }
+}
+
+void ProgramRunner::end() {
+    const gcode::Environment& environment = check_.file.environment;
+    if (!run_.stopped)
+        if (const auto warning = gcode::ending_warning(environment, place_.control))
+            run_.findings.push_back(remark(runner_.setup(), *warning));
+    end_cure();
+    for (core::Finding& finding : core::end_of_run(runner_.setup(), place_.machine))
+        run_.findings.push_back(std::move(finding));
+    if (check_.stock_is_stated) hold_against_stock();
+    if (!run_.stopped) tell_of_moves_not_made();
+    std::vector<core::BlockTime> timed;
+    core::stop_clock(place_.clock, timed);
+    enter(timed);
+    run_.cycle_time = place_.clock.time;
+}
+
+void ProgramRunner::stop_here() {
+    const CheckedBlock& last = run_.blocks.back();
+    run_.stopped = named({core::ErrorCode::io,
+                          {.line = last.line, .column = 1},
+                          "the check was stopped after this block: the rest of the program is "
+                          "not checked",
+                          last.file},
+                         check_.program->file);
+    end();
+}
+
+void ProgramRunner::to_the_end() {
+    while (advance())
+        if (after_block && !after_block(progress())) return stop_here();
+}
+
+} // namespace app

@@ -1,0 +1,77 @@
+#include "app/check/saved_setup.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "app/check/prepared_check.h"
+#include "app/setup/setup_edits.h"
+#include "app/setup/setup_text.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+
+core::Result<std::string> text_of_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string text(std::istreambuf_iterator<char>(file), {});
+    if (file.bad() || !file.is_open())
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::io, {}, "cannot be read any more", path});
+    return text;
+}
+
+bool are_one_file(const fs::path& a, const fs::path& b) {
+    std::error_code ignored; // of one that is not there, and so no other
+    return fs::equivalent(a, b, ignored);
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+tl::unexpected<core::Error> setup_error(const std::string& path, const std::string& why) {
+    return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
+}
+
+} // namespace
+
+core::Result<std::string> setup_file_text(const CheckJob& job) {
+    if (!job.setup.empty()) {
+        FEELER_TRY(const std::string text, text_of_file(job.setup));
+        return rewritten_setup(text, job.edits);
+    }
+    FEELER_TRY(PreparedCheck check, read_check(job));
+    check.file.setup = std::move(check.run.setup);
+    check.file.dialect = check.run.dialect;
+    return setup_text(check.file, fs::path(job.program).filename().string());
+}
+
+std::string proposed_setup_path(const CheckJob& job) {
+    fs::path path(job.setup.empty() ? job.program : job.setup);
+    if (!job.setup.empty())
+        path.replace_filename(path.stem().string() + "-edited.toml");
+    else
+        path.replace_extension(".toml");
+    return path.string();
+}
+
+core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                              const FileWriter& write) {
+    std::error_code failure;
+    if (path.empty()) return setup_error(path, "a file needs a name");
+    if (are_one_file(path, job.program)) return setup_error(path, "is the program itself");
+    if (!may_replace && fs::exists(path, failure)) return setup_error(path, "is there already");
+    FEELER_TRY(const std::string text, setup_file_text(job));
+    const bool is_elsewhere =
+        !job.setup.empty() && !are_one_file(folder_of(path), folder_of(job.setup));
+    if (is_elsewhere && names_relative_files(text))
+        return setup_error(path, fmt::format("the set-up names files beside it: save it in {}",
+                                             folder_of(job.setup).string()));
+    return write(path, text);
+}
+
+} // namespace app

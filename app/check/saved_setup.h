@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "app/check/check_run.h"
+
+namespace app {
+
+/// The set-up of a job as a file that `check --setup` takes: the job's edits in the file that it
+/// names, or all that was inferred and edited, with what is inferred as comments.
+///
+/// Errors: as run_check and rewritten_setup.
+core::Result<std::string> setup_file_text(const CheckJob& job);
+
+/// Where a set-up is saved unless somebody says otherwise: beside the program, or beside the set-up
+/// that was edited.
+std::string proposed_setup_path(const CheckJob& job);
+
+/// Puts a text into a file, whole or not at all.
+using FileWriter =
+    std::function<core::Result<void>(const std::string& path, const std::string& text)>;
+
+/// Saves the set-up of a job.
+///
+/// Errors: as setup_file_text and `write`; invalid_value for a file that is there, unless it may be
+///         replaced, for the program itself, and for a folder from which the files that the set-up
+///         names would not be found.
+core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                              const FileWriter& write);
+
+} // namespace app

@@ -1,0 +1,87 @@
+#include "app/check/stock_file.h"
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "core/geom/mesh.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+tl::unexpected<core::Error> stock_file_error(const std::string& path, const std::string& why) {
+    return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
+}
+
+/// Single precision moves a corner by half of its last digit.
+double rounding_of(const core::Mesh& mesh) {
+    const core::Aabb box = mesh.bounds();
+    const core::Vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return glm::length(farthest) * 0x1p-24;
+}
+
+} // namespace
+
+core::Result<MeshForm> mesh_form(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".stl") return MeshForm::stl;
+    if (ending == ".ply") return MeshForm::ply;
+    if (ending == ".feeler") return MeshForm::record;
+    return stock_file_error(path, "cannot be written: the name must end in .stl, .ply or .feeler");
+}
+
+std::string facts_of(const SavedStock& saved) {
+    if (saved.moves > 0 || saved.triangles == 0)
+        return fmt::format("{}: the raw stock and {} moves; a set-up takes it as [stock] model",
+                           saved.file, saved.moves);
+    std::string text = fmt::format(
+        "{}: {} triangles, within {} mm of the model's points, lines {} mm apart", saved.file,
+        saved.triangles, core::at_most_figures(saved.error, 2), saved.mesh_size);
+    if (saved.lost > 0)
+        text += fmt::format("; {} points on thinner details are missing", saved.lost);
+    return text;
+}
+
+core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_size,
+                                   const std::string& path) {
+    FEELER_TRY(const MeshForm form, mesh_form(path));
+    assert(form != MeshForm::record);
+    if (surface.mesh.triangles.empty())
+        return stock_file_error(path, "was not written: nothing is left of the stock");
+    StockFile file;
+    file.facts = {path, surface.mesh.triangles.size(), surface.error, mesh_size, surface.lost};
+    if (form == MeshForm::stl) file.facts.error += rounding_of(surface.mesh);
+    if (form == MeshForm::stl) {
+        file.bytes = core::stl_bytes(
+            surface.mesh,
+            fmt::format("feeler stock, mm; error {} at points, lines {:.4g} apart",
+                        core::at_most_figures(file.facts.error, 2), file.facts.mesh_size));
+        return file;
+    }
+    std::vector<std::string> comments = {
+        "what is left of the stock, by feeler; mm, in the frame of the stock",
+        fmt::format("error: the points of the model lie within {} mm of this surface",
+                    core::at_most_figures(file.facts.error, 3)),
+        fmt::format("between scan lines {} mm apart the surface is interpolated",
+                    file.facts.mesh_size)};
+    if (surface.lost > 0)
+        comments.push_back(
+            fmt::format("{} points on details thinner than that are missing", surface.lost));
+    file.bytes = core::ply_bytes(surface.mesh, comments);
+    return file;
+}
+
+StockFile stock_record_file(const core::CutModel& stock, const std::string& path) {
+    const core::StockRecord record = core::record_of(stock);
+    StockFile file;
+    file.facts = {.file = path, .mesh_size = record.spacing, .moves = record.sweeps.size()};
+    file.bytes = core::bytes_of(record);
+    return file;
+}
+
+} // namespace app

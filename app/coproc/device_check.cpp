@@ -1,0 +1,453 @@
+#include "app/coproc/device_check.h"
+
+#include <algorithm>
+
+#include "core/dbm/covered_path.h"
+#include "hwsim/body_cover.h"
+#include "hwsim/tool_model.h"
+
+namespace app {
+namespace {
+
+using core::Result;
+using hwsim::SlotNumber;
+
+constexpr double cylinder_tolerance = 0.02; // mm
+
+/// A body of revolution looks the same however it is turned about its axis; others do not.
+bool stands_upright(const core::MovingBody& body, const core::Mat3& orientation) {
+    return body.profile ? orientation[2] == core::Vec3(0.0, 0.0, 1.0)
+                        : orientation == core::Mat3(1.0);
+}
+
+/// The mesh size for a body: the set-up's, or coarser for a large one.
+double spacing_for(const core::Aabb& box, double mesh_size, double most_cells = 200.0) {
+    const core::Vec3 size = box.size();
+    return std::max({mesh_size, size.x / most_cells, size.y / most_cells, size.z / most_cells});
+}
+
+/// Of what is held at an angle, which is modelled again for each way it is held.
+double tilted_spacing(const core::RevolvedProfile& part, double mesh_size) {
+    return spacing_for(bounds(part), mesh_size, 64.0);
+}
+double cube_side(const core::ExactBody& body, double mesh_size) {
+    return spacing_for(bounds(body), mesh_size, 40.0);
+}
+
+} // namespace
+
+double DeviceModels::excess(const core::MovingBody& body, const core::Mat3& orientation) const {
+    const bool is_upright = stands_upright(body, orientation);
+    // A cell's diagonal; half of it that a part is grown by and what a cylinder adds to a post; a
+    // cube's diagonal.
+    if (body.profile)
+        return is_upright ? cylinder_tolerance
+                          : 1.7 * tilted_spacing(*body.profile, setup_->mesh_size);
+    return is_upright ? 1.7 * spacing_for(bounds(*body.body), setup_->mesh_size)
+                      : 1.8 * cube_side(*body.body, setup_->mesh_size);
+}
+
+Result<std::vector<hwsim::Record>> DeviceModels::records_of(const core::MovingBody& body,
+                                                            double shrink,
+                                                            const core::Mat3& orientation) {
+    const bool is_upright = stands_upright(body, orientation);
+    std::vector<hwsim::Record> posts;
+    if (body.profile) {
+        const core::RevolvedProfile part =
+            shrink > 0.0 ? shrunk_around(*body.profile, shrink) : *body.profile;
+        if (part.empty()) return posts;
+        if (is_upright) return hwsim::cylinders_round(part, cylinder_tolerance);
+        FEELER_TRY(posts, hwsim::posts_round(part, tilted_spacing(*body.profile, setup_->mesh_size),
+                                             orientation));
+        return hwsim::cylinders_round(posts);
+    }
+    if (is_upright) {
+        FEELER_TRY(posts, hwsim::posts_round(*body.body,
+                                             spacing_for(bounds(*body.body), setup_->mesh_size)));
+        return hwsim::cylinders_round(posts);
+    }
+    hwsim::CubeCover& cubes = cubes_[body.carried];
+    if (cubes.centres.empty())
+        cubes = hwsim::cubes_round(*body.body, cube_side(*body.body, setup_->mesh_size));
+    return hwsim::cylinders_round(cubes, orientation);
+}
+
+Result<SlotNumber> DeviceModels::of_body(hwsim::Driver& driver, const core::MovingBody& body,
+                                         double shrink, const core::Mat3& orientation) {
+    const Key key{body.kind, body.carried, shrink};
+    const auto known = bodies_.find(key);
+    if (known != bodies_.end()) {
+        const bool is_same = known->second.orientation == orientation
+                             || (stands_upright(body, orientation)
+                                 && stands_upright(body, known->second.orientation));
+        if (is_same) return known->second.slot;
+        hwsim::unload(driver, known->second.slot);
+        bodies_.erase(known);
+    }
+    FEELER_TRY(std::vector<hwsim::Record> records, records_of(body, shrink, orientation));
+    FEELER_TRY(const SlotNumber slot,
+               hwsim::load_records(driver, hwsim::Side::tool, std::move(records)));
+    bodies_[key] = {slot, orientation};
+    return slot;
+}
+
+Result<SlotNumber> DeviceModels::of_fixture(hwsim::Driver& driver, size_t fixture) {
+    if (fixtures_[fixture]) return *fixtures_[fixture];
+    const core::ExactBody& body = setup_->fixtures[fixture].body;
+    FEELER_TRY(std::vector<hwsim::Record> posts,
+               hwsim::posts_round(body, spacing_for(bounds(body), setup_->mesh_size)));
+    FEELER_TRY(fixtures_[fixture],
+               hwsim::load_records(driver, hwsim::Side::work, std::move(posts)));
+    return *fixtures_[fixture];
+}
+
+void DeviceModels::use_tool(hwsim::Driver& driver, const core::ToolAssembly* tool) {
+    if (tool == tool_) return;
+    tool_ = tool;
+    for (auto known = bodies_.begin(); known != bodies_.end();) {
+        const core::PartKind kind = std::get<core::PartKind>(known->first);
+        const bool is_of_tool = kind == core::PartKind::flutes || kind == core::PartKind::shank
+                                || kind == core::PartKind::holder;
+        if (is_of_tool) hwsim::unload(driver, known->second.slot);
+        known = is_of_tool ? bodies_.erase(known) : std::next(known);
+    }
+}
+
+namespace {
+
+using core::Result;
+using hwsim::SlotNumber;
+
+/// Who tells a person why a motion is not asked.
+enum class Teller : uint8_t { permit, run };
+
+void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {
+    permit.is_told = teller == Teller::run && (permit.not_asked.empty() || permit.is_told);
+    permit.not_asked = std::move(why);
+}
+
+hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, SlotNumber work,
+                              double distance) {
+    return {.from = way.places.front(), .to = way.places.back(), .pairs = {{tool, work, distance}}};
+}
+
+/// The pair among those of a block, begun here if it was not there.
+AskedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Setup& setup) {
+    for (AskedPair& known : permit.pairs)
+        if (known.pair == pair) return known;
+    return permit.pairs.emplace_back(AskedPair{pair, allowance_of(setup, pair)});
+}
+
+/// Of several stops the first is told.
+void note_stop(PushedBlock& block, const hwsim::DeviceReport& report, const core::Setup& setup) {
+    BlockPermit& permit = block.permit;
+    const bool is_first = permit.stop == hwsim::Stop::none;
+    if (is_first) permit.stop = report.stop;
+    if (is_first) permit.report = report;
+    if (report.stop_sequence - block.first >= block.asked.size()) return;
+    const core::Pair& refused = block.asked[report.stop_sequence - block.first];
+    if (!permit.pair) permit.pair = refused;
+    entry_of(permit, refused, setup).refused = true;
+}
+
+} // namespace
+
+BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
+                     const core::Setup& setup) {
+    if (report.stop != hwsim::Stop::none) note_stop(block, report, setup);
+    BlockPermit& permit = block.permit;
+    if (permit.stop == hwsim::Stop::none) permit.report = report;
+    permit.permitted = permit.not_asked.empty() && permit.stop == hwsim::Stop::none;
+    return std::move(permit);
+}
+
+Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const core::Setup& setup,
+                                                const core::CutModel& stock, Asking asking) {
+    FEELER_TRY(hwsim::Driver driver, hwsim::open_device(std::move(port)));
+    CoprocessorCheck check(std::move(driver), setup, asking);
+    FEELER_TRY(check.stock_, hwsim::load_stock(check.driver_, stock));
+    return check;
+}
+
+Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
+                                           const core::SimulatorState& before) {
+    PushedBlock pushed{.first = driver_.next_sequence};
+    if (auto updated = hwsim::update_stock(driver_, stock_, before.stock); !updated)
+        return tl::unexpected(std::move(updated).error());
+    At at{.stock = before.stock,
+          .spindle = before.spindle,
+          .corners = before.corners,
+          .position = before.position,
+          .fixtures_there = before.fixtures_there,
+          .centre = before.centre};
+    at.is_cycle = std::count_if(block.begin(), block.end(),
+                                [](const core::Event& event) {
+                                    return std::holds_alternative<core::Motion>(event);
+                                })
+                  > 1;
+    hold(before.tool, at);
+    at.tool_known = before.tool_known;
+    for (const core::Event& event : block)
+        if (auto asked = ask_event(event, at, pushed); !asked)
+            return tl::unexpected(std::move(asked).error());
+    return pushed;
+}
+
+Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
+                                          const core::SimulatorState& before) {
+    FEELER_TRY(PushedBlock pushed, push(block, before));
+    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
+    if (now.stop != hwsim::Stop::none) hwsim::recover(driver_);
+    return answered(std::move(pushed), now, *setup_);
+}
+
+hwsim::Stop CoprocessorCheck::take_answers(PushedBlock& block) {
+    const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
+    if (now.stop != hwsim::Stop::none) {
+        note_stop(block, now, *setup_);
+        hwsim::recover(driver_);
+    }
+    block.asked.clear();
+    block.first = driver_.next_sequence;
+    return now.stop;
+}
+
+Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, PushedBlock& block) {
+    if (const auto* motion = std::get_if<core::Motion>(&event))
+        return ask_motion(*motion, at, block);
+    if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
+    if (const auto* change = std::get_if<core::PathModeChange>(&event))
+        change_mode(at.corners, *change, setup_->machine);
+    if (const auto* change = std::get_if<core::ToolChange>(&event)) {
+        hold(change->tool, at);
+        return ask_rest(at, block);
+    }
+    if (const auto* change = std::get_if<core::FixtureChange>(&event)) {
+        at.fixtures_there[change->fixture] = change->is_there;
+        if (change->is_there) return ask_rest(at, block);
+    }
+    return {};
+}
+
+void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at) const {
+    const auto found = tool ? setup_->tools.find(*tool) : setup_->tools.end();
+    at.tool = found == setup_->tools.end() ? nullptr : &found->second;
+    at.called = tool;
+    at.tool_known = true;
+}
+
+Result<void> CoprocessorCheck::ask_rest(At& at, PushedBlock& block) {
+    const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
+    if (path.legs.empty() || !path.legs[0].start_known) return {};
+    return ask_leg({.places = {path.legs[0].places[0]}}, false, at, block);
+}
+
+Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, PushedBlock& block) {
+    const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
+    at.position = motion.to;
+    at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
+    const bool rapid = motion.kind == core::MotionKind::rapid;
+    // A spindle of which nothing is known is taken to be empty until the program feeds.
+    if (!at.tool && !(!at.called && (at.tool_known || rapid))) {
+        deny(block.permit, "nobody knows the tool that moves", Teller::run);
+        return {};
+    }
+    if (!at.tool && setup_->machine.bodies.empty()) return {};
+    if (path.legs.empty() || !path.legs[0].start_known) {
+        deny(block.permit, "nobody knows where the motion begins", Teller::run);
+        return {};
+    }
+    const bool cutting =
+        !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
+    if (cutting) at.corners.note_cut(at.called);
+    const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
+    at.follows = follows_cuts(at.corners, at.called, rises, rapid && !at.is_cycle);
+    for (const core::Leg& leg : path.legs) {
+        if (auto done = bring_up_to_date(at); !done) return done;
+        if (pushes_centre(leg, cutting, at))
+            deny(block.permit, "the tool's centre, which does not cut, is pushed into the stock",
+                 Teller::run);
+        if (auto walked = walk(leg, cutting, at, block); !walked) return walked;
+    }
+    return {};
+}
+
+bool CoprocessorCheck::pushes_centre(const core::Leg& leg, bool cutting, At& at) const {
+    if (!at.tool || at.tool->description.cuts_at_centre) return false;
+    if (!cutting || !leg.straight) {
+        at.centre = {};
+        return false;
+    }
+    const core::Mount tip{setup_->machine.spindle, core::translation({0.0, 0.0, -at.tool->length})};
+    const core::RelativeLeg way =
+        relative_leg(setup_->machine, setup_->stock_mount, {.mount = tip}, leg);
+    return follow(at.centre, at.tool->description, way, at.stock).has_value();
+}
+
+Result<void> CoprocessorCheck::walk(const core::Leg& leg, bool cutting, At& at, PushedBlock& block,
+                                    int depth) {
+    constexpr int most_halvings = 8;
+    if (depth < most_halvings && is_too_vague(leg, at)) {
+        for (const core::Leg& half : {stretch(leg, 0.0, 0.5), stretch(leg, 0.5, 1.0)})
+            if (auto walked = walk(half, cutting, at, block, depth + 1); !walked) return walked;
+        return {};
+    }
+    if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
+    if (cutting) note_cut(leg, at);
+    return {};
+}
+
+bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
+    if (!leg.straight || leg.places.size() != 2
+        || turn_of(setup_->machine, leg.places[0], leg.places[1]) == 0.0)
+        return false;
+    const double fine = std::max(0.25, setup_->mesh_size); // mm
+    static const core::ToolAssembly nothing;
+    const core::ExactBody stock = core::convex(at.stock.outer_box);
+    for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
+        const auto is_vague = [&](std::optional<size_t> fixture, const core::ExactBody& other) {
+            const Question q = question(body, fixture, leg, at);
+            if (!q.way.turns || q.way.error <= fine) return false;
+            const double keep = q.allowance.distance + q.off_path + 2.0 * setup_->mesh_size
+                                + models_.excess(body, q.way.orientation) + q.way.error;
+            size_t tests = 0;
+            return !std::isfinite(keep)
+                   || distance_over(q.way, body, other, keep, tests).lower < keep;
+        };
+        if (is_vague({}, stock)) return true;
+        for (size_t i = 0; i < setup_->fixtures.size(); ++i)
+            if (at.fixtures_there[i] && !is_exempt(setup_->machine, body, setup_->fixtures[i])
+                && is_vague(i, setup_->fixtures[i].body))
+                return true;
+    }
+    return false;
+}
+
+Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
+                                       PushedBlock& block) {
+    if (!leg.straight) {
+        deny(block.permit, "nobody knows the way of the motion");
+        return {};
+    }
+    static const core::ToolAssembly nothing;
+    models_.use_tool(driver_, at.tool);
+    if (auto done = bring_up_to_date(at); !done) return done;
+    for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
+        const bool cuts = cutting && body.kind == core::PartKind::flutes;
+        const Question stock = question(body, {}, leg, at);
+        if (!cuts && !is_far(stock, core::convex(at.stock.outer_box), block)) {
+            const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
+                                                      : &CoprocessorCheck::ask_pair;
+            if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
+        }
+        for (size_t i = 0; i < setup_->fixtures.size(); ++i) {
+            const core::Fixture& fixture = setup_->fixtures[i];
+            if (!at.fixtures_there[i] || is_exempt(setup_->machine, body, fixture)
+                || (cuts && fixture.expendable))
+                continue;
+            const Question q = question(body, i, leg, at);
+            if (is_far(q, fixture.body, block)) continue;
+            FEELER_TRY(const SlotNumber work, models_.of_fixture(driver_, i));
+            if (auto asked = ask_pair(q, work, block); !asked) return asked;
+        }
+    }
+    return {};
+}
+
+bool CoprocessorCheck::is_far(const Question& q, const core::ExactBody& other,
+                              PushedBlock& block) const {
+    const double limit = setup_->search_limit + q.way.error + q.off_path;
+    if (!q.body.body || !std::isfinite(limit)) return false;
+    size_t tests = 0;
+    if (distance(bounds(q.body, q.way), bounds(other)) < setup_->search_limit + q.off_path
+        && distance_over(q.way, q.body, other, limit, tests).lower < limit)
+        return false;
+    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
+    asked.lower = std::min(asked.lower, setup_->search_limit);
+    return true;
+}
+
+CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& body,
+                                                      std::optional<size_t> fixture,
+                                                      const core::Leg& leg, const At& at) const {
+    const core::Mount& mount = fixture ? setup_->fixtures[*fixture].mount : setup_->stock_mount;
+    const core::Pair pair{body.kind, fixture, body.carried};
+    const core::Allowance allowance = allowance_of(*setup_, pair);
+    const double off = off_way(pair, at.off_motion, at.corners);
+    // Bodies may touch where nothing is known to be farther off than what is contact.
+    const bool may_touch = allowance.distance <= core::resolution
+                           && (off <= contact_depth(allowance) || (!fixture && at.follows));
+    return {body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
+            allowance, off,  may_touch};
+}
+
+Result<void> CoprocessorCheck::bring_up_to_date(At& at) {
+    if (at.to_cut.empty()) return {};
+    for (const core::CutterSweep& sweep : at.to_cut) cut(at.stock, sweep);
+    at.to_cut.clear();
+    if (auto updated = hwsim::update_stock(driver_, stock_, at.stock); !updated)
+        return tl::unexpected(std::move(updated).error());
+    return {};
+}
+
+void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
+    if (!at.tool || at.tool->parts.empty()) return;
+    const core::MovingBody flutes = moving_bodies(*setup_, *at.tool)[0];
+    const core::RelativeLeg way =
+        relative_leg(setup_->machine, setup_->stock_mount, flutes.mover, leg);
+    if (!std::isfinite(way.error)) return; // what it takes is left out: the stock is too large then
+    at.to_cut.push_back({.cutter = std::make_shared<const core::Cutter>(
+                             make_cutter(at.tool->parts[0].profile, way.error)),
+                         .from = way.places.front(),
+                         .to = way.places.back(),
+                         .orientation = way.orientation});
+}
+
+Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, PushedBlock& block) {
+    if (auto measured = measure_pair(q, work, block); !measured) return measured;
+    // Bodies that may touch are held against each other with the one shrunk by what is contact.
+    const double shrink =
+        q.may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
+    FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, shrink, q.way.orientation));
+    const double off = q.way.error + (q.may_touch ? 0.0 : q.off_path);
+    if (const auto pushed =
+            hwsim::push(driver_, segment_of(q.way, tool, work, q.allowance.distance + off));
+        !pushed) {
+        deny(block.permit, pushed.error().message);
+        return {};
+    }
+    block.asked.push_back(q.pair);
+    ++block.permit.segments;
+    if (asking_ == Asking::everything) take_answers(block);
+    return {};
+}
+
+Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
+                                            PushedBlock& block) {
+    if (asking_ != Asking::everything) return {};
+    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
+    FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, 0.0, q.way.orientation));
+    const double off = q.way.error + q.off_path;
+    const double limit = setup_->search_limit + off;
+    const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, limit));
+    if (!found) deny(block.permit, found.error().message);
+    if (!found || take_answers(block) != hwsim::Stop::none) {
+        asked.lower = 0.0;
+        return {};
+    }
+    const double apart = *found ? hwsim::least_clearance(**found) : limit;
+    asked.lower = std::min(asked.lower, std::max(0.0, apart - off));
+    asked.may_overlap = asked.may_overlap || (*found && (*found)->squared == 0);
+    return {};
+}
+
+bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {
+    if (q.body.kind != core::PartKind::flutes || q.way.turns || !q.may_touch) return false;
+    return runs_in_own_cut(at.stock, {.flutes = *q.body.profile,
+                                      .from = q.way.places.front(),
+                                      .to = q.way.places.back(),
+                                      .sideways = 0.5 * contact_depth(q.allowance) - q.way.error,
+                                      .orientation = q.way.orientation});
+}
+
+} // namespace app

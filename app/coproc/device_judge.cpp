@@ -1,0 +1,253 @@
+#include "app/coproc/device_judge.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+using core::Verdict;
+
+Verdict verdict_of(const AskedPair& asked) {
+    if (!asked.refused) return Verdict::clear;
+    return asked.may_overlap || asked.allowance.distance <= core::resolution ? Verdict::collision
+                                                                             : Verdict::violation;
+}
+
+core::PairClearance clearance_of(const AskedPair& asked, double search_limit) {
+    core::PairClearance pair{.pair = asked.pair, .allowance = asked.allowance};
+    pair.lower = std::min(asked.lower, search_limit);
+    pair.verdict = verdict_of(asked);
+    return pair;
+}
+
+std::string nearness(const AskedPair& asked) {
+    if (asked.allowance.distance <= core::resolution) return "run into each other";
+    if (asked.may_overlap)
+        return fmt::format("meet; {} mm must be kept", core::at_most(asked.allowance.distance));
+    return fmt::format("may be as near as {} mm; {} mm must be kept",
+                       core::clearance_at_least(asked.lower),
+                       core::at_most(asked.allowance.distance));
+}
+
+/// The worst pair that was refused; null if none was.
+const AskedPair* worst_of(const BlockPermit& permit) {
+    const AskedPair* worst = nullptr;
+    const auto margin = [](const AskedPair& pair) { return pair.lower - pair.allowance.distance; };
+    for (const AskedPair& pair : permit.pairs) {
+        if (!pair.refused) continue;
+        const bool is_worse =
+            !worst || verdict_of(pair) > verdict_of(*worst)
+            || (verdict_of(pair) == verdict_of(*worst) && margin(pair) < margin(*worst));
+        if (is_worse) worst = &pair;
+    }
+    return worst;
+}
+
+core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
+    core::Finding finding;
+    finding.rule = "refused";
+    if (const AskedPair* worst = worst_of(permit)) {
+        finding.pair = {core::part_name(setup, worst->pair), core::body_name(setup, worst->pair)};
+        finding.shortfall = std::max(0.0, worst->allowance.distance - worst->lower);
+    }
+    if (!permit.not_asked.empty() && permit.stop == hwsim::Stop::none) {
+        finding.message = fmt::format("The coprocessor cannot be asked about this block, so it "
+                                      "gives no permit: {}.",
+                                      permit.not_asked);
+        finding.cure = "Check the block with the exact engine.";
+    } else if (permit.stop == hwsim::Stop::violation && worst_of(permit)) {
+        const bool is_stock = !worst_of(permit)->pair.fixture;
+        finding.message = fmt::format(
+            "The coprocessor refuses this block: its models of the {} and of {} {}.",
+            finding.pair[0], is_stock ? "the stock" : finding.pair[1], nearness(*worst_of(permit)));
+        finding.cure = "The exact engine tells how near they really come, when, and where.";
+    } else {
+        finding.message = fmt::format("The coprocessor refuses this block, because of a fault: {}.",
+                                      hwsim::name_of(permit.stop));
+        finding.cure = "Check the block with the exact engine.";
+    }
+    return finding;
+}
+
+} // namespace
+
+core::Result<DeviceJudge> DeviceJudge::with(const core::Setup& setup, const core::CutModel& stock) {
+    DeviceJudge judge(setup);
+    FEELER_TRY(hwsim::FunctionalDevice device, hwsim::functional_device({}));
+    judge.device_ = std::make_unique<hwsim::FunctionalDevice>(std::move(device));
+    FEELER_TRY(judge.check_, CoprocessorCheck::with(hwsim::port_of(*judge.device_), setup, stock,
+                                                    Asking::everything));
+    return judge;
+}
+
+core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> block,
+                                                 const core::SimulatorState& before) {
+    FEELER_TRY(const BlockPermit permit, check_->ask(block, before));
+    core::Judgement judgement;
+    for (const AskedPair& asked : permit.pairs) {
+        judgement.pairs.push_back(clearance_of(asked, setup_->search_limit));
+        judgement.runs_into_stock =
+            judgement.runs_into_stock
+            || (asked.refused && asked.pair == core::Pair{core::PartKind::flutes});
+    }
+    if (permit.permitted) return judgement;
+    judgement.verdict = Verdict::undecided;
+    judgement.checked = permit.not_asked.empty() || worst_of(permit);
+    if (!permit.is_told || permit.stop != hwsim::Stop::none)
+        judgement.finding = refusal(*setup_, permit);
+    return judgement;
+}
+
+namespace {
+
+using core::Result;
+
+bool is_of(const PushedBlock& pushed, uint32_t sequence) {
+    return sequence - pushed.first < pushed.asked.size();
+}
+
+/// Its last segment; the one before its first where nothing was asked.
+uint32_t last_of(const PushedBlock& pushed) {
+    return pushed.first + static_cast<uint32_t>(pushed.asked.size()) - 1;
+}
+
+} // namespace
+
+Result<std::unique_ptr<DevicePipeline>> DevicePipeline::with(
+    const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
+    std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle) {
+    FEELER_TRY(hwsim::EmulatedDevice device, hwsim::emulated_device(config));
+    std::unique_ptr<DevicePipeline> pipeline(new DevicePipeline(std::move(device), setup));
+    pipeline->on_cycle_ = std::move(on_cycle);
+    hwsim::DevicePort port = hwsim::port_of(
+        pipeline->device_, [&pipeline = *pipeline](const auto& state) { pipeline.note(state); });
+    FEELER_TRY(pipeline->check_, CoprocessorCheck::with(std::move(port), setup, stock));
+    return pipeline;
+}
+
+void DevicePipeline::note(const hwsim::CoprocessorState& state) {
+    const hwsim::Retired& retired = state.retired;
+    if (retired.valid && retired.segment.kind == hwsim::SegmentKind::permit)
+        finished_.push_back(
+            {retired.segment.sequence, state.cycle, retired.answer.counts, totals()});
+    if (!on_cycle_) return;
+    const size_t newest = blocks_.size() + (pending_.empty() ? 0 : pending_.size() - 1);
+    on_cycle_({blocks_.size(), newest}, state);
+}
+
+Result<void> DevicePipeline::push(std::span<const core::Event> block,
+                                  const core::SimulatorState& before) {
+    pending_.push_back({.events = {block.begin(), block.end()}, .before = before});
+    return settle();
+}
+
+Result<void> DevicePipeline::finish() {
+    while (true) {
+        if (auto settled = settle(); !settled) return settled;
+        if (pending_.empty()) return {};
+        check_->report(); // takes some cycles, and tells the device that the host is alive
+    }
+}
+
+Result<void> DevicePipeline::settle() {
+    while (true) {
+        collect();
+        if (device_.state.permits.stopped != hwsim::Stop::none) {
+            take_stop();
+            continue;
+        }
+        const auto next = std::find_if(pending_.begin(), pending_.end(),
+                                       [](const Pending& one) { return !one.is_pushed; });
+        if (next == pending_.end()) return {};
+        if (auto asked = ask(*next); !asked) return asked;
+    }
+}
+
+Result<void> DevicePipeline::ask(Pending& pending) {
+    pending.begin = pending.end = device_.state.cycle;
+    FEELER_TRY(pending.pushed, check_->push(pending.events, pending.before));
+    pending.is_pushed = true;
+    return {};
+}
+
+void DevicePipeline::collect() {
+    size_t taken = 0;
+    for (const Finished& one : finished_) {
+        const auto owner = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
+            return p.is_pushed && is_of(p.pushed, one.sequence);
+        });
+        if (owner == pending_.end()) break; // of a block that is just being pushed
+        owner->block.nodes += one.counts.nodes;
+        owner->block.pairs += one.counts.pair_tests;
+        owner->end = one.cycle;
+        owner->block.after = one.after;
+        ++taken;
+    }
+    finished_.erase(finished_.begin(), finished_.begin() + static_cast<std::ptrdiff_t>(taken));
+    while (!pending_.empty() && is_answered(pending_.front())) close(permitted(pending_.front()));
+}
+
+hwsim::DeviceReport DevicePipeline::permitted(const Pending& pending) {
+    return {.permitted = last_of(pending.pushed)};
+}
+
+bool DevicePipeline::is_answered(const Pending& pending) const {
+    if (!pending.is_pushed) return false;
+    const uint32_t permitted = device_.state.permits.permit_sequence;
+    return static_cast<int32_t>(permitted - last_of(pending.pushed)) >= 0;
+}
+
+void DevicePipeline::close(const hwsim::DeviceReport& report) {
+    Pending& pending = pending_.front();
+    if (pending.pushed.asked.empty() && !blocks_.empty())
+        pending.block.after = blocks_.back().after;
+    pending.block.permit = answered(std::move(pending.pushed), report, *setup_);
+    pending.block.cycles = pending.end - pending.begin;
+    pending.block.interval =
+        pending.end - std::min(pending.end, std::max(last_end_, pending.begin));
+    last_end_ = std::max(last_end_, pending.end);
+    blocks_.push_back(std::move(pending.block));
+    pending_.pop_front();
+}
+
+void DevicePipeline::take_stop() {
+    const hwsim::DeviceReport report = check_->report();
+    const auto refused = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
+        return p.is_pushed && is_of(p.pushed, report.stop_sequence);
+    });
+    // A fault that is nobody's is that of the block which has waited longest.
+    const auto in_front = refused == pending_.end() ? 0 : std::distance(pending_.begin(), refused);
+    for (auto i = 0 * in_front; i < in_front; ++i) close(permitted(pending_.front()));
+    if (!pending_.empty()) {
+        if (report.stop != hwsim::Stop::violation) {
+            pending_.front().end = device_.state.cycle;
+            pending_.front().block.after = totals();
+        }
+        close(report);
+    }
+    for (Pending& again : pending_) {
+        again.is_pushed = false;
+        again.block = {};
+    }
+    finished_.clear();
+    check_->recover();
+}
+
+DeviceTotals DevicePipeline::totals() {
+    DeviceTotals totals;
+    const uint32_t high_word = device_.state.host.high_word; // the driver may be between two reads
+    for (uint32_t i = 0; i < hwsim::counter_count; ++i) {
+        const uint32_t address = hwsim::address_of(static_cast<hwsim::Counter>(i));
+        const uint64_t low = hwsim::read(device_.state, device_.config, address);
+        totals.counters[i] =
+            low | uint64_t{hwsim::read(device_.state, device_.config, address + 4)} << 32;
+    }
+    device_.state.host.high_word = high_word;
+    return totals;
+}
+
+} // namespace app

@@ -1,0 +1,502 @@
+#include "app/debug/debug_session.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/debug/inspected_value.h"
+#include "app/debug/recorded_run.h"
+#include "gcode/exec/restart.h"
+#include "gcode/text/program_text.h"
+
+namespace app {
+
+/// The control alone along a record: what it holds at each place, without moving anything.
+///
+/// Cost: some microseconds a block, far less than running it.
+class ControlWalk {
+public:
+    /// Begins at a place. The run must outlive it, and is not changed meanwhile.
+    ControlWalk(RecordedRun& run, size_t place);
+
+    size_t place() const { return place_; }
+    const gcode::InterpreterState& control() const { return control_; }
+
+    /// Goes on by a block that the record holds.
+    void advance();
+
+private:
+    RecordedRun& run_;
+    size_t place_;
+    gcode::Interpreter interpreter_;
+    gcode::InterpreterState control_;
+};
+
+ControlWalk::ControlWalk(RecordedRun& run, size_t place)
+    : run_(run),
+      place_(place),
+      interpreter_(run.library(), run.check().file.environment),
+      control_(run.place_at(place)->control) {}
+
+void ControlWalk::advance() {
+    [[maybe_unused]] const auto block = interpreter_.next(control_);
+    assert(block && *block);
+    ++place_;
+    const auto& changes = run_.changes();
+    if (std::any_of(changes.begin(), changes.end(),
+                    [this](const MadeChange& made) { return made.block == place_; }))
+        control_ = run_.place_at(place_)->control;
+}
+
+/// One walk of a session, forwards or back, to the first place that something speaks for stopping
+/// at.
+class SessionWalk {
+public:
+    explicit SessionWalk(DebugSession& session);
+
+    /// What is walked to, besides breakpoints and watches: asked of every block on the way, in
+    /// order, with the control before it where `asks_control`.
+    struct Goal {
+        std::function<bool(size_t block, const gcode::InterpreterState* control)> is_reached;
+        bool asks_control = false;
+        StopReason reason = StopReason::found;
+    };
+    Stop forwards(const Goal& goal);
+    Stop backwards(const Goal& goal);
+
+    /// Whether a finding of severity error is about a block, or it is not proven to keep its
+    /// allowances.
+    bool offends(size_t block);
+    bool changes_tool(size_t block) const;
+    /// How many subprograms deep a block is; 0 for one that is not known.
+    size_t depth(size_t block) const;
+
+private:
+    /// The findings about a block.
+    struct Findings {
+        std::vector<std::string> rules;
+        bool has_error = false;
+    };
+
+    bool asks_control(const Goal& goal) const;
+    bool is_interrupted() const;
+    Stop stop_at(size_t place, Stop stop);
+    /// Behind the last block that can be run.
+    Stop stop_at_end(size_t place);
+    /// The breakpoint that a block is at, as far as its conditions go.
+    Breakpoint* breakpoint_at(size_t block, const gcode::InterpreterState* control);
+    /// The same on the way forwards, where it may let so many runs pass.
+    Breakpoint* breakpoint_reached(size_t block, const gcode::InterpreterState* control);
+    bool stops_before(const Breakpoint& breakpoint, size_t block,
+                      const gcode::InterpreterState* control);
+    /// What speaks for stopping before a block, if it is reached going back.
+    std::optional<Stop> found_going_back(size_t block, const gcode::InterpreterState* control,
+                                         const Goal& goal);
+    /// The values of all watches.
+    std::vector<InspectedValue> values(const gcode::InterpreterState* control) const;
+    std::optional<Stop> changed_watch(const std::vector<InspectedValue>& before,
+                                      const std::vector<InspectedValue>& after) const;
+    /// The last place of a stretch, ends included, that a walk back stops at.
+    std::optional<std::pair<size_t, Stop>> last_stop(size_t first, size_t last, const Goal& goal);
+    const Findings* findings_of(size_t block);
+
+    DebugSession& session_;
+    std::map<uint32_t, Findings> findings_ = {};
+    size_t findings_read_ = 0;
+    bool read_complete_ = false;
+};
+
+SessionWalk::SessionWalk(DebugSession& session) : session_(session) {}
+
+size_t SessionWalk::depth(size_t block) const {
+    const auto& blocks = session_.record().blocks;
+    return block < blocks.size() ? blocks[block].calls.size() : 0;
+}
+
+bool SessionWalk::changes_tool(size_t block) const {
+    const CheckRun& record = session_.record();
+    if (block >= session_.run_->last_place()) return false; // it is not run
+    const auto before =
+        block == 0 ? record.setup.tool_at_start : record.blocks[block - 1].result.tool;
+    return record.blocks[block].result.tool != before;
+}
+
+const SessionWalk::Findings* SessionWalk::findings_of(size_t block) {
+    const CheckRun& record = session_.record();
+    // Once the record is complete, its findings are in another order, and some are taken in.
+    if (read_complete_ != session_.is_recorded() || findings_read_ > record.findings.size()) {
+        findings_.clear();
+        findings_read_ = 0;
+        read_complete_ = session_.is_recorded();
+    }
+    const auto read = [&](const core::Finding& finding, bool is_told) {
+        if (!finding.block) return;
+        Findings& of_block = findings_[core::value_of(*finding.block)];
+        of_block.rules.push_back(finding.rule);
+        of_block.has_error |= is_told && finding.severity == core::Severity::error;
+    };
+    if (findings_read_ == 0)
+        for (const core::Finding& finding : record.taken_in) read(finding, false);
+    for (; findings_read_ < record.findings.size(); ++findings_read_)
+        read(record.findings[findings_read_], true);
+    const auto found = findings_.find(static_cast<uint32_t>(block));
+    return found == findings_.end() ? nullptr : &found->second;
+}
+
+bool SessionWalk::offends(size_t block) {
+    const Findings* findings = findings_of(block);
+    return (findings && findings->has_error)
+           || session_.record().blocks[block].result.verdict != core::Verdict::clear;
+}
+
+bool SessionWalk::asks_control(const Goal& goal) const {
+    const auto asks = [](const Breakpoint& point) {
+        return point.enabled && point.condition && point.condition->asks_control();
+    };
+    const auto is_on = [](const Watch& watch) { return watch.enabled; };
+    return goal.asks_control
+           || std::any_of(session_.breakpoints_.begin(), session_.breakpoints_.end(), asks)
+           || std::any_of(session_.watches_.begin(), session_.watches_.end(), is_on);
+}
+
+bool SessionWalk::is_interrupted() const {
+    return session_.is_interrupted && session_.is_interrupted();
+}
+
+bool SessionWalk::stops_before(const Breakpoint& breakpoint, size_t block,
+                               const gcode::InterpreterState* control) {
+    const CheckRun& record = session_.record();
+    const CheckedBlock& at = record.blocks[block];
+    if (!breakpoint.enabled) return false;
+    if (breakpoint.line && (at.line != *breakpoint.line || at.file != breakpoint.file))
+        return false;
+    if (breakpoint.tool && (at.result.tool != breakpoint.tool || !changes_tool(block)))
+        return false;
+    if (!breakpoint.rule.empty()) {
+        const Findings* findings = findings_of(block);
+        const bool any = breakpoint.rule == "finding";
+        if (!findings
+            || (!any
+                && std::find(findings->rules.begin(), findings->rules.end(), breakpoint.rule)
+                       == findings->rules.end()))
+            return false;
+    }
+    return !breakpoint.condition
+           || breakpoint.condition->holds({record, block, control, &session_.environment()});
+}
+
+Breakpoint* SessionWalk::breakpoint_at(size_t block, const gcode::InterpreterState* control) {
+    for (Breakpoint& breakpoint : session_.breakpoints_)
+        if (stops_before(breakpoint, block, control)) return &breakpoint;
+    return nullptr;
+}
+
+Breakpoint* SessionWalk::breakpoint_reached(size_t block, const gcode::InterpreterState* control) {
+    for (Breakpoint& breakpoint : session_.breakpoints_) {
+        if (!stops_before(breakpoint, block, control)) continue;
+        if (breakpoint.ignore == 0) return &breakpoint;
+        --breakpoint.ignore;
+    }
+    return nullptr;
+}
+
+std::vector<InspectedValue> SessionWalk::values(const gcode::InterpreterState* control) const {
+    std::vector<InspectedValue> values;
+    for (const Watch& watch : session_.watches_) {
+        const bool is_asked = watch.enabled && control;
+        values.push_back(is_asked ? value_of(watch.expression, *control, session_.environment())
+                                        .value_or(InspectedValue{})
+                                  : InspectedValue{});
+    }
+    return values;
+}
+
+std::optional<Stop> SessionWalk::changed_watch(const std::vector<InspectedValue>& before,
+                                               const std::vector<InspectedValue>& after) const {
+    for (size_t i = 0; i < before.size(); ++i) {
+        if (before[i] == after[i]) continue;
+        Watch& watch = session_.watches_[i];
+        return Stop{StopReason::watch, watch.id,
+                    fmt::format("{}: {} -> {}", watch.expression, before[i].text, after[i].text)};
+    }
+    return std::nullopt;
+}
+
+Stop SessionWalk::stop_at(size_t place, Stop stop) {
+    [[maybe_unused]] const auto gone = session_.go_to(place);
+    if (stop.reason == StopReason::watch)
+        for (Watch& watch : session_.watches_)
+            if (watch.id == stop.id) ++watch.hits;
+    if (stop.reason != StopReason::breakpoint) return stop;
+    for (Breakpoint& breakpoint : session_.breakpoints_)
+        if (breakpoint.id == stop.id) ++breakpoint.hits;
+    std::erase_if(session_.breakpoints_, [&](const Breakpoint& breakpoint) {
+        return breakpoint.id == stop.id && breakpoint.temporary;
+    });
+    return stop;
+}
+
+Stop SessionWalk::stop_at_end(size_t place) {
+    return stop_at(place, {session_.record().stopped ? StopReason::error : StopReason::end});
+}
+
+Stop SessionWalk::forwards(const Goal& goal) {
+    std::optional<ControlWalk> walk;
+    if (asks_control(goal)) walk.emplace(*session_.run_, session_.at_);
+    std::vector<InspectedValue> before = values(walk ? &walk->control() : nullptr);
+    for (size_t place = session_.at_ + 1;; ++place) {
+        if (!session_.knows(place - 1)) return stop_at_end(place - 1);
+        if (walk) walk->advance();
+        const gcode::InterpreterState* control = walk ? &walk->control() : nullptr;
+        std::vector<InspectedValue> after = values(control);
+        if (const auto changed = changed_watch(before, after)) return stop_at(place, *changed);
+        before = std::move(after);
+        // The block of an alarm is not run, but one may have looked for it.
+        const bool is_run = session_.knows(place);
+        if (place == session_.record().blocks.size()) return stop_at_end(place);
+        if (const Breakpoint* breakpoint = breakpoint_reached(place, control))
+            return stop_at(place, {StopReason::breakpoint, breakpoint->id});
+        if (goal.is_reached && goal.is_reached(place, control))
+            return stop_at(place, {goal.reason});
+        if (!is_run) return stop_at_end(place);
+        if (is_interrupted()) return stop_at(place, {StopReason::interrupted});
+    }
+}
+
+std::optional<Stop> SessionWalk::found_going_back(size_t block,
+                                                  const gcode::InterpreterState* control,
+                                                  const Goal& goal) {
+    if (const Breakpoint* breakpoint = breakpoint_at(block, control))
+        return Stop{StopReason::breakpoint, breakpoint->id};
+    if (goal.is_reached && goal.is_reached(block, control)) return Stop{goal.reason};
+    return std::nullopt;
+}
+
+std::optional<std::pair<size_t, Stop>> SessionWalk::last_stop(size_t first, size_t last,
+                                                              const Goal& goal) {
+    std::optional<std::pair<size_t, Stop>> found;
+    ControlWalk walk(*session_.run_, first);
+    for (size_t place = first; place <= last; ++place) {
+        if (const auto stop = found_going_back(place, &walk.control(), goal))
+            found.emplace(place, *stop);
+        const std::vector<InspectedValue> before = values(&walk.control());
+        walk.advance();
+        if (const auto changed = changed_watch(before, values(&walk.control())))
+            found.emplace(place, *changed);
+    }
+    return found;
+}
+
+Stop SessionWalk::backwards(const Goal& goal) {
+    const bool with_control = asks_control(goal);
+    size_t behind = session_.at_; // places from here on have been looked at
+    while (behind > 0) {
+        const size_t last = behind - 1;
+        // The control can only be followed forwards, so it is followed from the keyframe before.
+        const size_t first = with_control ? session_.run_->keyframes().before(last).blocks : last;
+        if (with_control) {
+            if (const auto found = last_stop(first, last, goal))
+                return stop_at(found->first, found->second);
+        } else if (const auto stop = found_going_back(last, nullptr, goal)) {
+            return stop_at(last, *stop);
+        }
+        behind = first;
+        if (is_interrupted()) return stop_at(behind, {StopReason::interrupted});
+    }
+    return stop_at(0, {StopReason::beginning});
+}
+
+core::Result<std::unique_ptr<DebugSession>> DebugSession::open(const CheckJob& job,
+                                                               size_t memory_budget) {
+    FEELER_TRY(PreparedCheck check, read_check(job));
+    return open(job, std::move(check), memory_budget);
+}
+
+core::Result<std::unique_ptr<DebugSession>>
+DebugSession::open(const CheckJob& job, PreparedCheck check, size_t memory_budget) {
+    FEELER_TRY(auto run, RecordedRun::open(job, std::move(check), memory_budget));
+    return std::unique_ptr<DebugSession>(new DebugSession(std::move(run)));
+}
+
+DebugSession::DebugSession(std::unique_ptr<RecordedRun> run)
+    : run_(std::move(run)), place_(*run_->place_at(0)) {}
+
+bool DebugSession::record_for(double seconds) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    while (run_->advance())
+        if (Clock::now() >= end) return true;
+    return false;
+}
+
+bool DebugSession::knows(size_t block) {
+    while (run_->last_place() <= block && run_->advance()) {
+    }
+    return block < run_->last_place();
+}
+
+core::Result<bool> DebugSession::reaches(size_t block) {
+    while (run_->last_place() <= block && run_->advance())
+        if (is_interrupted && is_interrupted())
+            return core::fail(core::ErrorCode::invalid_value, "interrupted");
+    return block < run_->last_place();
+}
+
+core::Result<void> DebugSession::go_to(size_t place) {
+    if (place == at_) return {};
+    const bool was_known = place <= run_->last_place();
+    if (place > 0 && !knows(place - 1)) return tl::unexpected(run_->place_at(place).error());
+    run_->look_at(place); // the way there leaves keyframes near it
+    // What was recorded just now need not be run again.
+    if (place > at_ && (was_known || place == at_ + 1)) {
+        run_->take_to(place_, at_, place);
+    } else {
+        FEELER_TRY(place_, run_->place_at(place));
+    }
+    at_ = place;
+    return {};
+}
+
+// --- walking -------------------------------------------------------------------------------------
+
+Stop DebugSession::step(size_t blocks) {
+    if (blocks == 0) return {};
+    const size_t wanted = at_ + blocks;
+    return SessionWalk(*this).forwards(
+        {[=](size_t block, auto) { return block == wanted; }, false, StopReason::step});
+}
+
+Stop DebugSession::step_back(size_t blocks) {
+    if (blocks == 0) return {};
+    const size_t wanted = at_ - std::min(at_, blocks);
+    if (at_ < blocks) return SessionWalk(*this).backwards({});
+    return SessionWalk(*this).backwards(
+        {[=](size_t block, auto) { return block == wanted; }, false, StopReason::step});
+}
+
+Stop DebugSession::next(size_t blocks) {
+    if (blocks == 0) return {};
+    SessionWalk walk(*this);
+    const size_t depth = walk.depth(at_);
+    size_t left = blocks;
+    return walk.forwards(
+        {[&](size_t block, auto) { return walk.depth(block) <= depth && --left == 0; }, false,
+         StopReason::step});
+}
+
+Stop DebugSession::next_back(size_t blocks) {
+    if (blocks == 0) return {};
+    SessionWalk walk(*this);
+    const size_t depth = walk.depth(at_);
+    size_t left = blocks;
+    return walk.backwards(
+        {[&](size_t block, auto) { return walk.depth(block) <= depth && --left == 0; }, false,
+         StopReason::step});
+}
+
+Stop DebugSession::finish() {
+    SessionWalk walk(*this);
+    const size_t depth = walk.depth(at_);
+    return walk.forwards(
+        {[&](size_t block, auto) { return walk.depth(block) < depth; }, false, StopReason::step});
+}
+
+Stop DebugSession::go_on() { return SessionWalk(*this).forwards({}); }
+
+Stop DebugSession::go_on_back() { return SessionWalk(*this).backwards({}); }
+
+Stop DebugSession::until(const Condition& condition) {
+    return SessionWalk(*this).forwards(
+        {[&](size_t block, const gcode::InterpreterState* control) {
+             return condition.holds({record(), block, control, &environment()});
+         },
+         condition.asks_control(), StopReason::found});
+}
+
+Stop DebugSession::next_finding() {
+    SessionWalk walk(*this);
+    return walk.forwards({[&](size_t block, auto) { return walk.offends(block); }});
+}
+
+Stop DebugSession::previous_finding() {
+    SessionWalk walk(*this);
+    return walk.backwards({[&](size_t block, auto) { return walk.offends(block); }});
+}
+
+Stop DebugSession::next_tool() {
+    SessionWalk walk(*this);
+    return walk.forwards({[&](size_t block, auto) { return walk.changes_tool(block); }});
+}
+
+Stop DebugSession::previous_tool() {
+    SessionWalk walk(*this);
+    return walk.backwards({[&](size_t block, auto) { return walk.changes_tool(block); }});
+}
+
+// --- where to stop -------------------------------------------------------------------------------
+
+int DebugSession::add(Breakpoint breakpoint) {
+    breakpoint.id = ++last_id_;
+    breakpoints_.push_back(std::move(breakpoint));
+    return last_id_;
+}
+
+core::Result<int> DebugSession::watch(std::string expression) {
+    if (const auto known = value_of(expression, place_.control, environment()); !known)
+        return tl::unexpected(known.error());
+    watches_.push_back({++last_id_, std::move(expression)});
+    return last_id_;
+}
+
+bool DebugSession::remove(int id) {
+    const auto has_id = [id](const auto& kept) { return kept.id == id; };
+    return std::erase_if(breakpoints_, has_id) + std::erase_if(watches_, has_id) > 0;
+}
+
+core::Result<uint32_t> DebugSession::line_with_block(uint32_t line) const {
+    for (uint32_t at = line; at > 0 && at <= program().line_count(); ++at)
+        if (gcode::has_a_block(program().line(at))) return at;
+    return core::fail(
+        core::ErrorCode::invalid_value,
+        fmt::format("nothing is run in line {} or behind it: the program has {} lines", line,
+                    program().line_count()));
+}
+
+core::Result<size_t> DebugSession::find_line(const std::string& line) {
+    const gcode::Dialect& dialect = gcode::dialect(environment().dialect);
+    FEELER_TRY(const uint32_t number, gcode::line_meant(program(), dialect, line));
+    const auto is_there = [&](size_t block) {
+        const CheckedBlock& at = record().blocks[block];
+        return at.line == number && at.file.empty();
+    };
+    for (size_t block = at_;; ++block) {
+        FEELER_TRY(const bool is_run, reaches(block));
+        if (!is_run) break;
+        if (is_there(block)) return block;
+    }
+    for (size_t block = 0; block < at_; ++block)
+        if (is_there(block)) return block;
+    return core::fail(core::ErrorCode::invalid_value,
+                      fmt::format("no block of line {} is run", number));
+}
+
+// --- what if -------------------------------------------------------------------------------------
+
+core::Result<void> DebugSession::change(const WhatIf& change) {
+    if (const auto done = run_->change(at_, change); !done) return done;
+    FEELER_TRY(place_, run_->place_at(at_));
+    return {};
+}
+
+core::Result<void> DebugSession::take_back() {
+    FEELER_TRY(const size_t place, run_->take_back());
+    FEELER_TRY(place_, run_->place_at(place));
+    at_ = place;
+    return {};
+}
+
+} // namespace app

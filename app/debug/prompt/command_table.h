@@ -1,0 +1,92 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/debug/prompt/prompt.h"
+
+namespace app {
+
+/// A command of the prompt.
+struct PromptCommand {
+    std::string_view name;
+    std::string_view aliases; // short forms, with blanks between
+    std::string_view usage;   // what stands behind the name
+    std::string_view help;    // one line; what is behind a newline comes with `help NAME` only
+    core::Result<std::string> (*carry_out)(PromptState& state, const std::string& arguments);
+    bool repeats = false; // an empty line does it again
+};
+
+/// All of them, in the order in which help lists them.
+std::span<const PromptCommand> command_table();
+
+/// The command of a name, an alias or the beginning of one name only.
+///
+/// Errors: syntax, with the nearest name or with all that begin so.
+core::Result<const PromptCommand*> command_named(std::string_view name);
+
+/// The first word of a text and the rest, both without blanks round them.
+std::pair<std::string, std::string> split_word(std::string_view text);
+
+/// All words of a text.
+std::vector<std::string> words_of(std::string_view text);
+
+/// A whole number from 1 on, or 1 where nothing is said.
+///
+/// Errors: invalid_value.
+core::Result<size_t> count_in(const std::string& text);
+
+// The commands, a source for each topic.
+using CommandResult = core::Result<std::string>;
+
+CommandResult run_program(PromptState& state, const std::string& arguments); // walk_commands.cpp
+CommandResult start_program(PromptState& state, const std::string& arguments);
+CommandResult step_on(PromptState& state, const std::string& arguments);
+CommandResult step_over(PromptState& state, const std::string& arguments);
+CommandResult step_back(PromptState& state, const std::string& arguments);
+CommandResult step_back_over(PromptState& state, const std::string& arguments);
+CommandResult finish_subprogram(PromptState& state, const std::string& arguments);
+CommandResult go_on(PromptState& state, const std::string& arguments);
+CommandResult go_on_back(PromptState& state, const std::string& arguments);
+CommandResult go_until(PromptState& state, const std::string& arguments);
+CommandResult go_to(PromptState& state, const std::string& arguments);
+CommandResult go_to_finding(PromptState& state, const std::string& arguments);
+CommandResult go_back_to_finding(PromptState& state, const std::string& arguments);
+CommandResult go_to_tool(PromptState& state, const std::string& arguments);
+CommandResult go_back_to_tool(PromptState& state, const std::string& arguments);
+
+CommandResult set_breakpoint(PromptState& state, const std::string& arguments); // break_commands
+CommandResult set_temporary(PromptState& state, const std::string& arguments);
+CommandResult watch_value(PromptState& state, const std::string& arguments);
+CommandResult delete_breakpoint(PromptState& state, const std::string& arguments);
+CommandResult disable_breakpoint(PromptState& state, const std::string& arguments);
+CommandResult enable_breakpoint(PromptState& state, const std::string& arguments);
+CommandResult ignore_breakpoint(PromptState& state, const std::string& arguments);
+CommandResult change_condition(PromptState& state, const std::string& arguments);
+CommandResult show_breakpoints(PromptState& state, const std::string& arguments);
+CommandResult show_watches(PromptState& state, const std::string& arguments);
+
+CommandResult print_value(PromptState& state, const std::string& arguments); // value_commands.cpp
+CommandResult display_value(PromptState& state, const std::string& arguments);
+CommandResult undisplay_value(PromptState& state, const std::string& arguments);
+CommandResult show_displays(PromptState& state, const std::string& arguments);
+
+CommandResult list_lines(PromptState& state, const std::string& arguments); // list_command.cpp
+
+CommandResult show_info(PromptState& state, const std::string& arguments); // info_command.cpp
+CommandResult show_findings(PromptState& state, const std::string& arguments);
+CommandResult show_calls(PromptState& state, const std::string& arguments);
+
+CommandResult change_something(PromptState& state, const std::string& arguments); // set_command
+CommandResult take_back(PromptState& state, const std::string& arguments);
+
+CommandResult show_help(PromptState& state, const std::string& arguments); // command_table.cpp
+CommandResult quit(PromptState& state, const std::string& arguments);
+
+/// The words behind `info` and `set`.
+std::vector<std::string> info_topics();
+std::vector<std::string> set_topics();
+
+} // namespace app

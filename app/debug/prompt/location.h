@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "app/debug/prompt/prompt.h"
+
+namespace app {
+
+/// A line of the main program or of a subprogram's file.
+struct Location {
+    uint32_t line = 0;
+    std::string file = {}; // as CheckedBlock::file; empty: main program
+};
+
+/// Whether a text is written as a place: 23, N210, sub.nc:23, or a block of Klartext.
+bool is_location(const std::string& text);
+
+/// The line that a text means.
+///
+/// Errors: there is no such line, or no such file is known.
+core::Result<Location> location_in(PromptState& state, const std::string& text);
+
+/// The first place before a block of that line: from the place on, else from the beginning.
+///
+/// Errors: no block of it is run.
+core::Result<size_t> place_of(PromptState& state, const Location& location);
+
+/// The text of a program's file: the main program, or a subprogram's that is read once.
+///
+/// Errors: io.
+core::Result<const gcode::Program*> program_of(PromptState& state, const std::string& file);
+
+/// A whole number.
+core::Result<size_t> number_in(const std::string& text);
+
+} // namespace app

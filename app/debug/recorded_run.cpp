@@ -1,0 +1,338 @@
+#include "app/debug/recorded_run.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/base/stopwatch.h"
+#include "app/check/conclusion.h"
+
+namespace app {
+
+size_t KeptBoxes::bytes_apart(const KeptBoxes& other) const {
+    size_t bytes = boxes.bytes_apart(other.boxes) + blocks.bytes_apart(other.blocks)
+                   + gaps.bytes_apart(other.gaps) + block_gaps.bytes_apart(other.block_gaps)
+                   + rest.stale.size() * sizeof(uint16_t)
+                   + rest.stale_tiles.size() * sizeof(uint32_t);
+    for (const core::TileLevel& level : rest.above)
+        bytes += level.boxes.size() * sizeof(core::Aabb);
+    return bytes;
+}
+
+KeptBoxes kept(core::TileBoxes boxes, const KeptBoxes& like) {
+    KeptBoxes kept;
+    kept.boxes = {std::exchange(boxes.boxes, {}), like.boxes};
+    kept.blocks = {std::exchange(boxes.blocks, {}), like.blocks};
+    kept.gaps = {std::exchange(boxes.gaps, {}), like.gaps};
+    kept.block_gaps = {std::exchange(boxes.block_gaps, {}), like.block_gaps};
+    kept.rest = std::move(boxes);
+    return kept;
+}
+
+core::TileBoxes restored(const KeptBoxes& kept) {
+    core::TileBoxes boxes = kept.rest;
+    boxes.boxes = kept.boxes.whole();
+    boxes.blocks = kept.blocks.whole();
+    boxes.gaps = kept.gaps.whole();
+    boxes.block_gaps = kept.block_gaps.whole();
+    return boxes;
+}
+
+namespace {
+
+constexpr double near_spacing = 0.012; // seconds of work between keyframes, where one looks
+constexpr double far_spacing = 0.04;   // elsewhere, as far as there is memory
+constexpr double longest_wait = 0.5;   // that a jump may take
+
+/// How long a wait may be for places that are so many seconds of work away from where one looks.
+double bearable_wait(double away) { return std::clamp(away / 8.0, 0.02, longest_wait); }
+
+size_t bytes_of(const core::ScanTile& tile) {
+    return sizeof(tile) + tile.layers.capacity() * sizeof(core::ScanTile::Layer)
+           + tile.marks.capacity() * sizeof(core::ScanTile::Marks);
+}
+
+size_t bytes_apart(const core::ScanLines& lines, const core::ScanLines& other) {
+    size_t bytes = lines.tile_count() * sizeof(std::shared_ptr<core::ScanTile>);
+    const bool comparable = lines.tile_count() == other.tile_count();
+    for (size_t i = 0; i < lines.tile_count(); ++i)
+        if (lines.tile(i) && (!comparable || lines.tile(i) != other.tile(i)))
+            bytes += bytes_of(*lines.tile(i));
+    return bytes;
+}
+
+/// Logs in chunks: their pointers, and the last chunk, which each copy may have to itself.
+size_t bytes_of_logs(const core::CutModel& stock) {
+    constexpr size_t pointer = sizeof(std::shared_ptr<void>);
+    constexpr size_t per_tile = 64; // a list of chunks, and its one chunk's pointer
+    return 3 * pointer * (stock.log.size() / 64 + 1) + stock.history.size() * per_tile;
+}
+
+/// The boxes of a stock: those of its three families of lines, and of its columns.
+core::TileBoxes& boxes_of(core::CutModel& stock, size_t i) {
+    return i < 3 ? stock.line_boxes[i] : stock.column_boxes;
+}
+
+/// Bytes of a keyframe that it does not share with another one.
+size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
+    constexpr size_t of_the_rest = 16384; // of the control, the clock and the rules, about
+    const core::CutModel& stock = frame.place.machine.stock;
+    const core::CutModel& other_stock = other.place.machine.stock;
+    size_t bytes =
+        of_the_rest + bytes_of_logs(stock) + bytes_apart(stock.columns, other_stock.columns);
+    for (size_t axis = 0; axis < 3; ++axis)
+        bytes += bytes_apart(stock.lines.families[axis], other_stock.lines.families[axis]);
+    for (size_t i = 0; i < frame.boxes.size(); ++i)
+        bytes += frame.boxes[i].bytes_apart(other.boxes[i]);
+    return bytes;
+}
+
+} // namespace
+
+RunPlace Keyframe::restored() const {
+    RunPlace whole = place;
+    for (size_t i = 0; i < boxes.size(); ++i)
+        boxes_of(whole.machine.stock, i) = app::restored(boxes[i]);
+    return whole;
+}
+
+size_t Keyframes::index_after(size_t blocks) const {
+    const auto is_before = [](size_t wanted, const Keyframe& frame) {
+        return wanted < frame.blocks;
+    };
+    const auto after = std::upper_bound(frames_.begin(), frames_.end(), blocks, is_before);
+    return static_cast<size_t>(after - frames_.begin());
+}
+
+bool Keyframes::wants(size_t blocks, double seconds) const {
+    if (frames_.empty()) return true;
+    const Keyframe& last = before(blocks);
+    if (last.blocks == blocks) return false;
+    const double spacing = std::abs(seconds - focus_) < 1.0 ? near_spacing : far_spacing;
+    return seconds - last.seconds >= spacing;
+}
+
+const Keyframe& Keyframes::before(size_t blocks) const {
+    const size_t after = index_after(blocks);
+    assert(after > 0);
+    return frames_[after - 1];
+}
+
+void Keyframes::note(size_t blocks, double seconds, const RunPlace& place) {
+    if (!wants(blocks, seconds)) return;
+    const size_t after = index_after(blocks);
+    static const Keyframe nothing;
+    const Keyframe& before = after == 0 ? nothing : frames_[after - 1];
+    Keyframe frame{blocks, seconds, place, {}, 0};
+    for (size_t i = 0; i < frame.boxes.size(); ++i)
+        frame.boxes[i] =
+            kept(std::exchange(boxes_of(frame.place.machine.stock, i), {}), before.boxes[i]);
+    frame.bytes = bytes_apart(frame, before);
+    memory_ += frame.bytes;
+    frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(after), std::move(frame));
+    thin_out();
+}
+
+void Keyframes::drop_after(size_t blocks) {
+    while (frames_.size() > 1 && frames_.back().blocks > blocks) remove(frames_.size() - 1);
+}
+
+double Keyframes::worth(size_t index) const {
+    const double begin = frames_[index - 1].seconds;
+    const bool is_last = index + 1 == frames_.size();
+    const double gap = (is_last ? frames_[index].seconds : frames_[index + 1].seconds) - begin;
+    return gap / bearable_wait(std::abs(frames_[index].seconds - focus_));
+}
+
+void Keyframes::remove(size_t index) {
+    memory_ -= frames_[index].bytes;
+    if (index + 1 < frames_.size()) {
+        Keyframe& next = frames_[index + 1];
+        memory_ -= next.bytes;
+        next.bytes = bytes_apart(next, frames_[index - 1]);
+        memory_ += next.bytes;
+    }
+    frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void Keyframes::thin_out() {
+    while (memory_ > budget_ && frames_.size() > 2) {
+        size_t least = 1;
+        for (size_t i = 2; i < frames_.size(); ++i)
+            if (worth(i) < worth(least)) least = i;
+        remove(least);
+    }
+}
+
+core::Result<std::unique_ptr<RecordedRun>>
+RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget) {
+    if (const auto placed = place_check(job, check); !placed) return tl::unexpected(placed.error());
+    std::unique_ptr<RecordedRun> run(new RecordedRun(std::move(check), memory_budget));
+    run->needs_surface_ = job.needs_surface;
+    run->after_block_ = job.after_block;
+    if (!job.start_line.empty())
+        if (const auto begun = run->runner_->start_at(job.start_line); !begun)
+            return tl::unexpected(named(begun.error(), job.program));
+    run->marks_[0].findings = run->record().findings.size();
+    run->keyframes_.note(0, 0.0, run->runner_->place());
+    run->told_.assumptions = run->record().assumptions;
+    return run;
+}
+
+RecordedRun::RecordedRun(PreparedCheck check, size_t memory_budget)
+    : check_(std::move(check)),
+      runner_(std::make_unique<ProgramRunner>(check_)),
+      replayer_(check_),
+      keyframes_(memory_budget) {}
+
+bool RecordedRun::advance() {
+    if (is_complete_) return false;
+    const Stopwatch work;
+    if (!runner_->advance()) {
+        finish();
+        return false;
+    }
+    const double seconds = marks_.back().seconds + work.seconds();
+    marks_.push_back({seconds, record().findings.size()});
+    keyframes_.note(last_place(), seconds, runner_->place());
+    if (!after_block_ || after_block_(runner_->progress())) return true;
+    runner_->stop_here();
+    finish();
+    return false;
+}
+
+void RecordedRun::finish() {
+    is_complete_ = true;
+    told_.findings = record().findings;
+    for (const MadeChange& made : changes_)
+        check_.run.assumptions.push_back(
+            fmt::format("from block {} on, {}", made.block, text_of(made.change)));
+    check_.run.times.check = marks_.back().seconds;
+    conclude(check_, runner_->place().machine, runner_->length_doubts(), needs_surface_);
+}
+
+const core::Setup& RecordedRun::setup_at(size_t block) const {
+    for (size_t i = changes_.size(); i-- > 0;)
+        if (changes_[i].block <= block) return *setups_[i];
+    return check_.run.setup;
+}
+
+void RecordedRun::change_at(size_t place, RunPlace& state) {
+    for (size_t i = 0; i < changes_.size(); ++i) {
+        if (changes_[i].block != place) continue;
+        core::Setup scratch = i == 0 ? check_.run.setup : *setups_[i - 1]; // as it was for this one
+        [[maybe_unused]] const auto done = apply(changes_[i].change, scratch, state);
+        assert(done);
+    }
+}
+
+core::Result<RunPlace> RecordedRun::place_at(size_t place) {
+    while (last_place() < place && advance()) {
+    }
+    if (place > last_place())
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("the program ends after {} blocks", last_place()));
+    // Behind the end the runner has closed what was open.
+    if (place == last_place() && !is_complete_) return runner_->place();
+    return replayed(place);
+}
+
+RunPlace RecordedRun::replayed(size_t place) {
+    const Keyframe& frame = keyframes_.before(place);
+    RunPlace state = frame.restored();
+    if (frame.blocks == 0) change_at(0, state); // it is the program's start, whatever was changed
+    take_to(state, frame.blocks, place);
+    return state;
+}
+
+void RecordedRun::take_to(RunPlace& state, size_t from, size_t place) {
+    assert(from <= place && place <= last_place());
+    if (const Keyframe& frame = keyframes_.before(place); frame.blocks > from) {
+        state = frame.restored();
+        from = frame.blocks;
+    }
+    while (from < place) {
+        replayer_.use(setup_at(from));
+        [[maybe_unused]] const auto step = replayer_.step(state);
+        assert(step && *step);
+        ++from;
+        change_at(from, state);
+        keyframes_.note(from, marks_[from].seconds, state);
+    }
+}
+
+size_t RecordedRun::restart_place(size_t place) {
+    // Blocks whose time was still open, and those of a length doubt, are run again whole.
+    while (true) {
+        const RunPlace state = replayed(place);
+        size_t first = std::min<size_t>(place, state.clock.first_open);
+        if (state.lengths.is_open)
+            first = std::min<size_t>(first, core::value_of(state.lengths.doubts.back().first));
+        const bool is_open = first < place && replayed(first).lengths.is_open;
+        if (!is_open) return first;
+        place = first;
+    }
+}
+
+void RecordedRun::record_again_from(size_t place) {
+    const size_t first = restart_place(place);
+    const RunPlace state = replayed(first); // the runner's own may hold what is taken back
+    CheckRun& run = check_.run;
+    if (is_complete_) {
+        run.findings = told_.findings;
+        run.assumptions = told_.assumptions;
+        run.taken_in.clear();
+        run.comparison.reset();
+        run.surface.reset();
+        run.stock.reset();
+    }
+    is_complete_ = false;
+    runner_->go_back(state, first, marks_[first].findings);
+    for (size_t block = first; block < place; ++block) {
+        runner_->use(setup_at(block));
+        if (block > first) change_at(block, runner_->place_to_change());
+        [[maybe_unused]] const bool done = runner_->advance();
+        assert(done);
+    }
+    if (first < place) change_at(place, runner_->place_to_change());
+    runner_->use(setup_at(place));
+    marks_.resize(place + 1);
+}
+
+void RecordedRun::forget_from(size_t place) {
+    keyframes_.drop_after(place == 0 ? 0 : place - 1);
+    while (!changes_.empty() && changes_.back().block > place) {
+        changes_.pop_back();
+        setups_.pop_back();
+    }
+}
+
+core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
+    FEELER_TRY(RunPlace state, place_at(place));
+    auto setup = std::make_unique<core::Setup>(setup_at(place));
+    if (const auto done = apply(change, *setup, state); !done) return done;
+    forget_from(place);
+    record_again_from(place);
+    changes_.push_back({place, change});
+    setups_.push_back(std::move(setup));
+    runner_->place_to_change() = std::move(state);
+    runner_->use(*setups_.back());
+    return {};
+}
+
+core::Result<size_t> RecordedRun::take_back() {
+    if (changes_.empty())
+        return core::fail(core::ErrorCode::invalid_value, "nothing has been changed");
+    const size_t place = changes_.back().block;
+    const auto setup = std::move(setups_.back()); // the runner looks at it until it went back
+    changes_.pop_back();
+    setups_.pop_back();
+    forget_from(place);
+    record_again_from(place);
+    return place;
+}
+
+} // namespace app

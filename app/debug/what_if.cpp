@@ -1,0 +1,303 @@
+#include "app/debug/what_if.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/debug/inspected_value.h"
+#include "core/base/text.h"
+#include "core/sim/clearance.h"
+#include "core/sim/tool_assembly.h"
+#include "gcode/exec/execution.h"
+
+namespace app {
+namespace {
+
+using core::ErrorCode;
+
+/// Bounds that hold from block to block hold for the bodies that were there. What the flutes have
+/// cut of fixtures stays.
+void forget_bounds(core::SimulatorState& machine) {
+    core::CheckMemory& memory = machine.memory;
+    memory.bounds.clear();
+    memory.deciding.reset();
+    memory.margin = 0.0;
+    memory.hints = {};
+    memory.cutters.clear();
+}
+
+std::string numbers_of(const auto& map) {
+    std::string text;
+    for (const auto& [number, entry] : map)
+        text += fmt::format("{}T{}", text.empty() ? "" : ", ", core::value_of(number));
+    return text;
+}
+
+core::Result<void> check_number(double value, const std::string& of) {
+    if (std::isfinite(value)) return {};
+    return core::fail(ErrorCode::invalid_value, fmt::format("{}: this is no number", of));
+}
+
+core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunPlace& place) {
+    const auto found = setup.tools.find(change.tool);
+    if (found == setup.tools.end())
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("the set-up has no tool T{}{}", core::value_of(change.tool),
+                                      setup.tools.empty() ? "; it has none at all"
+                                                          : "; it has " + numbers_of(setup.tools)));
+    FEELER_TRY(core::ToolAssembly tool, stretched(found->second, change.length));
+    found->second = std::move(tool);
+    // How much higher its holder would have to stand was found for the tool as it was.
+    place.machine.watch.reaches.erase(change.tool);
+    forget_bounds(place.machine);
+    if (place.machine.tool == change.tool)
+        watch_changed_length(place.lengths, setup, place.machine);
+    return {};
+}
+
+/// The control must stand where the machine does.
+core::Result<void> check_that_nothing_waits(const RunPlace& place) {
+    if (place.control.contour.is_idle()) return {};
+    return core::fail(ErrorCode::unsupported,
+                      "the control has read ahead here, for cutter radius compensation or a "
+                      "corner: change the offset before G41 or G42, or after G40");
+}
+
+/// Lets other offsets be in effect. The machine stays.
+void use(const gcode::Offsets& offsets, RunPlace& place) {
+    gcode::change_offsets(place.control.modal, offsets);
+    place.lowering.offsets.work = offsets.work;
+    place.lowering.offsets.tool = offsets.tool;
+}
+
+/// The axis that the length which is on counts along: Z behind G43, else the tool's when it was
+/// called.
+size_t length_axis(const gcode::ModalState& modal) {
+    if (modal.length_sign != 0.0) return 2;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (modal.offsets.tool[axis] != 0.0) return axis;
+    return gcode::axes_of(modal.plane).normal;
+}
+
+/// The offsets with another length in place of the one that is on. What was added to it stays.
+gcode::Offsets with_length(const gcode::ModalState& modal, double before, double length) {
+    gcode::Offsets offsets = modal.offsets;
+    const double sign = modal.length_sign != 0.0 ? modal.length_sign : 1.0;
+    double& counted = offsets.tool[length_axis(modal)];
+    counted = counted == sign * before ? sign * length : counted + sign * (length - before);
+    return offsets;
+}
+
+core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunPlace& place) {
+    const int number = core::value_of(change.number);
+    if (number <= 0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("there is no length offset H{}: they count from 1", number));
+    if (auto wrong = check_number(change.length, fmt::format("H{}", number)); !wrong) return wrong;
+    const gcode::ModalState& modal = place.control.modal;
+    const bool is_on = modal.length_number == change.number;
+    if (is_on)
+        if (auto waits = check_that_nothing_waits(place); !waits) return waits;
+    const double before = gcode::length_under(*place.control.tables, number).value_or(0.0);
+    gcode::LengthOffset& entry = place.control.tables.write().lengths[change.number];
+    entry.length = change.length;
+    entry.wear = 0.0;
+    if (!is_on) return {};
+    const gcode::Offsets offsets = with_length(modal, before, change.length);
+    core::LengthOffsetChange& counted = place.machine.length_offset;
+    if (counted.number == change.number) counted.length += change.length - before;
+    use(offsets, place);
+    watch_changed_length(place.lengths, setup, place.machine);
+    return {};
+}
+
+core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunPlace& place) {
+    if (change.index >= gcode::work_offset_count)
+        return core::fail(ErrorCode::invalid_value, "there is no such work offset");
+    if (change.axis >= gcode::axis_count || !setup.machine.axes[change.axis].present)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the machine of the set-up has no such axis",
+                                      change.axis < gcode::axis_count
+                                          ? std::string(1, gcode::axis_letters[change.axis])
+                                          : fmt::format("axis {}", change.axis)));
+    if (auto wrong = check_number(change.origin, offset_name(change.index)); !wrong) return wrong;
+    const bool is_on = place.control.modal.offsets.active == change.index;
+    if (is_on)
+        if (auto waits = check_that_nothing_waits(place); !waits) return waits;
+    gcode::Tables& tables = place.control.tables.write();
+    gcode::writable_work_offset(tables, change.index).origin[change.axis] = change.origin;
+    // How high its feeds lay was counted from where it was.
+    place.offsets.erase(change.index);
+    if (!is_on) return {};
+    gcode::Offsets offsets = place.control.modal.offsets;
+    offsets.work.origin[change.axis] = change.origin + tables.external[change.axis];
+    use(offsets, place);
+    return {};
+}
+
+core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunPlace& place) {
+    if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{} is no allowance: it goes from 0 to 1000 mm",
+                                      number_text(*change.distance)));
+    setup.allowance = change.distance;
+    setup.search_limit = core::search_limit_of(setup);
+    forget_bounds(place.machine);
+    return {};
+}
+
+/// The fixture of a name that stands on the machine: one that the program moves has several places.
+core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<bool>& are_there,
+                                   const std::string& name) {
+    std::vector<std::string> names;
+    for (size_t i = 0; i < setup.fixtures.size(); ++i) {
+        if (setup.fixtures[i].is_machine) continue;
+        if (setup.fixtures[i].name == name && are_there[i]) return i;
+        names.push_back(setup.fixtures[i].name);
+    }
+    if (std::find(names.begin(), names.end(), name) != names.end())
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{} has been taken off the machine before this block", name));
+    if (names.empty())
+        return core::fail(ErrorCode::invalid_value,
+                          "the set-up has no fixture that could be moved");
+    return core::fail(ErrorCode::invalid_value,
+                      names.size() > 12
+                          ? fmt::format("there is no fixture '{}'; the nearest name is '{}'", name,
+                                        core::nearest_name(name, names))
+                          : fmt::format("there is no fixture '{}'; there {} {}", name,
+                                        names.size() == 1 ? "is" : "are", fmt::join(names, ", ")));
+}
+
+core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunPlace& place) {
+    FEELER_TRY(const size_t index, fixture_named(setup, place.machine.fixtures_there, change.name));
+    for (int axis = 0; axis < 3; ++axis)
+        if (auto wrong = check_number(change.by[axis], change.name); !wrong) return wrong;
+    core::Transform& link_from_body = setup.fixtures[index].mount.link_from_body;
+    link_from_body =
+        core::translation(setup.stock_mount.link_from_body.rotation * change.by) * link_from_body;
+    // What flutes have cut of it they have cut elsewhere.
+    place.machine.memory.cuts.erase(index);
+    forget_bounds(place.machine);
+    return {};
+}
+
+std::string text(const OtherToolLength& change) {
+    return fmt::format("T{} is {} mm long", core::value_of(change.tool),
+                       number_text(change.length));
+}
+
+std::string text(const OtherLengthOffset& change) {
+    return fmt::format("H{} is {} mm", core::value_of(change.number), number_text(change.length));
+}
+
+std::string text(const OtherWorkOffset& change) {
+    return fmt::format("{} has its origin at {}{}", offset_name(change.index),
+                       gcode::axis_letters[change.axis], number_text(change.origin));
+}
+
+std::string text(const OtherAllowance& change) {
+    if (!change.distance) return "the allowances are those of the default";
+    return fmt::format("the allowance is {} mm", number_text(*change.distance));
+}
+
+std::string text(const MovedFixture& change) {
+    std::string way;
+    for (int axis = 0; axis < 3; ++axis)
+        if (change.by[axis] != 0.0)
+            way += fmt::format("{}{} mm along {}", way.empty() ? "" : ", ",
+                               number_text(change.by[axis]), "XYZ"[axis]);
+    return fmt::format("{} is moved by {}", change.name, way.empty() ? "nothing" : way);
+}
+
+} // namespace
+
+std::string text_of(const WhatIf& change) {
+    return std::visit([](const auto& one) { return text(one); }, change);
+}
+
+core::Result<void> apply(const WhatIf& what, core::Setup& setup, RunPlace& place) {
+    return std::visit([&](const auto& one) { return change(one, setup, place); }, what);
+}
+
+namespace {
+
+using core::ConeStep;
+
+constexpr double least_step = 1e-9; // mm; what is shorter is rounding
+
+double height(const std::vector<ConeStep>& steps) {
+    double sum = 0.0;
+    for (const ConeStep& step : steps) sum += step.length;
+    return sum;
+}
+
+/// Takes the upper end of a shank away.
+void shorten(std::vector<ConeStep>& shank, double by) {
+    while (by > least_step) {
+        ConeStep& top = shank.back();
+        if (top.length <= by + least_step) {
+            by -= top.length;
+            shank.pop_back();
+            continue;
+        }
+        const double left = (top.length - by) / top.length;
+        top.upper_diameter = top.lower_diameter + left * (top.upper_diameter - top.lower_diameter);
+        top.length -= by;
+        by = 0.0;
+    }
+}
+
+/// Lets more of a shank be seen; one that was not seen at all fills the stick-out.
+core::Result<void> lengthen(core::ToolDescription& tool, double by) {
+    std::vector<ConeStep>& shank = tool.shank;
+    if (shank.empty()) {
+        FEELER_TRY(const core::ToolHead head, core::tool_head(tool));
+        tool.stick_out = head.length + by;
+        return {};
+    }
+    const ConeStep top = shank.back();
+    if (top.lower_diameter == top.upper_diameter)
+        shank.back().length += by;
+    else
+        shank.push_back({top.upper_diameter, top.upper_diameter, by});
+    return {};
+}
+
+void add(std::optional<double>& length, double by) {
+    if (length) *length += by;
+}
+
+} // namespace
+
+core::Result<core::ToolAssembly> stretched(const core::ToolAssembly& tool, double length) {
+    const int number = core::value_of(tool.description.number);
+    if (!std::isfinite(length) || !(length > 0.0))
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("T{}: a length is a number above 0", number));
+    const double by = length - tool.length;
+    if (std::abs(by) <= least_step) return tool;
+    core::ToolDescription description = tool.description;
+    add(description.gauge_length, by);
+    add(description.touched_off, by);
+    const bool has_holder = !description.holder.empty();
+    if (!has_holder && !description.stick_out && description.gauge_length)
+        return core::assemble(description);
+    const double shank = height(description.shank);
+    if (-by > shank + least_step)
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("T{} can be no shorter than {} mm: {} then", number,
+                                      number_text(tool.length - shank),
+                                      has_holder ? "the holder is at its flutes"
+                                                 : "nothing but its flutes is left"));
+    add(description.stick_out, by);
+    if (by < 0.0)
+        shorten(description.shank, -by);
+    else if (auto done = lengthen(description, by); !done)
+        return tl::unexpected(done.error());
+    return core::assemble(description);
+}
+
+} // namespace app

@@ -1,0 +1,204 @@
+#include "app/library/find/folder_walk.h"
+
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+#include <set>
+
+#include <fnmatch.h>
+#include <sys/stat.h>
+
+#include "core/base/file_reads.h"
+#include "gcode/language/program_folder.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// That what has no other look is what it is: it may become a file or another folder, by a link.
+void note_presence(const fs::path& path) {
+    core::note_look({core::FileQuestion::presence, path.string(), {}, {}});
+}
+
+/// Enters folders one after the other, links last.
+class Walk {
+public:
+    explicit Walk(const fs::path& folder) {
+        if (is_new(folder)) real_.push_back(folder);
+        while (!real_.empty() || !linked_.empty()) {
+            std::deque<fs::path>& next = real_.empty() ? linked_ : real_;
+            const fs::path entered = next.front();
+            next.pop_front();
+            // A link was not looked at before: what it leads to may have been entered since.
+            if (&next == &linked_ && !is_new(entered)) continue;
+            enter(entered);
+        }
+        std::sort(found.files.begin(), found.files.end());
+        std::sort(found.folders.begin(), found.folders.end());
+    }
+
+    FolderWalk found;
+
+private:
+    bool is_new(const fs::path& folder) {
+        struct stat status {};
+        return ::stat(folder.c_str(), &status) != 0
+               || seen_.insert({status.st_dev, status.st_ino}).second;
+    }
+
+    void enter(const fs::path& folder) {
+        found.folders.push_back(folder);
+        core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
+        std::error_code failure;
+        std::vector<fs::directory_entry> entries;
+        for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
+             at.increment(failure))
+            if (at->path().filename().string().front() != '.') entries.push_back(*at);
+        // By which of two links a folder is entered must not depend on the disk's own order.
+        std::sort(entries.begin(), entries.end());
+        for (const fs::directory_entry& entry : entries) sort_in(entry);
+        if (failure) found.unreadable.push_back(unreadable_folder(folder, failure));
+    }
+
+    void sort_in(const fs::directory_entry& entry) {
+        std::error_code failure;
+        if (!entry.is_directory(failure))
+            found.sort_in(entry.path());
+        else if (entry.is_symlink(failure)) {
+            note_presence(entry.path());
+            linked_.push_back(entry.path());
+        } else if (is_new(entry.path()))
+            real_.push_back(entry.path());
+    }
+
+    std::deque<fs::path> real_, linked_;
+    std::set<std::pair<dev_t, ino_t>> seen_;
+};
+
+} // namespace
+
+void FolderWalk::sort_in(const fs::path& path) {
+    std::error_code failure, ignored;
+    const fs::file_status status = fs::status(path, failure);
+    if (!fs::is_regular_file(status)) note_presence(path);
+    const auto cannot = [&] {
+        unreadable.push_back(
+            {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});
+    };
+    const bool leads_nowhere = status.type() == fs::file_type::not_found
+                               || failure == std::errc::too_many_symbolic_link_levels;
+    if (failure && !leads_nowhere)
+        cannot();
+    else if (fs::is_regular_file(status))
+        files.push_back(path.string());
+    else if (fs::exists(status))
+        skipped.push_back({path.string(), "is neither a file nor a folder"});
+    else if (fs::is_symlink(fs::symlink_status(path, ignored)))
+        skipped.push_back({path.string(), "is a link that leads nowhere"});
+    else if (failure != std::errc::no_such_file_or_directory) // that went while it was listed
+        cannot();
+}
+
+core::Error unreadable_folder(const fs::path& folder, const std::error_code& failure) {
+    return {core::ErrorCode::io,
+            {},
+            "this folder cannot be read: " + failure.message(),
+            folder.string()};
+}
+
+FolderWalk walk_folder(const std::string& folder) {
+    FolderWalk found = Walk(folder).found;
+    std::sort(found.skipped.begin(), found.skipped.end(),
+              [](const SkippedFile& a, const SkippedFile& b) { return a.path < b.path; });
+    return found;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Expansion {
+public:
+    explicit Expansion(const fs::path& pattern) {
+        for (const fs::path& part : pattern) // `**/**` is `**`
+            if (part != "**" || parts_.empty() || parts_.back() != "**") parts_.push_back(part);
+    }
+
+    FolderWalk run(const fs::path& folder) {
+        expand(folder, 0);
+        order(found_.files, std::less<>());
+        order(found_.skipped, [](const auto& a, const auto& b) { return a.path < b.path; });
+        order(found_.unreadable, [](const auto& a, const auto& b) { return a.file < b.file; });
+        return std::move(found_);
+    }
+
+private:
+    /// Each once: two parts of a pattern may come by the same folder.
+    template <typename T, typename Less>
+    static void order(std::vector<T>& all, Less less) {
+        std::sort(all.begin(), all.end(), less);
+        const auto same = [&](const T& a, const T& b) { return !less(a, b) && !less(b, a); };
+        all.erase(std::unique(all.begin(), all.end(), same), all.end());
+    }
+
+    void expand(const fs::path& folder, size_t i) {
+        if (i == parts_.size()) return;
+        const fs::path& part = parts_[i];
+        if (part == "**") return expand_below(folder, i);
+        if (!is_glob(part)) return go_on(folder / part, i);
+        for (const std::string& name : names_of(folder.empty() ? fs::path(".") : folder))
+            if (::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) go_on(folder / name, i);
+    }
+
+    std::vector<std::string> names_of(const fs::path& folder) {
+        core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
+        std::error_code failure;
+        std::vector<std::string> names = gcode::names_in(folder, failure);
+        if (failure) found_.unreadable.push_back(unreadable_folder(folder, failure));
+        return names;
+    }
+
+    /// `**` and what comes behind it, here and in every folder below.
+    void expand_below(const fs::path& folder, size_t i) {
+        if (i + 1 == parts_.size()) parts_.push_back("*");
+        FolderWalk below = walk_folder(folder.empty() ? "." : folder.string());
+        for (SkippedFile& file : below.skipped) found_.skipped.push_back(std::move(file));
+        for (core::Error& error : below.unreadable) found_.unreadable.push_back(std::move(error));
+        for (const fs::path& name : below.folders)
+            expand(folder.empty() ? name.lexically_relative(".") : name, i + 1);
+    }
+
+    void go_on(const fs::path& path, size_t i) {
+        const bool is_last = i + 1 == parts_.size();
+        const auto what = core::presence_of(path);
+        if (what == "folder") {
+            if (!is_last) expand(path, i + 1);
+        } else if (is_last || what != "file") {
+            // What a pattern spells out and is not there is no news: nobody has seen its name.
+            if (is_glob(parts_[i]) || what) found_.sort_in(path);
+        }
+    }
+
+    std::vector<fs::path> parts_;
+    FolderWalk found_;
+};
+
+} // namespace
+
+bool is_glob(const std::string& word) { return word.find_first_of("*?[") != std::string::npos; }
+
+FolderWalk files_of_glob(const fs::path& folder, const std::string& pattern) {
+    return Expansion(pattern).run(folder);
+}
+
+fs::path folder_of_glob(const fs::path& folder, const std::string& pattern) {
+    fs::path begin = folder;
+    for (const fs::path& part : fs::path(pattern)) {
+        if (is_glob(part)) break;
+        begin /= part;
+    }
+    return begin;
+}
+
+} // namespace app

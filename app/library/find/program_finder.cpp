@@ -1,0 +1,246 @@
+#include "app/library/find/program_finder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "app/base/file_stamp.h"
+#include "app/library/find/folder_walk.h"
+#include "app/library/find/project_file.h"
+#include "app/setup/tools/program_tools.h"
+#include "core/base/file_reads.h"
+#include "gcode/text/program_text.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Finder {
+public:
+    explicit Finder(fs::path folder) : folder_(std::move(folder)) {}
+
+    FoundPrograms found;
+
+    void take(const std::string& word) {
+        const std::string path = folder_.empty() ? word : plain_path(folder_ / word);
+        const auto what = core::presence_of(path);
+        if (what == "folder") return search(plain_path(path));
+        if ((!what || *what == "unknown") && is_glob(word)) return expand(word);
+        if (what == "other") return fail(path, "is a pipe or a device; name it alone to check it");
+        add(path); // that it is there and can be read, its check says
+    }
+
+private:
+    void search(const std::string& folder) {
+        const FolderWalk walk = walk_folder(folder);
+        const bool has_programs = take_all(walk, folder);
+        std::set<std::string> projects, unreadable;
+        for (const core::Error& error : walk.unreadable) unreadable.insert(error.file);
+        for (const fs::path& each : walk.folders)
+            if (!unreadable.contains(each.string()) && !owners_.of(each, each).empty())
+                projects.insert(plain_path(owners_.of(each, each)));
+        found.projects.insert(found.projects.end(), projects.begin(), projects.end());
+        if (!has_programs && projects.empty() && walk.unreadable.empty())
+            fail(folder, "holds no NC program");
+    }
+
+    void expand(const std::string& pattern) {
+        const FolderWalk matched = files_of_glob(folder_, pattern);
+        const bool has_programs = take_all(matched, folder_of_glob(folder_, pattern));
+        if (has_programs || !matched.unreadable.empty()) return;
+        const bool is_any = !matched.files.empty() || !matched.skipped.empty();
+        fail(plain_path(folder_ / pattern), is_any ? "names no NC program" : "names no file");
+    }
+
+    /// Whether there are programs among them, or what may be some.
+    bool take_all(const FolderWalk& walk, const fs::path& top) {
+        for (const SkippedFile& file : walk.skipped) skip(plain_path(file.path), file.why);
+        for (core::Error error : walk.unreadable) {
+            error.file = plain_path(error.file);
+            found.failures.push_back(std::move(error));
+        }
+        bool has_programs = false;
+        for (const std::string& file : walk.files) {
+            const std::string owner = owners_.of(fs::path(file).parent_path(), top);
+            const std::string project = owner.empty() ? owner : plain_path(owner);
+            has_programs = take_file(plain_path(file), project) || has_programs;
+        }
+        return has_programs;
+    }
+
+    /// Whether it is a program, or may be one; it is looked into once.
+    bool take_file(const std::string& file, const std::string& project) {
+        const auto [known, is_new] = looked_into_.try_emplace(identities_.of(file));
+        Look& look = known->second;
+        if (look.place) {
+            FoundProgram& program = found.programs[*look.place];
+            // What a search finds that began below its project is to be checked in any case.
+            if (program.project.empty() != project.empty()) program.is_named = true;
+            if (!project.empty()) program.project = project;
+        }
+        if (!is_new) return look.may_be_program;
+        core::note_look({core::FileQuestion::kind, file, {}, {}});
+        auto why = why_no_program(file);
+        look.may_be_program = !why || !*why;
+        if (!why)
+            found.failures.push_back(why.error());
+        else if (*why)
+            found.skipped.push_back({file, **why});
+        else
+            look.place = put(file, project);
+        return look.may_be_program;
+    }
+
+    void add(const std::string& file) {
+        Look& look = looked_into_[identities_.of(file)];
+        if (!look.place) look = {true, put(file, {})};
+        found.programs[*look.place].is_named = true;
+    }
+
+    size_t put(const std::string& file, const std::string& project) {
+        found.programs.push_back({file, project, false});
+        return found.programs.size() - 1;
+    }
+
+    void skip(const std::string& file, const std::string& why) {
+        if (skipped_.insert(identities_.of(file)).second) found.skipped.push_back({file, why});
+    }
+
+    void fail(const std::string& word, const std::string& why) {
+        found.failures.push_back({core::ErrorCode::io, {}, why, word});
+    }
+
+    /// What came of a file.
+    struct Look {
+        bool may_be_program = false;
+        std::optional<size_t> place = {}; // among the programs
+    };
+
+    fs::path folder_;
+    FileIdentities identities_;
+    ProjectOwners owners_;
+    std::map<std::string, Look> looked_into_;
+    std::set<std::string> skipped_;
+};
+
+} // namespace
+
+FoundPrograms find_programs(const std::vector<std::string>& words, const fs::path& folder) {
+    Finder finder(folder);
+    for (const std::string& word : words) finder.take(word);
+    return std::move(finder.found);
+}
+
+namespace {
+
+constexpr size_t looked_at = 65536; // bytes
+
+/// Endings of names, without the dot, that no NC program has.
+struct Kind {
+    const char* what;
+    std::initializer_list<std::string_view> endings;
+};
+
+const Kind foreign_kinds[] = {
+    {"is a mesh or a drawing",
+     {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs", "dxf", "dwg", "3mf", "f3d", "fcstd",
+      "sldprt", "sldasm", "ipt", "prt", "svg"}},
+    {"is a picture or a film", {"png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "mp4"}},
+    {"is an archive", {"zip", "gz", "bz2", "xz", "7z", "tar", "rar", "zst"}},
+    {"is a document", {"pdf", "doc", "docx", "xls", "xlsx", "odt", "ods", "md", "html", "htm"}},
+    {"is a set-up, a table or a report",
+     {"toml", "json", "jsonl", "yaml", "yml", "xml", "csv", "tsv", "ini", "tbl", "var", "fctl",
+      "fctb", "sarif", "sqlite", "db", "log"}},
+    {"is a program of another kind", {"py", "sh", "bat", "exe", "dll", "so", "cpp", "c", "js"}},
+};
+
+/// Endings that NC programs have and hardly anything else.
+constexpr std::string_view program_endings[] = {"nc",  "ngc", "tap", "cnc", "gcode", "mpf",
+                                                "spf", "eia", "nct", "hnc", "gc"};
+
+std::string ending_of(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return ending.empty() ? ending : ending.substr(1);
+}
+
+/// Whether code without blanks begins as a block does: N10, a letter and a value, a tape mark.
+bool is_like_a_block(std::string_view code) {
+    if (code.empty()) return false;
+    if (code[0] == '/') code.remove_prefix(1);
+    if (code.size() == 1) return code[0] == '%';
+    const char first = code.empty() ? ' ' : code[0];
+    if (first == '%' || first == '#') return true;
+    return first >= 'A' && first <= 'Z'
+           && std::string_view("0123456789+-.#[=<").find(code[1]) != std::string_view::npos;
+}
+
+bool is_klartext(std::string_view text) {
+    return text.substr(0, 4096).find("BEGIN PGM") != std::string_view::npos;
+}
+
+/// Whether most lines are blocks, and one of them has a G or M code.
+bool has_mostly_blocks(std::string_view text) {
+    size_t lines = 0, blocks = 0;
+    bool has_code = false;
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+        const std::string code = parts_of_line(text.substr(at, end - at)).code;
+        at = end + 1;
+        if (code.empty()) continue;
+        const bool is_block = is_like_a_block(code);
+        ++lines;
+        blocks += is_block;
+        for (size_t i = 0; is_block && !has_code && i + 1 < code.size(); ++i)
+            has_code =
+                (code[i] == 'G' || code[i] == 'M') && code[i + 1] >= '0' && code[i + 1] <= '9';
+    }
+    return has_code && 2 * blocks >= lines;
+}
+
+/// What keeps any text from being a program.
+std::optional<std::string> why_unreadable(std::string_view text) {
+    if (text.find('\0') != std::string_view::npos) return std::string(gcode::what_has_nuls(text));
+    if (gcode::looks_binary(gcode::count_stray_controls(text), text.size()))
+        return "is a binary file";
+    return text.empty() ? std::optional<std::string>("is empty") : std::nullopt;
+}
+
+} // namespace
+
+std::optional<std::string> why_no_program_text(std::string_view text) {
+    if (auto why = why_unreadable(text)) return why;
+    if (is_klartext(text) || has_mostly_blocks(text)) return std::nullopt;
+    return "most of its lines are no blocks of an NC program";
+}
+
+core::Result<std::optional<std::string>> why_no_program(const std::string& path) {
+    const std::string ending = ending_of(path);
+    for (const Kind& kind : foreign_kinds)
+        if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
+            return std::optional<std::string>(kind.what);
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::io,
+             {},
+             "cannot be read: " + std::generic_category().message(errno),
+             path});
+    std::string text(looked_at, '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<size_t>(file.gcount()));
+    const bool is_named_so =
+        std::find(std::begin(program_endings), std::end(program_endings), ending)
+        != std::end(program_endings);
+    return is_named_so ? why_unreadable(text) : why_no_program_text(text);
+}
+
+} // namespace app

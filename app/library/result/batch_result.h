@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/library/find/folder_walk.h"
+#include "app/library/result/program_result.h"
+
+namespace app {
+
+/// What became of a batch. A plain value: reports are made of it alone.
+struct BatchResult {
+    std::vector<ProgramResult> programs; // in the order in which they were named
+    std::vector<std::string> unchecked;  // programs that it was stopped before or in
+    std::vector<SkippedFile> skipped;    // files that are no NC programs
+    std::string share = {};    // of a batch, as "share 2/8: 13 of 104 programs"; empty: it is whole
+    FileBytes file_bytes = {}; // of what was not checked or skipped, as those of a ProgramResult
+};
+
+/// The exit status of all: 2 if any program could not be run to its end or was not checked, else 1
+/// if any has an error, else 0.
+int status_of(const BatchResult& batch);
+
+/// How many findings of a severity a program has.
+size_t count_of(const ProgramResult& result, core::Severity severity);
+
+/// What became of a program of a batch, from harmless to worst.
+enum class Outcome : uint8_t {
+    clear,
+    undecided,
+    errors, // all distances are kept, and something else is wrong
+    violation,
+    collision,
+    stopped,
+    not_run, // not a single block
+    unchecked
+};
+
+constexpr std::array<Outcome, 8> all_outcomes = {
+    Outcome::clear,     Outcome::undecided, Outcome::errors,  Outcome::violation,
+    Outcome::collision, Outcome::stopped,   Outcome::not_run, Outcome::unchecked};
+
+/// In small letters, as "not run".
+const char* name_of(Outcome outcome);
+
+/// That of a program that was checked, if not to its end.
+Outcome outcome_of(const ProgramResult& result);
+
+} // namespace app

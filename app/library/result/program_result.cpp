@@ -1,0 +1,302 @@
+#include "app/library/result/program_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "app/base/sha256.h"
+#include "app/base/text.h"
+#include "core/base/file_reads.h"
+#include "gcode/text/program_text.h"
+
+namespace app {
+namespace {
+
+using Json = KeptJson;
+
+/// In characters, as editors count them and SARIF says; bytes where the line cannot be read.
+uint32_t column_of(const core::Error& error) {
+    const auto [line, column, length] = error.where;
+    if (column <= 1 || line == 0 || !core::is_file(error.file)) return column;
+    const std::string bytes = core::file_bytes(error.file).value_or("");
+    std::string_view text = bytes;
+    if (text.starts_with(gcode::byte_order_mark)) text.remove_prefix(gcode::byte_order_mark.size());
+    const std::vector<uint32_t> starts = gcode::starts_of_lines(text);
+    if (line > starts.size() || starts[line - 1] + column - 1 > text.size()) return column;
+    return static_cast<uint32_t>(characters_in(text.substr(starts[line - 1], column - 1))) + 1;
+}
+
+KeptError kept(const core::Error& error, FileBytes& bytes) {
+    return {shown_name(error.file, bytes), error.where.line, column_of(error),
+            utf8_text(error.message)};
+}
+
+KeptFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
+    KeptFinding made{.rule = finding.rule,
+                     .severity = finding.severity,
+                     .message = utf8_text(finding.message),
+                     .cure = utf8_text(finding.cure),
+                     .pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])},
+                     .shortfall = finding.shortfall};
+    if (!finding.block) return made;
+    const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
+    made.block = core::value_of(*finding.block);
+    made.line = block.line;
+    made.file = shown_name(block.file, bytes);
+    made.text = utf8_text(block.text);
+    return made;
+}
+
+std::optional<Tightest> tightest_of(const CheckRun& run) {
+    const CheckedBlock* nearest = nearest_block(run);
+    if (!nearest) return {};
+    const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
+    Tightest tightest{.block = core::value_of(nearest->block),
+                      .line = nearest->line,
+                      .pair = {utf8_text(core::part_name(run.setup, pair.pair)),
+                               utf8_text(core::body_name(run.setup, pair.pair))},
+                      .lower = pair.lower,
+                      .allowance = pair.allowance.distance};
+    if (pair.found()) tightest.upper = pair.upper;
+    return tightest;
+}
+
+Json json_of(const KeptFinding& finding) {
+    return {{"rule", finding.rule},
+            {"severity", core::name_of(finding.severity)},
+            {"block", finding.block ? Json(*finding.block) : Json(nullptr)},
+            {"line", finding.line},
+            {"file", finding.file},
+            {"text", finding.text},
+            {"message", finding.message},
+            {"cure", finding.cure},
+            {"pair", finding.pair},
+            {"shortfall", finding.shortfall}};
+}
+
+Json json_of(const Tightest& tightest) {
+    return {{"block", tightest.block},
+            {"line", tightest.line},
+            {"pair", tightest.pair},
+            {"lower", tightest.lower},
+            {"upper", tightest.upper ? Json(*tightest.upper) : Json(nullptr)},
+            {"allowance", tightest.allowance}};
+}
+
+Json json_of(const KeptError& error) {
+    return {{"file", error.file},
+            {"line", error.line},
+            {"column", error.column},
+            {"message", error.message}};
+}
+
+/// The value of an enumeration with this name; throws, as the reader of JSON does.
+template <typename Enum, size_t count>
+Enum named_as(const std::string& name) {
+    for (size_t i = 0; i < count; ++i)
+        if (name == core::name_of(static_cast<Enum>(i))) return static_cast<Enum>(i);
+    throw std::invalid_argument("no value is called " + name);
+}
+
+KeptError error_from(const Json& json) {
+    return {json.at("file"), whole_from<uint32_t>(json.at("line")),
+            whole_from<uint32_t>(json.at("column")), json.at("message")};
+}
+
+KeptFinding finding_from(const Json& json) {
+    KeptFinding finding{.rule = json.at("rule"),
+                        .severity = named_as<core::Severity, 4>(json.at("severity")),
+                        .line = whole_from<uint32_t>(json.at("line")),
+                        .file = json.at("file"),
+                        .text = json.at("text"),
+                        .message = json.at("message"),
+                        .cure = json.at("cure"),
+                        .pair = pair_from(json.at("pair")),
+                        .shortfall = number_from(json.at("shortfall"))};
+    if (const Json& block = json.at("block"); !block.is_null())
+        finding.block = whole_from<uint32_t>(block);
+    return finding;
+}
+
+Tightest tightest_from(const Json& json) {
+    Tightest tightest{.block = whole_from<uint32_t>(json.at("block")),
+                      .line = whole_from<uint32_t>(json.at("line")),
+                      .pair = pair_from(json.at("pair")),
+                      .lower = number_from(json.at("lower")),
+                      .allowance = number_from(json.at("allowance"))};
+    if (const Json& upper = json.at("upper"); !upper.is_null()) tightest.upper = number_from(upper);
+    return tightest;
+}
+
+ProgramResult result_from(const Json& json) {
+    ProgramResult result{.program = json.at("program"),
+                         .setup = json.at("setup"),
+                         .sha256 = json.at("sha256"),
+                         .dialect = json.at("dialect"),
+                         .engine = json.at("engine"),
+                         .verdict = named_as<core::Verdict, 4>(json.at("verdict")),
+                         .assumptions = list_from(json.at("assumptions")),
+                         .blocks = whole_from<size_t>(json.at("blocks")),
+                         .cycle_time = number_from(json.at("cycle_time"), 0.0),
+                         .removed = number_from(json.at("removed")),
+                         .seconds = number_from(json.at("seconds"), 0.0)};
+    if (const Json& error = json.at("error"); !error.is_null()) result.error = error_from(error);
+    if (const Json& tightest = json.at("tightest"); !tightest.is_null())
+        result.tightest = tightest_from(tightest);
+    for (const Json& finding : list_from(json.at("findings")))
+        result.findings.push_back(finding_from(finding));
+    if (json.contains("file_bytes")) result.file_bytes = file_bytes_from(json.at("file_bytes"));
+    return result;
+}
+
+} // namespace
+
+ProgramResult result_of(const CheckRun& run, const std::string& setup) {
+    FileBytes bytes;
+    ProgramResult result{.program = shown_name(run.program_file, bytes),
+                         .setup = shown_name(setup, bytes),
+                         .sha256 = run.sha256,
+                         .dialect = std::string(gcode::dialect(run.dialect).name),
+                         .engine = name_of(run.engine),
+                         .verdict = run.verdict,
+                         .blocks = run.blocks.size(),
+                         .cycle_time = run.cycle_time,
+                         .removed = run.removed,
+                         .tightest = tightest_of(run),
+                         .seconds = run.times.read + run.times.model + run.times.check};
+    if (run.stopped) result.error = kept(*run.stopped, bytes);
+    for (const std::string& assumption : run.assumptions)
+        result.assumptions.push_back(utf8_text(assumption));
+    for (const core::Finding& finding : run.findings)
+        result.findings.push_back(kept(finding, run, bytes));
+    result.file_bytes = std::move(bytes);
+    return result;
+}
+
+ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
+    FileBytes bytes;
+    ProgramResult result{.program = shown_name(job.program, bytes),
+                         .setup = shown_name(job.setup, bytes),
+                         .sha256 = sha256_of_file(job.program),
+                         .engine = name_of(job.engine),
+                         .error = kept(error, bytes)};
+    result.file_bytes = std::move(bytes);
+    return result;
+}
+
+int status_of(const ProgramResult& result) {
+    if (result.error) return 2;
+    const bool has_errors =
+        std::any_of(result.findings.begin(), result.findings.end(), [](const KeptFinding& finding) {
+            return finding.severity == core::Severity::error;
+        });
+    return has_errors ? 1 : 0;
+}
+
+std::string json_of(const ProgramResult& result) {
+    Json json = {{"program", result.program},
+                 {"setup", result.setup},
+                 {"sha256", result.sha256},
+                 {"dialect", result.dialect},
+                 {"engine", result.engine},
+                 {"verdict", core::name_of(result.verdict)},
+                 {"error", result.error ? json_of(*result.error) : Json(nullptr)},
+                 {"blocks", result.blocks},
+                 {"cycle_time", result.cycle_time},
+                 {"removed", result.removed},
+                 {"tightest", result.tightest ? json_of(*result.tightest) : Json(nullptr)},
+                 {"seconds", result.seconds},
+                 {"assumptions", result.assumptions},
+                 {"findings", Json::array()}};
+    for (const KeptFinding& finding : result.findings) json["findings"].push_back(json_of(finding));
+    if (!result.file_bytes.empty()) json["file_bytes"] = json_of(result.file_bytes);
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+core::Result<ProgramResult> result_from_json(const std::string& text) {
+    try {
+        return result_from(kept_json(text));
+    } catch (const std::exception& wrong) {
+        return core::fail(core::ErrorCode::syntax,
+                          std::string("this is no result of a check: ") + wrong.what());
+    }
+}
+
+std::string shown_name(const std::string& path, FileBytes& bytes) {
+    std::string text = utf8_text(path);
+    if (text != path) bytes[text] = path;
+    return text;
+}
+
+const std::string& name_shown_as(const std::string& text, const FileBytes& bytes) {
+    const auto found = bytes.find(text);
+    return found == bytes.end() ? text : found->second;
+}
+
+nlohmann::ordered_json json_of(const FileBytes& bytes) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const auto& [text, name] : bytes) {
+        auto& list = json[text] = nlohmann::ordered_json::array();
+        for (const char byte : name) list.push_back(static_cast<uint8_t>(byte));
+    }
+    return json;
+}
+
+FileBytes file_bytes_from(const KeptJson& json) {
+    FileBytes bytes;
+    for (const auto& [text, list] : json.items())
+        for (const KeptJson& byte : list_from(list))
+            bytes[text] += static_cast<char>(whole_from<uint8_t>(byte));
+    return bytes;
+}
+
+namespace {
+
+constexpr size_t most_nested = 16; // a share's results need 7
+
+} // namespace
+
+bool is_nested_too_deep(std::string_view text) {
+    size_t depth = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\')
+            ++i;
+        else if (c == '"')
+            in_string = !in_string;
+        else if (!in_string && (c == '[' || c == '{') && ++depth > most_nested)
+            return true;
+        else if (!in_string && (c == ']' || c == '}') && depth > 0)
+            --depth;
+    }
+    return false;
+}
+
+KeptJson kept_json(const std::string& text) {
+    if (is_nested_too_deep(text)) throw std::invalid_argument("its lists are nested too deep");
+    return KeptJson::parse(text);
+}
+
+double number_from(const KeptJson& json, double least) {
+    // What is no number has a value too: true is 1.
+    const double number = json.is_number() ? json.get<double>() : std::nan("");
+    if (!std::isfinite(number) || number < least)
+        throw std::invalid_argument("a number is none, or out of its range");
+    return number;
+}
+
+const KeptJson& list_from(const KeptJson& json, std::optional<size_t> count) {
+    if (!json.is_array() || (count && json.size() != *count))
+        throw std::invalid_argument("a list is none, or of another length");
+    return json;
+}
+
+std::array<std::string, 2> pair_from(const KeptJson& json) {
+    list_from(json, 2);
+    return {json[0].get<std::string>(), json[1].get<std::string>()};
+}
+
+} // namespace app

@@ -1,0 +1,271 @@
+#include "app/library/run/batch_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <thread>
+
+#include <malloc.h>
+
+#include "app/base/text.h"
+
+namespace app {
+namespace {
+
+constexpr double much = 100e6; // bytes
+
+core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
+    try {
+        return run_check(job);
+    } catch (const std::bad_alloc&) {
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::io,
+             {},
+             "there is not enough memory; a larger mesh size or fewer --jobs need less",
+             job.program});
+    } catch (const std::exception& mistake) {
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::io,
+             {},
+             std::string("a mistake of the program itself: ") + mistake.what(),
+             job.program});
+    }
+}
+
+/// At least one byte, so that every program counts.
+double program_size(const std::string& program) {
+    std::error_code failure;
+    const auto size = std::filesystem::file_size(program, failure);
+    return failure ? 1.0 : static_cast<double>(std::max<std::uintmax_t>(size, 1));
+}
+
+class BatchRunner {
+public:
+    BatchRunner(const std::vector<CheckJob>& jobs, const BatchLimits& limits,
+                const BatchHooks& hooks)
+        : jobs_(jobs), hooks_(hooks), budget_(limits.memory), results_(jobs.size()) {
+        for (const CheckJob& job : jobs_) sizes_.push_back(program_size(job.program));
+        const size_t most = std::min<size_t>(std::max(1U, limits.jobs), jobs.size());
+        order_.resize(jobs.size());
+        std::iota(order_.begin(), order_.end(), size_t(0));
+        // The longest first: at the end nobody waits for one that was begun last.
+        if (most > 1)
+            std::stable_sort(order_.begin(), order_.end(),
+                             [&](size_t a, size_t b) { return sizes_[a] > sizes_[b]; });
+        shares_ = std::vector<std::atomic<double>>(most);
+    }
+
+    std::vector<std::optional<ProgramResult>> run() {
+        std::vector<std::thread> threads;
+        begin(threads);
+        tell_what_ends();
+        for (std::thread& thread : threads) thread.join();
+        return std::move(results_);
+    }
+
+private:
+    /// Where there is no room for all, as many as there are cores: the others are gone before the
+    /// first begins. Without any, the caller's thread does it all.
+    void begin(std::vector<std::thread>& threads) {
+        size_t most = shares_.size();
+        try {
+            threads.reserve(most);
+            while (threads.size() < shares_.size())
+                threads.emplace_back([this, i = threads.size()] { work_in_turn(i); });
+        } catch (const std::exception&) { // of the system, which is out of threads or memory
+            const size_t cores = std::max(1U, std::thread::hardware_concurrency());
+            most = std::min(threads.size(), cores);
+        }
+        let_begin(most, false);
+        for (; threads.size() > most; threads.pop_back()) threads.back().join();
+        working_ = std::max<size_t>(most, shares_.empty() ? 0 : 1);
+        let_begin(most, true);
+        if (most == 0 && !shares_.empty()) work(0);
+    }
+
+    void let_begin(size_t most, bool now) {
+        const std::lock_guard lock(mutex_);
+        most_ = most;
+        is_begun_ = now;
+        may_begin_.notify_all();
+    }
+
+    void work_in_turn(size_t thread) {
+        {
+            std::unique_lock lock(mutex_);
+            may_begin_.wait(lock, [&] { return is_begun_ || thread >= most_; });
+            if (thread >= most_) return;
+        }
+        work(thread);
+    }
+
+    bool is_stopped() const { return hooks_.is_stopped && hooks_.is_stopped(); }
+
+    void work(size_t thread) {
+        std::optional<core::FileListening> listening;
+        if (hooks_.looked) listening.emplace(hooks_.looked);
+        while (!is_stopped()) {
+            const size_t place = next_++;
+            if (place >= order_.size()) break;
+            check_whatever_comes(order_[place], thread);
+        }
+        const std::lock_guard lock(mutex_);
+        --working_;
+        something_ended_.notify_one();
+    }
+
+    void check_whatever_comes(size_t i, size_t thread) {
+        try {
+            check(i, thread);
+        } catch (const std::exception&) {
+            // There was no memory around the check itself, and may be none for words: the program
+            // is among those that were not checked.
+        }
+    }
+
+    void check(size_t i, size_t thread) {
+        const CheckJob& job = jobs_[i];
+        if (hooks_.known)
+            if (auto known = hooks_.known(job)) return end(i, thread, *std::move(known));
+        double taken = 0.0;
+        bool is_cut = false;
+        CheckJob watched = job;
+        watched.before_model = [&](double bytes) {
+            is_cut = !budget_.take(bytes, [this] { return is_stopped(); });
+            if (!is_cut) taken = bytes;
+            return !is_cut;
+        };
+        watched.after_block = [&](const CheckProgress& progress) {
+            shares_[thread].store(sizes_[i] * progress.share, std::memory_order_relaxed);
+            is_cut = is_stopped();
+            return !is_cut;
+        };
+        watched.is_stopped = [&] { return is_cut = is_cut || is_stopped(); };
+        {
+            const auto run = run_whatever_comes(watched);
+            if (!is_cut) end(i, thread, result(job, run));
+        }
+        // What a large model has taken stays with the thread that took it unless it is asked for.
+        if (taken > much) ::malloc_trim(0);
+        budget_.give_back(taken);
+    }
+
+    ProgramResult result(const CheckJob& job, const core::Result<CheckRun>& run) {
+        if (!run) return failed_result(job, run.error());
+        ProgramResult made = result_of(*run, job.setup);
+        const std::lock_guard lock(keeping_);
+        if (hooks_.keep) hooks_.keep(job, *run, made);
+        return made;
+    }
+
+    void end(size_t i, size_t thread, ProgramResult result) {
+        const std::lock_guard lock(mutex_);
+        results_[i] = std::move(result);
+        shares_[thread].store(0.0, std::memory_order_relaxed);
+        ended_.push_back(i);
+        something_ended_.notify_one();
+    }
+
+    /// In the caller's thread, until the last of the others has nothing left to do.
+    void tell_what_ends() {
+        using namespace std::chrono_literals;
+        const double all = std::accumulate(sizes_.begin(), sizes_.end(), 0.0);
+        double done = 0.0;
+        BatchProgress progress{.programs = jobs_.size()};
+        std::unique_lock lock(mutex_);
+        while (working_ > 0 || !ended_.empty()) {
+            something_ended_.wait_for(lock, 100ms,
+                                      [&] { return working_ == 0 || !ended_.empty(); });
+            for (const size_t i : std::exchange(ended_, {})) {
+                done += sizes_[i];
+                ++progress.done;
+                progress.with_errors += status_of(*results_[i]) != 0;
+                lock.unlock();
+                if (hooks_.ended) hooks_.ended(*results_[i]);
+                lock.lock();
+            }
+            progress.share = (done + under_way()) / all;
+            lock.unlock();
+            if (hooks_.waiting) hooks_.waiting(progress);
+            lock.lock();
+        }
+    }
+
+    double under_way() const {
+        double bytes = 0.0;
+        for (const auto& share : shares_) bytes += share.load(std::memory_order_relaxed);
+        return bytes;
+    }
+
+    const std::vector<CheckJob>& jobs_;
+    const BatchHooks& hooks_;
+    MemoryBudget budget_;
+    std::vector<double> sizes_; // of the programs, bytes
+    std::vector<size_t> order_;
+    std::atomic<size_t> next_{0};             // of the order
+    std::vector<std::atomic<double>> shares_; // of each thread's program, bytes
+    std::vector<std::optional<ProgramResult>> results_;
+    std::deque<size_t> ended_;                         // that nobody was told of
+    size_t working_ = 0;                               // threads
+    size_t most_ = std::numeric_limits<size_t>::max(); // threads that are to work
+    bool is_begun_ = false;
+    std::mutex mutex_, keeping_;
+    std::condition_variable something_ended_, may_begin_;
+};
+
+} // namespace
+
+BatchResult run_batch(const BatchPlan& plan, const BatchLimits& limits, const BatchHooks& hooks) {
+    BatchResult batch{.programs = {}, .unchecked = {}, .skipped = plan.skipped};
+    for (SkippedFile& file : batch.skipped)
+        file = {shown_name(file.path, batch.file_bytes), utf8_text(file.why)};
+    auto results = BatchRunner(plan.jobs, limits, hooks).run();
+    for (size_t i = 0; i < results.size(); ++i) {
+        if (results[i])
+            batch.programs.push_back(*std::move(results[i]));
+        else
+            batch.unchecked.push_back(shown_name(plan.jobs[i].program, batch.file_bytes));
+    }
+    for (const core::Error& error : plan.failures) {
+        CheckJob nothing;
+        nothing.program = error.file;
+        batch.programs.push_back(failed_result(nothing, error));
+        batch.programs.back().sha256.clear(); // of a folder or a pattern there is none
+        if (hooks.ended) hooks.ended(batch.programs.back());
+    }
+    return batch;
+}
+
+bool MemoryBudget::take(double bytes, const std::function<bool()>& is_stopped) {
+    using namespace std::chrono_literals;
+    std::unique_lock lock(mutex_);
+    const uint64_t ticket = next_ticket_++;
+    bool gave_up = false;
+    const auto is_my_turn = [&] {
+        gave_up = gave_up || is_stopped();
+        return ticket == served_ && (gave_up || taken_ == 0.0 || taken_ + bytes <= bytes_);
+    };
+    // Nobody wakes who waits when a signal comes, so each looks for itself.
+    while (!room_.wait_for(lock, 100ms, is_my_turn)) {
+    }
+    ++served_;
+    if (!gave_up) taken_ += bytes;
+    room_.notify_all();
+    return !gave_up;
+}
+
+void MemoryBudget::give_back(double bytes) {
+    const std::lock_guard lock(mutex_);
+    taken_ -= bytes;
+    // Sums of differences leave crumbs; bytes are whole.
+    if (taken_ < 1.0) taken_ = 0.0;
+    room_.notify_all();
+}
+
+} // namespace app

@@ -1,0 +1,157 @@
+#include "app/library/shard/shard_merge.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace app {
+namespace {
+
+core::Error merge_error(const std::string& file, std::string why) {
+    return {core::ErrorCode::invalid_value, {}, std::move(why), file};
+}
+
+bool has(const std::vector<PlannedProgram>& programs, const std::string& name) {
+    return std::any_of(programs.begin(), programs.end(),
+                       [&](const PlannedProgram& program) { return program.name == name; });
+}
+
+/// How a list of programs differs from the first one; empty if it does not.
+std::string difference(const std::vector<PlannedProgram>& first,
+                       const std::vector<PlannedProgram>& other) {
+    const auto [a, b] = std::mismatch(first.begin(), first.end(), other.begin(), other.end());
+    if (a == first.end() && b == other.end()) return {};
+    if (a != first.end() && !has(other, a->name)) return "it does not know " + a->name;
+    if (b != other.end() && !has(first, b->name)) return "it has " + b->name + ", too";
+    if (a == first.end() || b == other.end() || a->name != b->name)
+        return "its programs are named in another order";
+    if (a->size != b->size) return a->name + " has another size there";
+    return a->name + " was to be checked with other options or another set-up";
+}
+
+/// Why a shard belongs to another batch than the first; empty if it does not.
+std::string difference(const Shard& first, const Shard& other) {
+    if (other.version != first.version) return "another version of Feeler made it";
+    if (other.share.n != first.share.n)
+        return fmt::format("it is share {}, not one of {}", text_of(other.share), first.share.n);
+    if (other.failures != first.failures)
+        return "what its words do not find, or cannot be read, is other";
+    return difference(first.programs, other.programs);
+}
+
+core::Result<void> check_shares(const std::vector<Shard>& shards) {
+    for (size_t i = 1; i < shards.size(); ++i) {
+        if (const std::string why = difference(shards[0], shards[i]); !why.empty())
+            return tl::unexpected(
+                merge_error(shards[i].file, fmt::format("belongs to another batch than {}: {}",
+                                                        shards[0].file, why)));
+        if (shards[i].share == shards[i - 1].share)
+            return tl::unexpected(merge_error(
+                shards[i].file, fmt::format("is share {}, and so is {}", text_of(shards[i].share),
+                                            shards[i - 1].file)));
+    }
+    return {};
+}
+
+core::Result<void> find_missing(const std::vector<Shard>& shards) {
+    constexpr size_t shown = 20;
+    const size_t n = shards[0].share.n;
+    const size_t count = n - std::min(n, shards.size());
+    if (count == 0) return {};
+    std::vector<std::string> missing;
+    size_t at = 0;
+    for (size_t i = 1; i <= n && missing.size() < shown; ++i)
+        if (at < shards.size() && shards[at].share.i == i)
+            ++at;
+        else
+            missing.push_back(text_of({i, n}));
+    return core::fail(core::ErrorCode::missing_value,
+                      fmt::format("{} missing: {}{}",
+                                  count == 1 ? "a share is" : "these shares are",
+                                  fmt::join(missing, ", "), count > shown ? ", ..." : ""));
+}
+
+/// What became of each program: its result, or null where a shard says that it was not checked.
+class Outcomes {
+public:
+    explicit Outcomes(const std::vector<PlannedProgram>& programs)
+        : programs_(programs), is_told_(programs.size(), false), results_(programs.size()) {}
+
+    core::Result<void> take(const Shard& shard) {
+        bool fits = shard.places.size() == shard.results.size();
+        for (size_t i = 0; fits && i < shard.places.size(); ++i)
+            fits = is_new(shard.places[i])
+                   && shard.results[i].program == programs_[shard.places[i]].name
+                   && put(shard.places[i], &shard.results[i]);
+        for (size_t i = 0; fits && i < shard.unchecked.size(); ++i)
+            fits = is_new(shard.unchecked[i]) && put(shard.unchecked[i], nullptr);
+        if (fits) return {};
+        return tl::unexpected(
+            merge_error(shard.file, "has a result that is not one of its programs'"));
+    }
+
+    core::Result<BatchResult> batch() const {
+        BatchResult batch;
+        for (size_t i = 0; i < programs_.size(); ++i) {
+            if (!is_told_[i])
+                return core::fail(core::ErrorCode::missing_value,
+                                  fmt::format("no share has a result of {}", programs_[i].name));
+            if (results_[i])
+                batch.programs.push_back(*results_[i]);
+            else
+                batch.unchecked.push_back(programs_[i].name);
+        }
+        return batch;
+    }
+
+private:
+    bool is_new(size_t place) const { return place < is_told_.size() && !is_told_[place]; }
+
+    bool put(size_t place, const ProgramResult* result) {
+        results_[place] = result;
+        is_told_[place] = true;
+        return true;
+    }
+
+    const std::vector<PlannedProgram>& programs_;
+    std::vector<bool> is_told_;
+    std::vector<const ProgramResult*> results_;
+};
+
+/// A file that one machine saw and another did not came or went meanwhile, as a share that lies
+/// beside the programs does. It is no program, and no result hangs on it.
+std::vector<SkippedFile> skipped_by_all(const std::vector<Shard>& shards) {
+    std::vector<SkippedFile> skipped = shards[0].skipped;
+    for (size_t i = 1; i < shards.size(); ++i) {
+        if (shards[i].skipped == shards[0].skipped) continue;
+        std::unordered_set<std::string> seen;
+        for (const SkippedFile& file : shards[i].skipped) seen.insert(file.path + '\n' + file.why);
+        std::erase_if(skipped, [&](const SkippedFile& file) {
+            return !seen.contains(file.path + '\n' + file.why);
+        });
+    }
+    return skipped;
+}
+
+} // namespace
+
+core::Result<BatchResult> merged(std::vector<Shard> shards) {
+    if (shards.empty()) return core::fail(core::ErrorCode::missing_value, "there are no shares");
+    std::sort(shards.begin(), shards.end(), [](const Shard& a, const Shard& b) {
+        return a.share.i != b.share.i ? a.share.i < b.share.i : a.file < b.file;
+    });
+    if (auto same = check_shares(shards); !same) return tl::unexpected(same.error());
+    if (auto whole = find_missing(shards); !whole) return tl::unexpected(whole.error());
+    Outcomes outcomes(shards[0].programs);
+    for (const Shard& shard : shards)
+        if (auto taken = outcomes.take(shard); !taken) return tl::unexpected(taken.error());
+    FEELER_TRY(BatchResult batch, outcomes.batch());
+    batch.programs.insert(batch.programs.end(), shards[0].failures.begin(),
+                          shards[0].failures.end());
+    batch.skipped = skipped_by_all(shards);
+    return batch;
+}
+
+} // namespace app

@@ -1,0 +1,140 @@
+#include "app/library/store/result_key.h"
+
+#include <algorithm>
+#include <random>
+#include <span>
+
+#include <elf.h>
+#include <fmt/format.h>
+#include <link.h>
+#include <nlohmann/json.hpp>
+
+#include "app/base/sha256.h"
+#include "app/base/text.h"
+#include "app/base/version.h"
+
+namespace app {
+namespace {
+
+using KeyJson = nlohmann::ordered_json;
+
+template <typename T>
+KeyJson optional_json(const std::optional<T>& value) {
+    return value ? KeyJson(*value) : KeyJson(nullptr);
+}
+
+template <typename T>
+KeyJson enum_json(const std::optional<T>& value) {
+    return value ? KeyJson(static_cast<int>(*value)) : KeyJson(nullptr);
+}
+
+/// A path to the byte: JSON holds UTF-8 only, and names of files are any bytes.
+KeyJson path_json(const std::string& path) {
+    if (utf8_text(path) == path) return path;
+    KeyJson bytes = KeyJson::array();
+    for (const char byte : path) bytes.push_back(static_cast<unsigned char>(byte));
+    return bytes;
+}
+
+KeyJson settings_json(const ProgramSettings& settings) {
+    // A member that is added is to be said here, too: else this does not compile.
+    const auto& [dialect, block_delete, start, machine_unit, max_blocks, counts_smallest_steps, ini,
+                 parameters, tool_table, search_path, machine_codes, tool_at_start,
+                 spindle_at_start, speed_by_hand] = settings;
+    KeyJson places = KeyJson::array(), folders = KeyJson::array();
+    for (const auto& place : start) places.push_back(optional_json(place));
+    for (const std::string& folder : search_path) folders.push_back(path_json(folder));
+    return {{"dialect", enum_json(dialect)},
+            {"block_delete", optional_json(block_delete)},
+            {"start", places},
+            {"machine_unit", enum_json(machine_unit)},
+            {"max_blocks", optional_json(max_blocks)},
+            {"counts_smallest_steps", optional_json(counts_smallest_steps)},
+            {"ini", path_json(ini)},
+            {"parameters", path_json(parameters)},
+            {"tool_table", path_json(tool_table)},
+            {"search_path", folders},
+            {"machine_codes", machine_codes},
+            {"tool_at_start", enum_json(tool_at_start)},
+            {"spindle_at_start", enum_json(spindle_at_start)},
+            {"speed_by_hand", optional_json(speed_by_hand)}};
+}
+
+} // namespace
+
+std::optional<std::string> options_text(const CheckJob& job) {
+    // A limit of memory only decides whether there is a result.
+    const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
+                 before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
+                 setup_was_found] = job;
+    if (!edits.empty() || edits.tool_at_start) return std::nullopt;
+    KeyJson severities = KeyJson::object();
+    for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);
+    const KeyJson json = {{"rules", severities},
+                          {"setup_was_found", setup_was_found},
+                          {"allowance", optional_json(allowance)},
+                          {"mesh_size", optional_json(mesh_size)},
+                          {"detail", static_cast<int>(detail)},
+                          {"needs_surface", needs_surface},
+                          {"start_line", path_json(start_line)},
+                          {"engine", name_of(engine)},
+                          {"settings", settings_json(settings)}};
+    return json.dump();
+}
+
+std::string result_key(const std::string& build, const CheckJob& job, const std::string& sha256,
+                       const std::string& options) {
+    const KeyJson parts =
+        KeyJson::array({build, path_json(job.program), sha256, path_json(job.setup), options});
+    return sha256_of(parts.dump());
+}
+
+namespace {
+
+/// The build-id that the linker puts into a program: a digest of what it linked.
+std::string build_id_in(std::span<const char> notes) {
+    while (notes.size() >= sizeof(ElfW(Nhdr))) {
+        ElfW(Nhdr) note;
+        std::copy_n(notes.data(), sizeof note, reinterpret_cast<char*>(&note));
+        const size_t name = sizeof note;
+        const size_t description = name + (note.n_namesz + 3) / 4 * 4;
+        const size_t next = description + (note.n_descsz + 3) / 4 * 4;
+        if (next > notes.size()) return {};
+        if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4) {
+            std::string id;
+            for (const char byte : notes.subspan(description, note.n_descsz))
+                id += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+            return id;
+        }
+        notes = notes.subspan(next);
+    }
+    return {};
+}
+
+/// Called for each loaded file; the first is the program itself.
+int take_build_id(dl_phdr_info* info, size_t, void* taken) {
+    for (const ElfW(Phdr) & part : std::span(info->dlpi_phdr, info->dlpi_phnum)) {
+        if (part.p_type != PT_NOTE) continue;
+        const auto* notes = reinterpret_cast<const char*>(info->dlpi_addr + part.p_vaddr);
+        std::string& id = *static_cast<std::string*>(taken);
+        if (id.empty()) id = build_id_in({notes, part.p_memsz});
+    }
+    return 1; // no further file
+}
+
+std::string build_name() {
+    std::string id;
+    dl_iterate_phdr(&take_build_id, &id);
+    if (id.empty()) id = sha256_of_file("/proc/self/exe");
+    // Who does not know its build must not take another's results for its own.
+    return id.empty() ? fmt::format("unknown {:x}", std::random_device()()) : id;
+}
+
+} // namespace
+
+const std::string& build_version() {
+    static const std::string known = fmt::format("{} {}", version, build_name());
+    return known;
+}
+
+} // namespace app

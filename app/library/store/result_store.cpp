@@ -1,0 +1,326 @@
+#include "app/library/store/result_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "app/base/sha256.h"
+#include "app/library/store/database.h"
+#include "app/library/store/input_files.h"
+#include "app/library/store/relative_paths.h"
+#include "app/library/store/result_key.h"
+#include "app/library/store/result_writer.h"
+#include "app/library/store/store_file.h"
+
+namespace app {
+namespace {
+
+InputFile input_of(const Statement& row) {
+    InputFile input{static_cast<core::FileQuestion>(row.number(0)), row.text(1), row.text(2), {}};
+    if (const std::string answer = row.text(3); !answer.empty()) input.answer = answer.substr(1);
+    return input;
+}
+
+/// Microseconds since 1970.
+int64_t now() {
+    using namespace std::chrono;
+    return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+/// All paths of a job as it has them, each with its length.
+std::string names_in(const CheckJob& job) {
+    const ProgramSettings& settings = job.settings;
+    std::vector<std::string> paths = settings.search_path;
+    paths.insert(paths.end(),
+                 {job.program, job.setup, settings.ini, settings.parameters, settings.tool_table});
+    std::string text;
+    for (const std::string& path : paths) text += fmt::format(" {}:{}", path.size(), path);
+    return text;
+}
+
+/// Whether a job is one whose results are kept.
+bool is_kept(const CheckJob& job) { return job.edits.empty() && !job.edits.tool_at_start; }
+
+/// Under what the result of a job is kept.
+struct JobKeys {
+    std::string options;     // see options_text, with places
+    std::string by_any_name; // whose texts are right whatever the paths of the job are
+    std::string by_this_name;
+};
+
+} // namespace
+
+struct ResultStore::State {
+    State(const std::string& path, std::string by) : version(std::move(by)), places(path) {}
+
+    std::string version;
+    StorePlaces places;
+    std::shared_ptr<InputAnswers> answers;
+    std::shared_ptr<Patience> patience;
+    std::shared_ptr<ResultWriter> writer; // of the own store if nothing is kept in this one
+    bool is_kept_in = true;
+    std::mutex mutex; // over all below
+    Database database;
+    Statement rows_of_key, looks_of_row, rows_of_program, sighting;
+
+    core::Result<void> prepare();
+    std::string place_of(const std::string& program) const;
+    std::string content_of(const CheckJob& job) const;
+    JobKeys keys_of(const CheckJob& job, const std::string& sha256) const;
+    bool is_same(const KeptRow& row);
+    core::Result<std::vector<KeptRow>> rows(const std::string& key);
+    core::Result<std::optional<ProgramResult>> find(const std::string& key);
+};
+
+core::Result<void> ResultStore::State::prepare() {
+    FEELER_TRY(rows_of_key,
+               database.prepare("SELECT id, key, looks, value, seal FROM result WHERE key = ?1 "
+                                "ORDER BY id DESC"));
+    FEELER_TRY(looks_of_row,
+               database.prepare("SELECT question, path, name, answer FROM result_look "
+                                "JOIN look ON look.id = look WHERE result = ?1"));
+    FEELER_TRY(
+        rows_of_program,
+        database.prepare("SELECT checked_at, version, setup, options, looks, value, key, seal, "
+                         "coalesce(at, 1000000 * checked_at) AS last FROM result "
+                         "JOIN program ON program.id = program LEFT JOIN seen USING(key, looks) "
+                         "WHERE path = ?1 ORDER BY last, result.id"));
+    FEELER_TRY(sighting, database.prepare("SELECT at FROM seen WHERE key = ?1 AND looks = ?2"));
+    return {};
+}
+
+/// A program's path as seen from the folder: the same from wherever one calls.
+std::string ResultStore::State::place_of(const std::string& program) const {
+    std::error_code failure;
+    const auto whole = std::filesystem::weakly_canonical(program, failure);
+    return failure ? program : whole.lexically_relative(places.folder()).string();
+}
+
+std::string ResultStore::State::content_of(const CheckJob& job) const {
+    return answers->content_of(places.path_of(places.place_of(job.program)));
+}
+
+JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha256) const {
+    const CheckJob there = placed(job, places);
+    JobKeys keys{
+        .options = options_text(there).value_or(""), .by_any_name = {}, .by_this_name = {}};
+    keys.by_any_name = result_key(version, there, sha256, keys.options);
+    keys.by_this_name = sha256_of(keys.by_any_name + places.folder() + names_in(job));
+    return keys;
+}
+
+bool ResultStore::State::is_same(const KeptRow& row) {
+    return std::all_of(row.inputs.begin(), row.inputs.end(), [this](const InputFile& input) {
+        return answers->is_same(asked_again(input, places));
+    });
+}
+
+core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& key) {
+    const std::lock_guard lock(mutex);
+    std::vector<KeptRow> found;
+    rows_of_key.reset();
+    rows_of_key.bind(1, key);
+    for (bool more = true;;) {
+        FEELER_TRY(more, rows_of_key.step());
+        if (!more) break;
+        found.push_back({.id = rows_of_key.number(0),
+                         .key = rows_of_key.text(1),
+                         .looks = rows_of_key.text(2),
+                         .value = rows_of_key.text(3),
+                         .seal = rows_of_key.text(4)});
+    }
+    rows_of_key.reset();
+    for (KeptRow& row : found) {
+        looks_of_row.reset();
+        looks_of_row.bind(1, row.id);
+        for (bool more = true;;) {
+            FEELER_TRY(more, looks_of_row.step());
+            if (!more) break;
+            row.inputs.push_back(input_of(looks_of_row));
+        }
+        looks_of_row.reset();
+    }
+    return found;
+}
+
+ResultStore::ResultStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ResultStore::ResultStore(ResultStore&&) noexcept = default;
+ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
+ResultStore::~ResultStore() = default;
+
+core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version,
+                                            std::shared_ptr<Patience> patience) {
+    auto state = std::make_unique<State>(path, version);
+    state->answers = std::make_shared<InputAnswers>();
+    state->patience = patience ? std::move(patience) : std::make_shared<Patience>();
+    state->writer = std::make_shared<ResultWriter>(path, state->patience);
+    return open_as(path, Database::Access::read_write, std::move(state));
+}
+
+core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
+                                                   const ResultStore& own) {
+    auto state = std::make_unique<State>(path, own.state_->version);
+    state->answers = own.state_->answers;
+    state->patience = own.state_->patience;
+    state->writer = own.state_->writer;
+    state->is_kept_in = false;
+    return open_as(path, Database::Access::read_only, std::move(state));
+}
+
+core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database::Access access,
+                                               std::unique_ptr<State> state) {
+    FEELER_TRY(state->database, open_store_file(path, access, state->patience));
+    if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
+    return ResultStore(std::move(state));
+}
+
+void ResultStore::try_again() { state_->writer->try_again(); }
+
+std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
+    if (!state_->places.still_hold()) return {};
+    const std::string sha256 = state_->content_of(job);
+    if (!is_kept(job) || sha256.empty()) return {};
+    const JobKeys keys = state_->keys_of(job, sha256);
+    return {keys.by_any_name, keys.by_this_name};
+}
+
+core::Result<std::vector<std::string>> ResultStore::keys() {
+    const std::lock_guard lock(state_->mutex);
+    FEELER_TRY(Statement all, state_->database.prepare("SELECT DISTINCT key FROM result"));
+    std::vector<std::string> keys;
+    for (bool more = true;;) {
+        FEELER_TRY(more, all.step());
+        if (!more) return keys;
+        keys.push_back(all.text(0));
+    }
+}
+
+core::Result<std::optional<ProgramResult>> ResultStore::State::find(const std::string& key) {
+    FEELER_TRY(const std::vector<KeptRow> found, rows(key));
+    for (const KeptRow& row : found) {
+        if (!is_same(row) || !is_sound(row)) continue;
+        auto result = result_from_json(row.value);
+        if (!result) continue;
+        writer->put({row.key, row.looks, now()});
+        return *std::move(result);
+    }
+    return std::nullopt;
+}
+
+core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job) {
+    for (const std::string& key : keys_of(job)) {
+        FEELER_TRY(std::optional<ProgramResult> found, state_->find(key));
+        if (found) return renamed(*std::move(found), job);
+    }
+    return std::nullopt;
+}
+
+core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
+                                     const ProgramResult& result) {
+    const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
+    if (!state_->is_kept_in || !is_kept(job) || was_stopped || run.sha256.empty()) return {};
+    const StorePlaces& places = state_->places;
+    if (!places.still_hold()) return {};
+    const JobKeys keys = state_->keys_of(job, run.sha256);
+    const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
+    std::set<InputFile> inputs; // of which two may have been one, by different names
+    for (const InputFile& input : run.inputs) inputs.insert(placed(input, places));
+    const int64_t at = now();
+    KeptRow row{.program = state_->place_of(job.program),
+                .setup = places.place_of(job.setup),
+                .options = keys.options,
+                .version = state_->version,
+                .checked_at = at / 1'000'000,
+                .key = is_named ? keys.by_this_name : keys.by_any_name,
+                .looks = {},
+                .value = json_of(result),
+                .seal = {},
+                .inputs = {inputs.begin(), inputs.end()}};
+    row.looks = looks_of(row.inputs);
+    row.seal = seal_of(row);
+    Sighting sighting{row.key, row.looks, at};
+    return state_->writer->put(std::move(row), std::move(sighting));
+}
+
+core::Result<void> ResultStore::flush() { return state_->writer->flush(); }
+
+core::Result<std::vector<KeptVersion>> ResultStore::history(const std::string& program) {
+    const std::lock_guard lock(state_->mutex);
+    std::vector<KeptVersion> versions;
+    Statement& rows = state_->rows_of_program;
+    rows.reset();
+    rows.bind(1, state_->place_of(program));
+    for (bool more = true;;) {
+        FEELER_TRY(more, rows.step());
+        if (!more) break;
+        const KeptRow row{.key = rows.text(6),
+                          .looks = rows.text(4),
+                          .value = rows.text(5),
+                          .seal = rows.text(7)};
+        auto result = result_from_json(row.value);
+        if (!result || row.seal != seal_of(row)) continue;
+        versions.push_back({.checked_at = rows.number(0),
+                            .seen_at = rows.number(8),
+                            .version = rows.text(1),
+                            .setup = rows.text(2),
+                            .options = rows.text(3),
+                            .inputs = row.looks,
+                            .key = row.key,
+                            .result = *std::move(result)});
+    }
+    rows.reset();
+    return versions;
+}
+
+core::Result<int64_t> ResultStore::seen_at(const KeptVersion& version) {
+    const std::lock_guard lock(state_->mutex);
+    Statement& sighting = state_->sighting;
+    sighting.reset();
+    FEELER_TRY(const bool is_there, sighting.bind(1, version.key).bind(2, version.inputs).step());
+    const int64_t at = is_there ? sighting.number(0) : 0;
+    sighting.reset();
+    return at;
+}
+
+StoresBeside::StoresBeside(const std::string& path, const ResultStore& own) : own_(own) {
+    for (const std::string& place : stores_beside(path)) {
+        auto store = ResultStore::open_beside(place, own_);
+        if (!store) continue;
+        const auto keys = store->keys();
+        if (!keys) continue;
+        for (const std::string& key : *keys) paths_of_key_.emplace(key, place);
+    }
+}
+
+ResultStore* StoresBeside::store_at(const std::string& path) {
+    constexpr size_t most_open = 64;
+    if (const auto at = open_.find(path); at != open_.end()) return &at->second;
+    if (open_.size() >= most_open) open_.clear();
+    auto store = ResultStore::open_beside(path, own_);
+    return store ? &open_.emplace(path, *std::move(store)).first->second : nullptr;
+}
+
+std::optional<ProgramResult> StoresBeside::find_in(const std::string& path, const CheckJob& job) {
+    const std::lock_guard lock(mutex_);
+    if (lost_.contains(path)) return std::nullopt;
+    if (ResultStore* const store = store_at(path))
+        if (auto found = store->find(job)) return *std::move(found);
+    lost_.insert(path);
+    return std::nullopt;
+}
+
+std::optional<ProgramResult> StoresBeside::find(const CheckJob& job) {
+    if (paths_of_key_.empty()) return std::nullopt;
+    for (const std::string& key : own_.keys_of(job)) {
+        const auto [first, last] = paths_of_key_.equal_range(key);
+        for (auto at = first; at != last; ++at)
+            if (auto found = find_in(at->second, job)) return found;
+    }
+    return std::nullopt;
+}
+
+} // namespace app

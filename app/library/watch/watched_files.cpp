@@ -1,0 +1,166 @@
+#include "app/library/watch/watched_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "app/base/file_stamp.h"
+#include "app/library/find/program_finder.h"
+#include "gcode/language/program_folder.h"
+
+namespace app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The file that a path leads to; a link that leads nowhere is itself.
+std::string whole_path(const std::string& path) {
+    std::error_code failure;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path, failure), failure);
+    return failure ? path : whole.string();
+}
+
+/// Where a file is, or will be once it is written.
+std::string written_place(const std::string& path) {
+    const fs::path place = place_of(path);
+    return place.empty() ? path : place.string();
+}
+
+/// Why a file is no program, as the search for programs sees it.
+std::string kind_of(const std::string& path) {
+    const auto why = why_no_program(path);
+    if (!why) return "?";
+    return why->value_or("");
+}
+
+/// Those that lead to one file come down to the first.
+std::vector<std::string> each_once(const std::vector<std::string>& paths) {
+    std::vector<std::string> once;
+    std::set<std::string> seen;
+    for (const std::string& path : paths)
+        if (seen.insert(whole_path(path)).second) once.push_back(path);
+    return once;
+}
+
+} // namespace
+
+WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
+    for (const std::string& path : own) add_own(path);
+}
+
+void WatchedFiles::add_own(const std::string& path) {
+    if (path.empty()) return;
+    own_.insert(written_place(path));
+}
+
+bool WatchedFiles::reads(const std::string& path) const {
+    const FileStamp file = stamp_of(path);
+    return std::any_of(own_reads_.begin(), own_reads_.end(),
+                       [&](const std::string& own) { return stamp_of(own) == file; });
+}
+
+bool WatchedFiles::is_own(const std::string& path) const {
+    if (own_.empty()) return false;
+    const std::string whole = written_place(path);
+    return std::any_of(own_.begin(), own_.end(), [&](const std::string& own) {
+        // A database has these beside it.
+        return whole == own || whole == own + "-journal" || whole == own + "-wal"
+               || whole == own + "-shm";
+    });
+}
+
+std::string WatchedFiles::names_of(const std::string& folder) const {
+    std::string names;
+    for (const std::string& name : gcode::names_in(folder))
+        if (name[0] != '.' && !is_own((fs::path(folder) / name).string())) names += name + '\n';
+    return names;
+}
+
+/// A time to come is fresh until it comes: here it counts how long it has been seen.
+bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& stamp) {
+    if (!is_fresh(stamp)) {
+        fresh_.erase(path);
+        return false;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    Seen& seen = fresh_.try_emplace(path, Seen{stamp, now}).first->second;
+    if (seen.stamp != stamp) seen = {stamp, now};
+    return now - seen.since <= tick_of(stamp);
+}
+
+WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& asked,
+                                         const Look& before) {
+    Look look{stamp_of(path)};
+    look.was_fresh = may_be_rewritten(path, look.stamp);
+    const bool is_known = before.stamp == look.stamp && !before.was_fresh;
+    if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
+    if (asked.kind && look.stamp.is_file) // a pipe would never answer
+        look.kind = is_known ? before.kind : kind_of(path);
+    return look;
+}
+
+bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
+    if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder
+        || a.stamp.is_file != b.stamp.is_file)
+        return true;
+    // Of a folder only the names count: also what does not concern anybody changes its times. But
+    // it may be another one, by a link.
+    if (a.stamp.is_folder && (a.stamp.number != b.stamp.number || a.stamp.device != b.stamp.device))
+        return true;
+    if (asked.bytes && !a.stamp.is_folder && a.stamp != b.stamp) return true;
+    return a.names != b.names || a.kind != b.kind;
+}
+
+void WatchedFiles::note(const core::FileLook& look) {
+    using enum core::FileQuestion;
+    const bool is_named = look.question == in_folder;
+    const std::string path = is_named ? (fs::path(look.path) / look.name).string() : look.path;
+    if (path.empty()) return;
+    const std::lock_guard lock(mutex_);
+    if (is_own(path)) {
+        if (look.question == content || is_named) own_reads_.insert(path);
+        return;
+    }
+    const auto [found, is_new] = places_.try_emplace(path);
+    Place& place = found->second;
+    const Asked before = place.asked;
+    place.asked.bytes |= look.question == content || is_named;
+    place.asked.names |= look.question == listing || look.question == any_case;
+    place.asked.kind |= look.question == kind;
+    if (!is_new && place.asked == before) return;
+    place.latest = look_at(path, place.asked, {});
+    place.first = place.latest;
+}
+
+WatchedFiles::Change WatchedFiles::look_again() {
+    Change change;
+    for (auto& [path, place] : places_) {
+        Look look = look_at(path, place.asked, place.latest);
+        if (differ(place.asked, look, place.latest))
+            (place.asked.names ? change.are_names_settled : change.are_files_settled) = false;
+        place.latest = std::move(look);
+        const bool was_written = place.asked.bytes && place.first.was_fresh;
+        const bool differs = differ(place.asked, place.latest, place.first);
+        if (was_written || differs) change.paths.push_back(path);
+        if (was_written && !differs && place.latest.was_fresh) change.are_files_settled = false;
+    }
+    change.paths = each_once(change.paths);
+    return change;
+}
+
+using namespace std::chrono_literals;
+
+bool WatchPace::is_time(const WatchedFiles::Change& change, Clock::time_point begin,
+                        Clock::duration took) {
+    constexpr int idle_share = 20; // of the time to that of looking
+    pause_ = std::max(least_pause, idle_share * took);
+    if (change.paths.empty()) {
+        since_ = begin + took;
+        return false;
+    }
+    const Clock::duration waited = begin - since_;
+    const bool are_names_settled = change.are_names_settled || waited > 2s;
+    return (change.are_files_settled && are_names_settled) || waited > 30s;
+}
+
+} // namespace app

@@ -1,0 +1,128 @@
+#include "app/report/exchange/junit_report.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/base/text.h"
+
+namespace app {
+namespace {
+
+/// A character of a text as XML 1.0 has it; most control characters have no place there at all.
+std::string xml_character(char c) {
+    switch (c) {
+    case '&':
+        return "&amp;";
+    case '<':
+        return "&lt;";
+    case '>':
+        return "&gt;";
+    case '"':
+        return "&quot;";
+    case '\r':
+        return "&#13;";
+    case '\n':
+    case '\t':
+        return {c};
+    default:
+        return static_cast<unsigned char>(c) < 0x20 ? "?" : std::string(1, c);
+    }
+}
+
+/// A text in UTF-8 inside of an element.
+std::string xml_text(const std::string& text) {
+    std::string safe;
+    for (size_t i = 0; i < text.size(); ++i) {
+        // U+FFFE and U+FFFF are no characters of XML.
+        const bool is_none =
+            text.compare(i, 3, "\xEF\xBF\xBE") == 0 || text.compare(i, 3, "\xEF\xBF\xBF") == 0;
+        safe += is_none ? "?" : xml_character(text[i]);
+        if (is_none) i += 2;
+    }
+    return safe;
+}
+
+/// The same inside of an attribute, where a line end would be read as a blank.
+std::string xml_attribute(const std::string& text) {
+    std::string safe;
+    for (const char c : xml_text(text))
+        safe += c == '\n' || c == '\t' ? fmt::format("&#{};", int(c)) : std::string(1, c);
+    return safe;
+}
+
+std::string finding_text(const KeptFinding& finding) {
+    std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
+    if (!finding.file.empty()) text += " in " + finding.file;
+    if (finding.line != 0)
+        text += fmt::format(", line {}: {}", finding.line, trimmed(finding.text));
+    text += "\n    " + finding.message;
+    if (!finding.cure.empty()) text += " " + finding.cure;
+    return text + "\n";
+}
+
+/// The findings that count as errors, or the others.
+std::string findings_text(const ProgramResult& program, bool errors) {
+    std::string text;
+    for (const KeptFinding& finding : program.findings)
+        if ((finding.severity == core::Severity::error) == errors) text += finding_text(finding);
+    return text;
+}
+
+/// Folder and name of a program, as the attributes of its case.
+std::string name_attributes(const std::string& program) {
+    const std::filesystem::path path(program);
+    const std::string folder = path.parent_path().string();
+    return fmt::format("name=\"{}\" classname=\"{}\"", xml_attribute(path.filename().string()),
+                       xml_attribute(folder.empty() ? "." : folder));
+}
+
+std::string case_of(const ProgramResult& program) {
+    std::string text = fmt::format("    <testcase {} time=\"{:.3f}\">\n",
+                                   name_attributes(program.program), program.seconds);
+    const std::string errors = findings_text(program, true), others = findings_text(program, false);
+    if (program.error) {
+        const KeptError& error = *program.error;
+        const std::string place = error.line == 0 ? "" : fmt::format("line {}: ", error.line);
+        text += fmt::format(
+            "      <error message=\"{}\" type=\"not-run-to-its-end\">{}</error>\n",
+            xml_attribute(place + error.message),
+            xml_text(fmt::format("{}:{}: {}\n{}", error.file, error.line, error.message, errors)));
+    } else if (!errors.empty()) {
+        text += fmt::format("      <failure message=\"{}: {}\" type=\"{}\">{}</failure>\n",
+                            core::name_of(program.verdict),
+                            counted(count_of(program, core::Severity::error), "error"),
+                            core::name_of(program.verdict), xml_text(errors));
+    }
+    if (!others.empty()) text += "      <system-out>" + xml_text(others) + "</system-out>\n";
+    return text + "    </testcase>\n";
+}
+
+} // namespace
+
+std::string junit_report(const BatchResult& batch) {
+    size_t failures = 0, errors = 0;
+    double seconds = 0.0;
+    std::string cases;
+    for (const ProgramResult& program : batch.programs) {
+        errors += status_of(program) == 2;
+        failures += status_of(program) == 1;
+        seconds += program.seconds;
+        cases += case_of(program);
+    }
+    for (const std::string& program : batch.unchecked)
+        cases +=
+            fmt::format("    <testcase {} time=\"0\">\n      <error message=\"was not checked: "
+                        "the batch was ended before\"/>\n    </testcase>\n",
+                        name_attributes(program));
+    errors += batch.unchecked.size(); // nobody is to take a batch that was cut short for a good one
+    const std::string counts =
+        fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"",
+                    batch.programs.size() + batch.unchecked.size(), failures, errors, seconds);
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+           + fmt::format("<testsuites name=\"feeler\" {0}>\n  <testsuite name=\"feeler check{1}\" "
+                         "{0} skipped=\"0\">\n{2}  </testsuite>\n</testsuites>\n",
+                         counts, batch.share.empty() ? "" : ", " + batch.share, cases);
+}
+
+} // namespace app

@@ -1,0 +1,271 @@
+#include "app/report/exchange/sarif_report.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/base/sha256.h"
+#include "app/base/version.h"
+#include "app/library/result/program_diff.h"
+#include "app/report/exchange/rule_help.h"
+#include "app/report/text/batch_text.h"
+#include "core/sim/finding.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of a program that could not be run to its end: no rule of a set-up.
+constexpr const char* not_run = "not-run-to-its-end";
+
+/// Of one that the check was ended before: hosts go by results, and would show green.
+constexpr const char* not_checked = "not-checked";
+
+/// Code hosts refuse a file that has more.
+constexpr size_t most_results = 25'000;
+
+const char* level_of(core::Severity severity) {
+    return severity == core::Severity::off ? "none" : core::name_of(severity);
+}
+
+Json rule_json(const std::string& name, const std::string& finds, const std::string& cure,
+               core::Severity severity) {
+    return {{"id", name},
+            {"shortDescription", {{"text", finds}}},
+            {"fullDescription", {{"text", finds}}},
+            {"help", {{"text", cure}}},
+            {"defaultConfiguration", {{"level", level_of(severity)}}}};
+}
+
+Json rules_json() {
+    Json rules = Json::array();
+    for (const core::RuleEntry& rule : core::rule_table()) {
+        const RuleHelp help = help_of(rule.name);
+        rules.push_back(
+            rule_json(rule.name, std::string(help.finds), std::string(help.cure), rule.severity));
+    }
+    rules.push_back(
+        rule_json(not_run, "The program could not be run to its end.",
+                  "Correct what the message says; what comes behind it was not checked.",
+                  core::Severity::error));
+    rules.push_back(rule_json(not_checked, "The check was ended before this program.",
+                              "Check it again: nothing is known of it.", core::Severity::error));
+    return rules;
+}
+
+size_t index_of(const std::string& rule) {
+    const auto rules = core::rule_table();
+    const auto found = std::find_if(rules.begin(), rules.end(), [&](const core::RuleEntry& entry) {
+        return entry.name == rule;
+    });
+    const size_t behind = rule == not_checked ? 1 : 0; // `not_run`, which stands behind the last
+    return static_cast<size_t>(found - rules.begin()) + behind;
+}
+
+/// A place in a file; the first line where none is known, as code hosts show nothing else. The
+/// bytes of the name are those on the disk.
+Json location_json(const std::string& file, const FileBytes& bytes, uint32_t line,
+                   uint32_t column) {
+    const std::string uri = uri_of(name_shown_as(file, bytes));
+    Json artifact = {{"uri", uri}};
+    if (!uri.starts_with("file:")) artifact["uriBaseId"] = "%SRCROOT%";
+    return {
+        {"physicalLocation",
+         {{"artifactLocation", artifact},
+          {"region", {{"startLine", std::max(line, 1U)}, {"startColumn", std::max(column, 1U)}}}}}};
+}
+
+Json finding_json(const ProgramResult& program, const KeptFinding& finding, size_t before) {
+    const std::string& file = finding.file.empty() ? program.program : finding.file;
+    const std::string cure = finding.cure.empty() ? "" : " " + finding.cure;
+    Json json = {
+        {"ruleId", finding.rule},
+        {"ruleIndex", index_of(finding.rule)},
+        {"level", level_of(finding.severity)},
+        {"message", {{"text", finding.message + cure}}},
+        {"locations", Json::array({location_json(file, program.file_bytes, finding.line, 1)})},
+        {"partialFingerprints", {{"feeler/v1", fingerprint_of(finding, before)}}}};
+    json["properties"] = {{"program", program.program}, {"shortfall", finding.shortfall}};
+    if (finding.block) json["properties"]["block"] = *finding.block;
+    return json;
+}
+
+Json error_json(const ProgramResult& program) {
+    const KeptError& error = *program.error;
+    return {
+        {"ruleId", not_run},
+        {"ruleIndex", index_of(not_run)},
+        {"level", "error"},
+        {"message", {{"text", error.message}}},
+        {"locations", Json::array({location_json(error.file.empty() ? program.program : error.file,
+                                                 program.file_bytes, error.line, error.column)})},
+        {"partialFingerprints",
+         {{"feeler/v1", sha256_of(std::string(not_run) + "\n" + error.message)}}}};
+}
+
+Json unchecked_json(const std::string& program, const FileBytes& bytes) {
+    return {{"ruleId", not_checked},
+            {"ruleIndex", index_of(not_checked)},
+            {"level", "error"},
+            {"message", {{"text", "This program was not checked."}}},
+            {"locations", Json::array({location_json(program, bytes, 1, 1)})},
+            {"partialFingerprints", {{"feeler/v1", sha256_of(not_checked)}}}};
+}
+
+/// How early a result is told where there are too many: errors first, then how many worse ones its
+/// program has, which come before it.
+using Urgency = std::pair<int, size_t>;
+
+/// Of the findings of a program, in their order. What could not be run or was not checked is {0,
+/// 0}.
+std::vector<Urgency> urgencies_of(const std::vector<KeptFinding>& findings) {
+    std::vector<size_t> worst_first(findings.size());
+    std::iota(worst_first.begin(), worst_first.end(), size_t(0));
+    std::stable_sort(worst_first.begin(), worst_first.end(), [&](size_t a, size_t b) {
+        const KeptFinding &one = findings[a], &other = findings[b];
+        if (one.severity != other.severity) return one.severity > other.severity;
+        return one.shortfall > other.shortfall;
+    });
+    std::vector<Urgency> urgencies(findings.size());
+    for (size_t rank = 0; rank < worst_first.size(); ++rank) {
+        const core::Severity severity = findings[worst_first[rank]].severity;
+        const int milder = static_cast<int>(core::Severity::error) - static_cast<int>(severity);
+        urgencies[worst_first[rank]] = {milder, rank};
+    }
+    return urgencies;
+}
+
+/// Which results are told, in the order in which results_json comes to them.
+std::vector<bool> told_results(const BatchResult& batch) {
+    std::vector<Urgency> all;
+    for (const ProgramResult& program : batch.programs) {
+        const std::vector<Urgency> urgencies = urgencies_of(program.findings);
+        all.insert(all.end(), urgencies.begin(), urgencies.end());
+        if (program.error) all.push_back({0, 0});
+    }
+    all.resize(all.size() + batch.unchecked.size());
+    std::vector<size_t> order(all.size());
+    std::iota(order.begin(), order.end(), size_t(0));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return all[a] < all[b]; });
+    std::vector<bool> is_told(all.size(), false);
+    for (size_t i = 0; i < std::min(order.size(), most_results); ++i) is_told[order[i]] = true;
+    return is_told;
+}
+
+Json results_json(const BatchResult& batch, const std::vector<bool>& is_told) {
+    Json results = Json::array();
+    size_t next = 0;
+    for (const ProgramResult& program : batch.programs) {
+        std::map<std::string, size_t> seen; // by the fingerprint of the first of its kind
+        for (const KeptFinding& finding : program.findings) {
+            const size_t before = seen[fingerprint_of(finding, 0)]++;
+            if (is_told[next++]) results.push_back(finding_json(program, finding, before));
+        }
+        if (program.error && is_told[next++]) results.push_back(error_json(program));
+    }
+    for (const std::string& program : batch.unchecked)
+        if (is_told[next++]) results.push_back(unchecked_json(program, batch.file_bytes));
+    return results;
+}
+
+Json notification_json(const std::string& level, const std::string& text) {
+    return {{"level", level}, {"message", {{"text", text}}}};
+}
+
+Json notification_json(const std::string& level, const std::string& text, const Json& location) {
+    Json json = notification_json(level, text);
+    json["locations"] = Json::array({location});
+    return json;
+}
+
+/// A note for each file that was skipped; one for all of many that were for the same reason, as
+/// code hosts refuse what is too long.
+void add_skipped(Json& notes, const BatchResult& batch) {
+    constexpr size_t few = 100;
+    for (const SkippedGroup& group : skipped_groups(batch.skipped)) {
+        const size_t count = group.files.size();
+        const bool each = count <= few;
+        if (!each)
+            notes.push_back(notification_json(
+                "note", fmt::format("this and {} more were skipped: {}", count - 1, group.why),
+                location_json(group.files[0], batch.file_bytes, 1, 1)));
+        for (size_t i = 0; each && i < count; ++i)
+            notes.push_back(
+                notification_json("note", "was skipped: " + group.why,
+                                  location_json(group.files[i], batch.file_bytes, 1, 1)));
+    }
+}
+
+Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_told) {
+    Json notes = Json::array();
+    if (const auto left_out = std::count(is_told.begin(), is_told.end(), false); left_out > 0)
+        notes.push_back(notification_json(
+            "warning",
+            fmt::format(
+                "left out: {} of the results, as code hosts take no more than {} of one run; "
+                "these are the worst; --format json has all",
+                left_out, most_results)));
+    for (const ProgramResult& program : batch.programs)
+        if (program.error) {
+            const KeptError& error = *program.error;
+            notes.push_back(
+                notification_json("error", error.message,
+                                  location_json(error.file.empty() ? program.program : error.file,
+                                                program.file_bytes, error.line, error.column)));
+        }
+    for (const std::string& program : batch.unchecked)
+        notes.push_back(notification_json("error", "was not checked",
+                                          location_json(program, batch.file_bytes, 1, 1)));
+    add_skipped(notes, batch);
+    return {{"executionSuccessful", status_of(batch) != 2},
+            {"exitCode", status_of(batch)},
+            {"toolExecutionNotifications", notes}};
+}
+
+} // namespace
+
+std::string uri_of(const std::string& path) {
+    std::string uri = path.starts_with('/') ? "file://" : "";
+    for (const char c : path) {
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
+                              || (c >= '0' && c <= '9')
+                              || std::string_view("-._~/").find(c) != std::string_view::npos;
+        if (is_plain)
+            uri += c;
+        else
+            uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return uri;
+}
+
+std::string fingerprint_of(const KeptFinding& finding, size_t before) {
+    return sha256_of(fmt::format("{}\n{}\n{}\n{}\n{}", finding.rule, finding.pair[0],
+                                 finding.pair[1], without_number(finding.text), before));
+}
+
+std::string sarif_report(const BatchResult& batch, const std::string& folder) {
+    const std::string root = uri_of(folder);
+    const std::vector<bool> is_told = told_results(batch);
+    const Json driver = {{"name", "Feeler"},
+                         {"version", version},
+                         {"semanticVersion", version},
+                         {"rules", rules_json()}};
+    Json run = {
+        {"tool", {{"driver", driver}}},
+        {"invocations", Json::array({invocation_json(batch, is_told)})},
+        {"originalUriBaseIds", {{"%SRCROOT%", {{"uri", root.ends_with('/') ? root : root + "/"}}}}},
+        {"columnKind", "unicodeCodePoints"},
+        {"results", results_json(batch, is_told)}};
+    if (!batch.share.empty()) run["automationDetails"] = {{"description", {{"text", batch.share}}}};
+    const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+                      {"version", "2.1.0"},
+                      {"runs", Json::array({run})}};
+    return log.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "app/library/result/batch_result.h"
+
+namespace app {
+
+/// A batch as SARIF 2.1.0, for code hosts: a result for each finding, at its line; the rules with
+/// their help; a result and a notification for each program that could not be run to its end, or
+/// was not checked. Of more than 25,000 results, which code hosts refuse, the worst: errors first,
+/// and the worst of each program before its others; a notification says how many are left out.
+/// `folder` is the one that relative paths count from, as an absolute path.
+///
+/// Fingerprints are made of rule, bodies, the block's text without its number, and how often the
+/// same has come before: they stay when blocks are renumbered or others are put in.
+std::string sarif_report(const BatchResult& batch, const std::string& folder);
+
+/// A path as a reference that stands in a URI: what is not plain is escaped; absolute ones become
+/// file:///...
+std::string uri_of(const std::string& path);
+
+/// What tells a finding from others in its program. `before` is how many equal ones there were.
+std::string fingerprint_of(const KeptFinding& finding, size_t before);
+
+} // namespace app

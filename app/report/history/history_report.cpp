@@ -1,0 +1,130 @@
+#include "app/report/history/history_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/base/text.h"
+#include "app/base/version.h"
+#include "app/library/result/program_diff.h"
+#include "app/report/text/diff_report.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int64_t microseconds = 1'000'000; // in a second
+
+/// The version before one that was checked in the same way; null if there is none.
+const KeptVersion* before(const std::vector<KeptVersion>& versions, size_t place) {
+    const KeptVersion& asked = versions[place];
+    while (place-- > 0)
+        if (versions[place].setup == asked.setup && versions[place].options == asked.options)
+            return &versions[place];
+    return nullptr;
+}
+
+std::string time_text(const char* form, int64_t seconds) {
+    return fmt::format(fmt::runtime(form), fmt::gmtime(static_cast<std::time_t>(seconds)));
+}
+
+std::string minute_text(int64_t seconds) { return time_text("{:%Y-%m-%d %H:%M}", seconds); }
+
+std::string nearest_text(const ProgramResult& result) {
+    if (!result.tightest) return "nothing came near";
+    const Tightest& tightest = *result.tightest;
+    return fmt::format("{} mm {} / {}, line {}",
+                       tightest.upper ? core::bounds_below(tightest.lower, *tightest.upper,
+                                                           tightest.allowance, "-")
+                                      : ">= " + core::clearance_at_least(tightest.lower),
+                       trimmed(tightest.pair[0]), trimmed(tightest.pair[1]), tightest.line);
+}
+
+std::string findings_text(const ProgramResult& result) {
+    size_t errors = 0, warnings = 0;
+    for (const KeptFinding& finding : result.findings) {
+        errors += finding.severity == core::Severity::error;
+        warnings += finding.severity == core::Severity::warning;
+    }
+    return counted(errors, "error") + ", " + counted(warnings, "warning");
+}
+
+std::string change_text(const ProgramChange& change) {
+    std::string text;
+    constexpr double least = 0.0005; // what would be shown as 0
+    if (change.nearer && std::abs(*change.nearer) >= least)
+        text += fmt::format("    {:.3f} mm {} what must be kept\n", std::abs(*change.nearer),
+                            *change.nearer > 0.0 ? "nearer to" : "farther from");
+    if (std::abs(change.longer) >= 0.05)
+        text += fmt::format("    {:.1f} s {}\n", std::abs(change.longer),
+                            change.longer > 0.0 ? "longer" : "shorter");
+    for (const KeptFinding& finding : change.new_findings)
+        text += "    new:  " + finding_line(finding) + "\n";
+    for (const KeptFinding& finding : change.gone_findings)
+        text += "    gone: " + finding_line(finding) + "\n";
+    return text.empty() ? "    nothing else is other than before\n" : text;
+}
+
+std::string version_text(const KeptVersion& kept, const KeptVersion* earlier) {
+    const ProgramResult& result = kept.result;
+    const std::string checked = minute_text(kept.checked_at);
+    const std::string seen = minute_text(kept.seen_at / microseconds);
+    std::string text =
+        fmt::format("{} UTC  {}\n", checked,
+                    result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
+    if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
+    text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
+                        duration_text(result.cycle_time), findings_text(result));
+    text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
+                        kept.setup.empty() ? "set-up inferred" : "set-up " + trimmed(kept.setup),
+                        kept.version.substr(0, kept.version.find(' ')));
+    return earlier ? text + change_text(change_between(earlier->result, result)) : text;
+}
+
+Json change_json(const ProgramChange& change) {
+    return {{"nearer", change.nearer ? Json(*change.nearer) : Json(nullptr)},
+            {"longer", change.longer},
+            {"verdict_differs", change.verdict_differs},
+            {"new_findings", findings_json(change.new_findings)},
+            {"gone_findings", findings_json(change.gone_findings)}};
+}
+
+} // namespace
+
+std::string history_text(const std::string& program, const std::vector<KeptVersion>& versions) {
+    std::string text =
+        fmt::format("{}: {}\n", trimmed(program), counted(versions.size(), "version"));
+    for (size_t i = 0; i < versions.size(); ++i)
+        text += "\n" + version_text(versions[i], before(versions, i));
+    return printable(text);
+}
+
+std::string history_json(const std::string& program, const std::vector<KeptVersion>& versions) {
+    Json json = {{"feeler", version},
+                 {"schema", 1},
+                 {"program", utf8_text(program)},
+                 {"versions", Json::array()}};
+    for (size_t i = 0; i < versions.size(); ++i) {
+        const KeptVersion& kept = versions[i];
+        const KeptVersion* earlier = before(versions, i);
+        json["versions"].push_back(
+            {{"checked_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.checked_at)},
+             {"seen_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.seen_at / microseconds)},
+             {"feeler", kept.version},
+             {"setup", utf8_text(kept.setup)},
+             {"options", Json::parse(kept.options)},
+             {"inputs", kept.inputs},
+             {"result", Json::parse(json_of(kept.result))},
+             {"change", earlier ? change_json(change_between(earlier->result, kept.result))
+                                : Json(nullptr)}});
+    }
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace app

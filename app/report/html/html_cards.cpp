@@ -1,0 +1,158 @@
+#include "app/report/html/html_cards.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/base/text.h"
+#include "app/report/html/html_text.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+using viewer::FindingGroup;
+using viewer::FindingStretch;
+
+constexpr size_t most_places = 12; // of a card; the table has them all
+
+const BlockView* view_of(const ReportViews& views, size_t block) {
+    for (const BlockView& view : views.views)
+        if (view.block == block) return &view;
+    return nullptr;
+}
+
+/// "line 23", or "O1000.nc, line 23" in a subprogram's file.
+std::string line_of(const CheckedBlock& block) {
+    const std::string line = fmt::format("line {}", block.line);
+    return block.file.empty() ? line : html_text(block.file) + ", " + line;
+}
+
+void add_new(std::vector<size_t>& blocks, size_t block) {
+    if (std::find(blocks.begin(), blocks.end(), block) == blocks.end()) blocks.push_back(block);
+}
+
+std::string picture_of(const CheckRun& run, const std::string& rule, size_t block,
+                       const ReportViews& views) {
+    const BlockView* view = view_of(views, block);
+    if (!view || view->picture.empty()) return "";
+    return fmt::format(
+        R"(<button type="button" class="shot" data-block="{0}" aria-label="Show block {0} in 3D">)"
+        R"(<img alt="{1} in block {0}, {2}" src="data:image/jpeg;base64,{3}"></button>)",
+        block, html_text(rule), line_of(run.blocks[block]), base64(view->picture));
+}
+
+std::string clearance_of(const FindingStretch& stretch) {
+    return stretch.clearance ? " \xC2\xB7 " + core::clearance_at_least(*stretch.clearance) + " mm"
+                             : std::string();
+}
+
+std::string place_button(const CheckRun& run, const FindingStretch& stretch) {
+    const CheckedBlock &first = run.blocks[stretch.first], &last = run.blocks[stretch.last];
+    std::string lines = line_of(first);
+    if (last.line != first.line) lines += fmt::format("\xE2\x80\x93{}", last.line);
+    return fmt::format(R"(<li><button type="button" data-block="{}">{}{}</button></li>)",
+                       stretch.worst, lines, clearance_of(stretch));
+}
+
+std::string places_of(const CheckRun& run, const FindingGroup& group) {
+    if (group.stretches.size() < 2) return "";
+    std::string list = R"(<ul class="places">)";
+    for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
+        list += place_button(run, group.stretches[i]);
+    if (group.stretches.size() > most_places)
+        list += fmt::format(R"(<li><button type="button" data-rule="{}">and {} more</button></li>)",
+                            html_text(group.rule), group.stretches.size() - most_places);
+    return list + "</ul>";
+}
+
+std::string heading_of(const FindingGroup& group) {
+    const char* severity = core::name_of(group.severity);
+    std::string heading = fmt::format(R"(<header><span class="badge {0}">{0}</span><h3>{1}</h3>)",
+                                      severity, html_text(group.rule));
+    if (!group.pair[0].empty())
+        heading += fmt::format(R"(<span class="pair">{} / {}</span>)", html_text(group.pair[0]),
+                               html_text(group.pair[1]));
+    return heading + "</header>";
+}
+
+std::string said(const std::string& message, const std::string& cure) {
+    std::string text = "<p>" + html_text(message) + "</p>";
+    if (!cure.empty()) text += R"(<p class="cure"><b>Cure:</b> )" + html_text(cure) + "</p>";
+    return text;
+}
+
+std::string card_of(const CheckRun& run, const FindingGroup& group, const ReportViews& views) {
+    std::string card = fmt::format(R"(<article class="card {}">)", core::name_of(group.severity))
+                       + heading_of(group);
+    if (group.stretches.empty()) return card + said(group.message, group.cure) + "</article>\n";
+    const FindingStretch& worst = group.stretches[group.worst];
+    const CheckedBlock& block = run.blocks[worst.worst];
+    card += picture_of(run, group.rule, worst.worst, views) + said(worst.message, worst.cure);
+    card += fmt::format(
+        R"(<p class="where"><button type="button" data-block="{}">Block {}, {}{}</button> )"
+        R"(<code>{}</code>{}</p>)",
+        worst.worst, worst.worst, line_of(block), clearance_of(worst),
+        html_text(trimmed(block.text)),
+        group.count > 1 ? fmt::format(" The worst of {} blocks.", group.count) : std::string());
+    return card + places_of(run, group) + "</article>\n";
+}
+
+/// The block that comes nearest, where nothing was found of any.
+std::string tightest_card(const CheckRun& run, const ReportViews& views) {
+    const CheckedBlock* nearest = nearest_block(run);
+    if (!nearest) return "";
+    const size_t block = core::value_of(nearest->block);
+    const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
+    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
+    return fmt::format(
+               R"(<article class="card"><header><span class="badge">tightest</span><h3>{}</h3>)"
+               R"(<span class="pair">{} / {}</span></header>)",
+               line_of(*nearest), html_text(core::part_name(run.setup, pair.pair)),
+               html_text(core::body_name(run.setup, pair.pair)))
+           + picture_of(run, "tightest", block, views)
+           + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
+                         "\xC2\xB7 {1}, {2} mm to keep</button> <code>{3}</code></p>"
+                         "</article>\n",
+                         block, bounds_text(pair.lower, upper, pair.allowance.distance),
+                         core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));
+}
+
+} // namespace
+
+std::vector<FindingGroup> finding_groups(const CheckRun& run) {
+    std::vector<viewer::BlockRow> rows;
+    rows.reserve(run.blocks.size());
+    for (const CheckedBlock& block : run.blocks) rows.push_back(viewer::row_of(run.setup, block));
+    return viewer::grouped(rows, run.findings);
+}
+
+std::vector<size_t> blocks_of_cards(const CheckRun& run) {
+    std::vector<size_t> blocks;
+    for (const FindingGroup& group : finding_groups(run))
+        if (!group.stretches.empty()) add_new(blocks, group.stretches[group.worst].worst);
+    const CheckedBlock* nearest = nearest_block(run);
+    if (blocks.empty() && nearest) blocks.push_back(core::value_of(nearest->block));
+    return blocks;
+}
+
+std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most) {
+    std::vector<size_t> blocks = blocks_of_cards(run);
+    for (const FindingGroup& group : finding_groups(run))
+        for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
+            add_new(blocks, group.stretches[i].worst);
+    if (blocks.size() > most) blocks.resize(most);
+    return blocks;
+}
+
+std::string html_cards(const CheckRun& run, const ReportViews& views) {
+    std::string cards;
+    const auto groups = finding_groups(run);
+    for (const FindingGroup& group : groups) cards += card_of(run, group, views);
+    if (groups.empty()) cards = R"(<p class="none">Nothing was found.</p>)";
+    const bool has_block = std::any_of(groups.begin(), groups.end(),
+                                       [](const auto& group) { return !group.stretches.empty(); });
+    return has_block ? cards : cards + tightest_card(run, views);
+}
+
+} // namespace app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "app/view/model/finding_group.h"
+
+namespace app {
+
+/// What a report shows of one block.
+struct BlockView {
+    size_t block = 0;
+    std::string picture; // a JPEG's bytes; empty: there is none
+    std::string scene;   // a JSON object for the page's 3D view; empty: there is none
+};
+
+/// Everything that a report has to look at.
+struct ReportViews {
+    std::vector<BlockView> views;
+    std::string meshes;      // a JSON array that the scenes refer to
+    std::string no_pictures; // why there are none, in a sentence; else empty
+};
+
+/// The findings of a check as the window groups them.
+std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
+
+/// The blocks that have a card of their own: the worst one of each group of findings; without any,
+/// the block with the least margin.
+std::vector<size_t> blocks_of_cards(const CheckRun& run);
+
+/// The blocks that a report should show, at most so many, the most telling ones first: those of
+/// cards, then those of the groups' other stretches.
+std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most);
+
+/// A card for each group of findings, as HTML.
+std::string html_cards(const CheckRun& run, const ReportViews& views);
+
+} // namespace app

@@ -1,0 +1,106 @@
+#include "app/report/html/html_facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/base/text.h"
+#include "app/check/conclusion.h"
+#include "app/report/html/html_text.h"
+#include "app/report/text/text_report.h"
+#include "core/motion/path.h"
+#include "core/motion/timing.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+std::string row(const std::string& name, const std::string& value) {
+    return fact_row(name, html_text(value));
+}
+
+std::string term(const std::string& name, const std::string& size, const std::string& about) {
+    return fmt::format(
+        "<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
+        html_text(name), html_text(size), html_text(about));
+}
+
+std::string tightest_text(const CheckRun& run) {
+    const CheckedBlock* block = nearest_block(run);
+    if (!block) return "no pair of bodies came near";
+    const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
+    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
+    return fmt::format("{}, {} mm to keep: {} / {} in block {}, line {}",
+                       bounds_text(pair.lower, upper, pair.allowance.distance),
+                       core::at_most(pair.allowance.distance),
+                       core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
+                       core::value_of(block->block), block->line);
+}
+
+/// The widest interval of all pairs that decide a block, mm; empty if none was measured.
+std::optional<double> widest_interval(const CheckRun& run) {
+    std::optional<double> widest;
+    for (const CheckedBlock& block : run.blocks) {
+        if (!block.result.deciding) continue;
+        const core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+        if (pair.found()) widest = std::max(widest.value_or(0.0), pair.upper - pair.lower);
+    }
+    return widest;
+}
+
+} // namespace
+
+std::string fact_row(const std::string& name, const std::string& html) {
+    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name), html);
+}
+
+std::string html_summary(const CheckRun& run) {
+    const auto moving =
+        std::count_if(run.blocks.begin(), run.blocks.end(), [](const CheckedBlock& block) {
+            return block.result.motion != core::BlockMotion::none;
+        });
+    std::string rows;
+    if (run.stopped) rows += row("stopped", error_text(*run.stopped));
+    rows += row("findings", counts_text(run)) + row("tightest", tightest_text(run));
+    rows += row("blocks", fmt::format("{}, {} of them move", run.blocks.size(), moving));
+    rows += row("cycle time", duration_text(run.cycle_time));
+    rows += row("removed", fmt::format("{:.1f} mm\xC2\xB3", run.removed));
+    rows += row("allowance", run.setup.allowance ? fmt::format("{} mm", *run.setup.allowance)
+                                                 : "as usual for each pair of bodies");
+    rows += row("dialect", std::string(gcode::dialect(run.dialect).name));
+    rows += row("engine", name_of(run.engine));
+    if (run.comparison) rows += row("part", facts_of(*run.comparison, run.setup.part->tolerance));
+    rows += row("model", fmt::format("{} scan lines, {} points, {:.0f} MB; checked in {:.2f} s",
+                                     run.lines, run.points, std::ceil(1e-6 * run.memory),
+                                     run.times.read + run.times.model + run.times.check));
+    return rows + row("SHA-256 of the program", run.sha256);
+}
+
+std::string html_bound_terms(const CheckRun& run) {
+    const double h = run.setup.mesh_size;
+    std::string rows = term(
+        "cell", fmt::format("{} mm", h),
+        fmt::format("Scan lines of the stock stand so far apart. The lower bound counts all "
+                    "matter that may be between them; {} squares were worked out afresh at a finer "
+                    "mesh size to decide a verdict.",
+                    run.statistics.refined));
+    rows += term("chord", core::at_most(core::chord_error(h), 4) + " mm",
+                 "Arcs are cut and checked as chords within this of them.");
+    rows += term("path tolerance", fmt::format("{} mm", core::default_blend_tolerance),
+                 "A control may round corners by this where the program does not say how. "
+                 "Clearances are those of sharp corners.");
+    rows += term("stock tolerance", fmt::format("{} mm", run.setup.stock.tolerance),
+                 "So much larger the raw stock may be all round, as the set-up says.");
+    rows += term("resolution", fmt::format("{:g} mm", core::resolution),
+                 "A clearance that keeps its allowance to within this keeps it.");
+    rows += term("search limit", fmt::format("{} mm", run.setup.search_limit),
+                 "Nothing farther away is measured.");
+    if (const auto widest = widest_interval(run))
+        rows += term("widest interval", core::at_most(*widest) + " mm",
+                     "The most by which lower and upper bound of a deciding pair differ in any "
+                     "block.");
+    return rows;
+}
+
+} // namespace app

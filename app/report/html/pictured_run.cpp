@@ -1,0 +1,294 @@
+#include "app/report/html/pictured_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/report/html/html_cards.h"
+#include "app/report/html/html_text.h"
+#include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
+#include "app/view/model/session_worker.h"
+#include "render/camera.h"
+#include "render/coarse_mesh.h"
+#include "render/offscreen.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+
+namespace app {
+
+namespace {
+
+constexpr size_t stock_triangles = 6000, body_triangles = 4000;
+
+const char* name_of(render::BodyRole role) {
+    constexpr const char* names[] = {"fixture", "clamp", "machine", "flutes", "shank",
+                                     "holder",  "nose",  "stock",   "part"};
+    return names[static_cast<size_t>(role)];
+}
+
+const char* name_of(render::ClearanceState state) {
+    constexpr const char* names[] = {"", "clear", "near", "violation"};
+    return names[static_cast<size_t>(state)];
+}
+
+/// Whole um, without trailing zeros.
+std::string number(double mm) {
+    const double rounded = std::round(1e3 * mm) / 1e3;
+    return fmt::format("{}", rounded == 0.0 ? 0.0 : rounded);
+}
+
+std::string numbers(const core::Vec3& p) {
+    return number(p.x) + "," + number(p.y) + "," + number(p.z);
+}
+
+/// Its three rows.
+std::string numbers(const core::Transform& transform) {
+    std::string text;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            text += fmt::format("{:.9g},", transform.rotation[column][row] + 0.0);
+        text += number(transform.translation[row]) + (row < 2 ? "," : "");
+    }
+    return text;
+}
+
+template <typename Number>
+void append(std::string& bytes, Number value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value); // browsers and all machines that Feeler runs on agree
+    bytes.append(raw, sizeof value);
+}
+
+/// A piece of the path that is drawn in one way.
+struct Stretch {
+    bool rapid = false, current = false;
+    std::vector<std::string> places;
+};
+
+std::string json_of(const Stretch& stretch) {
+    return fmt::format(R"({{"rapid":{},"current":{},"places":[{}]}})", stretch.rapid,
+                       stretch.current, fmt::join(stretch.places, ","));
+}
+
+/// The way of the tip, with the pieces of a block by themselves.
+std::string path_json(const render::ToolPath& path, uint32_t block) {
+    std::vector<std::string> pieces;
+    Stretch stretch;
+    for (const render::PathPoint& point : path.points) {
+        const bool is_current = point.block == block;
+        const bool changes = stretch.rapid != point.rapid || stretch.current != is_current;
+        if (point.begins || changes) {
+            if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
+            std::vector<std::string> places;
+            if (!point.begins && !stretch.places.empty()) places = {stretch.places.back()};
+            stretch = {point.rapid, is_current, std::move(places)};
+        }
+        stretch.places.push_back(numbers(core::Vec3(point.place)));
+    }
+    if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
+    return fmt::format("[{}]", fmt::join(pieces, ","));
+}
+
+} // namespace
+
+std::string mesh_json(const render::TriangleMesh& mesh) {
+    core::Aabb box;
+    for (const render::MeshVertex& vertex : mesh.vertices) box.extend(core::Vec3(vertex.place));
+    const core::Vec3 step = glm::max((box.max - box.min) / 65535.0, core::Vec3(1e-9));
+    std::string bytes;
+    for (const render::MeshVertex& vertex : mesh.vertices)
+        for (int k = 0; k < 3; ++k)
+            append(bytes, static_cast<uint16_t>(
+                              std::lround((double(vertex.place[k]) - box.min[k]) / step[k])));
+    for (const render::MeshVertex& vertex : mesh.vertices) {
+        for (const int8_t part : vertex.normal) append(bytes, part);
+        append(bytes, vertex.tint);
+    }
+    const bool wide = mesh.vertices.size() > 65536;
+    while (wide && bytes.size() % 4 != 0) bytes += '\0';
+    for (const render::TriangleMesh::Corners& triangle : mesh.triangles)
+        for (const uint32_t corner : triangle)
+            wide ? append(bytes, corner) : append(bytes, static_cast<uint16_t>(corner));
+    return fmt::format(R"({{"count":{},"triangles":{},"wide":{},"origin":[{:.9g},{:.9g},{:.9g}],)"
+                       R"("step":[{:.9g},{:.9g},{:.9g}],"data":"{}"}})",
+                       mesh.vertices.size(), mesh.triangles.size(), wide, box.min.x, box.min.y,
+                       box.min.z, step.x, step.y, step.z, base64(bytes));
+}
+
+std::optional<size_t> SceneWriter::put(const render::TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
+    std::string json = mesh_json(mesh);
+    const auto same = std::find(meshes_.begin(), meshes_.end(), json);
+    if (same != meshes_.end()) return static_cast<size_t>(same - meshes_.begin());
+    meshes_.push_back(std::move(json));
+    return meshes_.size() - 1;
+}
+
+std::optional<size_t> SceneWriter::mesh_of(const render::SharedMesh& mesh) {
+    const auto [at, is_new] = known_.try_emplace(mesh.get());
+    if (is_new) {
+        kept_.push_back(mesh);
+        const render::TriangleMesh* const parts[] = {mesh.get()};
+        const bool is_small = mesh->triangles.size() <= body_triangles;
+        at->second = put(is_small ? *mesh : render::coarse(parts, body_triangles));
+    }
+    return at->second;
+}
+
+std::optional<size_t> SceneWriter::stock_of(const render::StockBricks& bricks) {
+    for (const auto& [known, mesh] : stocks_)
+        if (known == bricks) return mesh;
+    std::vector<const render::TriangleMesh*> parts;
+    for (const auto& brick : bricks) parts.push_back(&brick->mesh);
+    const std::optional<size_t> mesh = put(render::coarse(parts, stock_triangles));
+    stocks_.emplace_back(bricks, mesh);
+    return mesh;
+}
+
+std::string SceneWriter::body_json(const render::Body& body, size_t mesh) const {
+    std::string json =
+        fmt::format(R"({{"name":{},"role":"{}","mesh":{},"at":[{}])", script_string(body.name),
+                    name_of(body.role), mesh, numbers(body.stock_from_body));
+    if (body.highlighted) json += fmt::format(R"(,"state":"{}")", name_of(body.mark));
+    return json + "}";
+}
+
+std::string SceneWriter::bodies_json(const render::Scene& scene) {
+    std::vector<std::string> bodies;
+    if (const auto stock = stock_of(scene.stock))
+        bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}}})", *stock));
+    for (const render::Body& body : scene.bodies) {
+        const bool is_far = body.role == render::BodyRole::machine && !body.highlighted;
+        if (!body.visible || !body.mesh || is_far) continue;
+        if (const auto mesh = mesh_of(body.mesh)) bodies.push_back(body_json(body, *mesh));
+    }
+    return fmt::format("[{}]", fmt::join(bodies, ","));
+}
+
+std::string SceneWriter::add(const render::Scene& scene, const render::Camera& camera) {
+    std::string json = R"({"bodies":)" + bodies_json(scene);
+    json +=
+        R"(,"path":)"
+        + (scene.path && scene.current_block ? path_json(*scene.path, *scene.current_block) : "[]");
+    if (scene.witness)
+        json += fmt::format(R"(,"witness":[{},{}],"state":"{}")", numbers(scene.witness->a),
+                            numbers(scene.witness->b), name_of(scene.witness->state));
+    return json
+           + fmt::format(R"(,"camera":[{},{}]}})", numbers(render::eye(camera)),
+                         numbers(camera.target));
+}
+
+std::string SceneWriter::meshes() const { return fmt::format("[{}]", fmt::join(meshes_, ",\n")); }
+
+namespace {
+
+using viewer::ViewModel;
+using viewer::WorkerSession;
+
+constexpr size_t most_views = 12;
+constexpr render::Viewport picture_size{600, 400};
+constexpr int picture_quality = 82;
+
+/// What draws without a window.
+struct Camera {
+    render::Offscreen context;
+    render::Renderer renderer;
+
+    static core::Result<Camera> make() {
+        FEELER_TRY(render::Offscreen context, render::Offscreen::make());
+        FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+        return Camera{std::move(context), std::move(renderer)};
+    }
+
+    core::Result<std::string> picture(const ViewModel& model, const render::Scene& scene) {
+        const render::DrawOptions options{.theme = model.settings.theme};
+        FEELER_TRY(const render::Image image,
+                   render::still_picture(renderer, scene, model.camera, options, picture_size));
+        return render::jpeg_bytes(image, picture_quality);
+    }
+};
+
+/// A program that has been run to its end, as the window would show it.
+struct Stage {
+    WorkerSession session{[] { return false; }, [] { return false; }};
+    ViewModel model;
+
+    core::Result<void> open(const CheckJob& job) {
+        session.open(job, [] {});
+        while (session.has_work()) session.record();
+        take_in(model, session.take_news(), 0.0);
+        if (model.failure) return tl::unexpected(*model.failure);
+        model.settings.theme = render::Theme::light;
+        return {};
+    }
+
+    /// Stands at the moment at which a block comes nearest, and looks there.
+    void go_to(size_t block) {
+        viewer::go_to_witness(model, block);
+        session.show({block, model.cursor.share >= 1.0});
+        take_in(model, session.take_news(), 0.0);
+        model.camera = render::seen_from(model.camera, render::StandardView::iso);
+        model.camera = render::framing(model.camera, picture_size,
+                                       render::work_bounds(viewer::scene_of(model)));
+        model.camera = viewer::witness_camera(model, picture_size);
+    }
+
+    /// What is seen there, with as much of the path as tells how the tool gets there.
+    render::Scene scene() const {
+        render::Scene scene = viewer::scene_of(model);
+        if (scene.path && scene.current_block)
+            scene.path = std::make_shared<render::ToolPath>(
+                render::path_near(*scene.path, *scene.current_block, {}));
+        return scene;
+    }
+};
+
+void add_views(Stage& stage, const CheckRun& run, ReportViews& views) {
+    auto camera = Camera::make();
+    if (!camera) views.no_pictures = camera.error().message;
+    SceneWriter writer;
+    const std::vector<size_t> cards = blocks_of_cards(run);
+    for (const size_t block : blocks_to_show(run, most_views)) {
+        if (block >= stage.model.rows.size()) continue;
+        stage.go_to(block);
+        const render::Scene scene = stage.scene();
+        BlockView view{.block = block, .scene = writer.add(scene, stage.model.camera)};
+        if (camera && std::find(cards.begin(), cards.end(), block) != cards.end()) {
+            auto picture = camera->picture(stage.model, scene);
+            if (picture)
+                view.picture = *std::move(picture);
+            else
+                views.no_pictures = picture.error().message;
+        }
+        views.views.push_back(std::move(view));
+    }
+    views.meshes = writer.meshes();
+}
+
+} // namespace
+
+core::Result<CheckRun> run_pictured_check(const CheckJob& job, ReportViews& views) {
+    std::optional<CheckRun> judged;
+    CheckJob recorded = job;
+    if (job.engine == Engine::coprocessor) {
+        // A record has the exact engine's places; they are the same.
+        FEELER_TRY(judged, run_check(job));
+        if (judged->stopped) return *std::move(judged);
+        recorded.engine = Engine::exact;
+        recorded.detail = core::Detail::deciding_pair;
+    }
+    Stage stage;
+    if (const auto opened = stage.open(recorded); !opened) return tl::unexpected(opened.error());
+    const CheckRun& run = judged ? *judged : *stage.session.checked();
+    add_views(stage, run, views);
+    return run;
+}
+
+} // namespace app

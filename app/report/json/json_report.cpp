@@ -1,0 +1,232 @@
+#include "app/report/json/json_report.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "app/base/version.h"
+
+namespace app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json array_of(const core::Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+
+Json bounds_of(const core::PairClearance& pair) {
+    Json clearance;
+    clearance["lower"] = pair.lower;
+    clearance["upper"] = pair.found() ? Json(pair.upper) : Json(nullptr);
+    return clearance;
+}
+
+Json names_of(const CheckRun& run, const core::PairClearance& pair) {
+    return Json::array(
+        {core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair)});
+}
+
+void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, double duration) {
+    json["clearance"] = bounds_of(pair);
+    json["allowance"] = pair.allowance.distance;
+    json["pair"] = names_of(run, pair);
+    const bool found = pair.found();
+    json["at"] = found ? Json(duration > 0.0 ? pair.time / duration : 0.0) : Json(nullptr);
+    json["witness"] =
+        found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
+}
+
+/// A motion of which no pair came within the limit or had to be measured, or of which nothing can
+/// be said.
+void add_no_pair(Json& json, const CheckRun& run, const core::BlockResult& result) {
+    json["clearance"] = {{"lower", least_clearance(run.setup, result)}, {"upper", nullptr}};
+    for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
+}
+
+Json block_json(const CheckRun& run, const CheckedBlock& block,
+                const std::vector<std::string>& rules, bool pairs) {
+    const core::BlockResult& result = block.result;
+    Json json;
+    json["block"] = core::value_of(block.block);
+    if (!block.file.empty()) json["file"] = block.file;
+    json["line"] = block.line;
+    json["calls"] = block.calls;
+    json["text"] = block.text;
+    json["motion"] = core::name_of(result.motion);
+    json["tool"] = result.tool ? Json(core::value_of(*result.tool)) : Json(nullptr);
+    json["time"] = result.time;
+    json["duration"] = result.duration;
+    json["removed"] = result.removed;
+    if (result.motion != core::BlockMotion::none) {
+        if (result.deciding)
+            add_pair(json, run, result.pairs[*result.deciding], result.duration);
+        else
+            add_no_pair(json, run, result);
+    }
+    json["verdict"] = core::name_of(result.verdict);
+    json["rules"] = rules;
+    if (!pairs) return json;
+    json["pairs"] = Json::array();
+    for (const core::PairClearance& pair : result.pairs) {
+        Json entry;
+        add_pair(entry, run, pair, result.duration);
+        entry["verdict"] = core::name_of(pair.verdict);
+        json["pairs"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+Json finding_json(const CheckRun& run, const core::Finding& finding) {
+    Json json;
+    json["rule"] = finding.rule;
+    json["severity"] = core::name_of(finding.severity);
+    json["block"] = nullptr;
+    json["line"] = nullptr;
+    if (finding.block) {
+        json["block"] = core::value_of(*finding.block);
+        json["line"] = run.blocks[core::value_of(*finding.block)].line;
+    }
+    if (!finding.pair[0].empty()) json["pair"] = finding.pair;
+    json["message"] = finding.message;
+    json["cure"] = finding.cure;
+    return json;
+}
+
+Json error_json(const core::Error& error) {
+    Json json;
+    json["file"] = error.file;
+    json["line"] = error.where.line;
+    json["column"] = error.where.column;
+    json["message"] = error.message;
+    return json;
+}
+
+Json statistics_json(const CheckRun& run) {
+    Json json;
+    json["points"] = run.points;
+    json["lines"] = run.lines;
+    json["sphere_tests"] = 0; // this engine compares boxes and exact shapes instead
+    json["point_tests"] = 0;
+    json["model_bytes"] = run.memory;
+    json["box_tests"] = run.statistics.box_tests;
+    json["shape_tests"] = run.statistics.shape_tests;
+    json["refined"] = run.statistics.refined;
+    json["sweeps"] = run.statistics.sweeps;
+    json["removed"] = run.removed;
+    json["duration"] = run.cycle_time;
+    json["seconds"] = {
+        {"read", run.times.read}, {"model", run.times.model}, {"check", run.times.check}};
+    return json;
+}
+
+Json part_json(const CheckRun& run) {
+    const core::PartComparison& comparison = *run.comparison;
+    Json json;
+    json["tolerance"] = run.setup.part->tolerance;
+    json["largest_gouge"] = comparison.largest_gouge;
+    json["largest_excess"] = comparison.largest_excess;
+    json["between_samples"] = comparison.between_samples;
+    json["samples"] = comparison.samples;
+    json["regions"] = Json::array();
+    for (const core::DeviationRegion& region : comparison.regions) {
+        Json entry;
+        entry["kind"] = core::name_of(region.kind);
+        entry["amount"] = region.amount;
+        entry["at"] = array_of(region.place);
+        entry["area"] = region.area;
+        entry["block"] = region.block ? Json(*region.block) : Json(nullptr);
+        entry["line"] = region.block ? Json(run.blocks[*region.block].line) : Json(nullptr);
+        json["regions"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+Json saved_json(const SavedStock& saved) {
+    if (saved.triangles == 0) return {{"file", saved.file}, {"moves", saved.moves}};
+    return {{"file", saved.file},
+            {"triangles", saved.triangles},
+            {"error", saved.error},
+            {"lost_points", saved.lost}};
+}
+
+/// What is said of the program as a whole, before its blocks.
+Json heading_json(const CheckRun& run) {
+    Json json;
+    json["feeler"] = version;
+    json["schema"] = 1;
+    json["program"] = {{"file", run.program_file},
+                       {"sha256", run.sha256},
+                       {"dialect", gcode::dialect(run.dialect).name},
+                       {"blocks", run.blocks.size()}};
+    json["engine"] = name_of(run.engine);
+    json["allowance"] = run.setup.allowance ? Json(*run.setup.allowance) : Json(nullptr);
+    json["mesh_size"] = run.setup.mesh_size;
+    json["assumptions"] = run.assumptions;
+    json["verdict"] = core::name_of(run.verdict);
+    json["cycle_time"] = run.cycle_time;
+    if (run.stopped) json["error"] = error_json(*run.stopped);
+    return json;
+}
+
+/// What is said after them.
+void add_ending(Json& json, const CheckRun& run) {
+    if (run.comparison) json["part"] = part_json(run);
+    if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
+    json["statistics"] = statistics_json(run);
+}
+
+// Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
+std::string dumped(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json record(const char* name, Json values) {
+    Json json = {{"record", name}};
+    json.update(values);
+    return json;
+}
+
+} // namespace
+
+std::string json_report(const CheckRun& run, bool pairs) {
+    Json json = heading_json(run);
+    auto rules = rules_of_blocks(run);
+    json["blocks"] = Json::array();
+    for (const CheckedBlock& block : run.blocks)
+        json["blocks"].push_back(block_json(run, block, rules[block.block], pairs));
+    json["findings"] = Json::array();
+    for (const core::Finding& finding : run.findings)
+        json["findings"].push_back(finding_json(run, finding));
+    add_ending(json, run);
+    return dumped(json, 1);
+}
+
+std::string json_lines_report(const CheckRun& run, bool pairs) {
+    std::string lines = dumped(record("program", heading_json(run)), -1);
+    auto rules = rules_of_blocks(run);
+    for (const CheckedBlock& block : run.blocks)
+        lines += dumped(record("block", block_json(run, block, rules[block.block], pairs)), -1);
+    for (const core::Finding& finding : run.findings)
+        lines += dumped(record("finding", finding_json(run, finding)), -1);
+    Json ending = {{"record", "end"}, {"verdict", core::name_of(run.verdict)}};
+    if (run.stopped) ending["error"] = error_json(*run.stopped);
+    add_ending(ending, run);
+    return lines + dumped(ending, -1);
+}
+
+std::map<core::BlockIndex, std::vector<std::string>> rules_of_blocks(const CheckRun& run) {
+    std::vector<const core::Finding*> all;
+    for (const auto* findings : {&run.findings, &run.taken_in})
+        for (const core::Finding& finding : *findings)
+            if (finding.block) all.push_back(&finding);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto* a, const auto* b) { return a->severity > b->severity; });
+    std::map<core::BlockIndex, std::vector<std::string>> rules;
+    for (const core::Finding* finding : all) {
+        std::vector<std::string>& some = rules[*finding->block];
+        if (std::find(some.begin(), some.end(), finding->rule) == some.end())
+            some.push_back(finding->rule);
+    }
+    return rules;
+}
+
+} // namespace app

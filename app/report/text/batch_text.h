@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/library/find/folder_walk.h"
+#include "app/library/result/batch_result.h"
+
+namespace app {
+
+/// How much is said of a batch, and whether in colour.
+struct BatchStyle {
+    bool colour = false;
+    bool quiet = false;   // only programs with an error, and the summary
+    bool verbose = false; // also warnings, notes and assumptions, and every skipped file
+};
+
+/// The line of a program as it ends, and lines below it that say what was found; empty where the
+/// style leaves it out.
+std::string program_text(const ProgramResult& result, const BatchStyle& style);
+
+/// The table at the end: verdicts, findings by rule, the slowest, and what was not checked.
+/// `seconds` is what all of it took; no word of seconds where it is negative.
+std::string batch_summary(const BatchResult& batch, double seconds, const BatchStyle& style);
+
+/// All of it, in the order in which programs were named. Without seconds it depends on nothing but
+/// the batch.
+std::string batch_text(const BatchResult& batch, const BatchStyle& style);
+
+/// How often a rule was found, with one severity.
+struct RuleTally {
+    core::Severity severity = core::Severity::off;
+    std::string rule;
+    size_t programs = 0, findings = 0;
+
+    bool operator==(const RuleTally&) const = default;
+};
+
+/// Of one program; errors first, then by the names of the rules.
+std::vector<RuleTally> rule_tallies(const ProgramResult& program);
+
+/// Of all programs, in the same order.
+std::vector<RuleTally> rule_tallies(const BatchResult& batch);
+
+/// Files that were skipped for one reason.
+struct SkippedGroup {
+    std::string why;
+    std::vector<std::string> files; // in their order
+};
+
+/// The reasons for which files were skipped: that of most files first.
+std::vector<SkippedGroup> skipped_groups(const std::vector<SkippedFile>& skipped);
+
+} // namespace app

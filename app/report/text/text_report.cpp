@@ -1,0 +1,179 @@
+#include "app/report/text/text_report.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "app/base/text.h"
+#include "app/check/conclusion.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+namespace {
+
+/// Findings that say the same of several blocks: the same rule about the same pair.
+struct FindingGroup {
+    const core::Finding* worst = nullptr;
+    std::vector<uint32_t> lines;
+};
+
+std::vector<FindingGroup> grouped(const CheckRun& run) {
+    std::vector<FindingGroup> groups;
+    std::map<std::pair<std::string, std::string>, size_t> known;
+    for (const core::Finding& finding : run.findings) {
+        const std::string about =
+            finding.pair[0].empty() ? finding.message : finding.pair[0] + " / " + finding.pair[1];
+        const auto [at, is_new] = known.try_emplace({finding.rule, about}, groups.size());
+        if (is_new) groups.push_back({});
+        FindingGroup& group = groups[at->second];
+        if (!group.worst || finding.shortfall > group.worst->shortfall) group.worst = &finding;
+        if (finding.block) group.lines.push_back(run.blocks[core::value_of(*finding.block)].line);
+    }
+    std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
+        return a.worst->severity > b.worst->severity;
+    });
+    return groups;
+}
+
+std::string findings_text(const CheckRun& run) {
+    std::string text;
+    for (const FindingGroup& group : grouped(run)) {
+        const core::Finding& worst = *group.worst;
+        text += fmt::format("{:<8} {}", core::name_of(worst.severity), worst.rule);
+        if (worst.block) {
+            const CheckedBlock& block = run.blocks[core::value_of(*worst.block)];
+            text += fmt::format(", line {}: {}", block.line, clipped(trimmed(block.text), 40));
+        }
+        text += "\n" + wrapped(worst.message, 9);
+        if (!worst.cure.empty()) text += wrapped("Cure: " + worst.cure, 9);
+        if (group.lines.size() > 1)
+            text += wrapped(fmt::format("The worst of {} blocks, lines {}.", group.lines.size(),
+                                        line_ranges(group.lines)),
+                            9);
+        text += "\n";
+    }
+    return text;
+}
+
+std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
+    if (!result.checked) return "not known";
+    if (!result.deciding) {
+        const double least = least_clearance(run.setup, result);
+        if (least >= run.setup.search_limit) return "> " + core::clearance_at_least(least, 0);
+        return ">= " + core::clearance_at_least(least);
+    }
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    if (!pair.found()) return ">= " + core::clearance_at_least(pair.lower);
+    return core::bounds_below(pair.lower, pair.upper, pair.allowance.distance, "-");
+}
+
+std::string blocks_text(const CheckRun& run) {
+    std::string text = " line move  tool   clearance mm near what         verdict   block\n";
+    for (const CheckedBlock& block : run.blocks) {
+        const core::BlockResult& result = block.result;
+        if (result.motion == core::BlockMotion::none) continue;
+        std::string pair;
+        if (result.deciding) {
+            const core::PairClearance& near = result.pairs[*result.deciding];
+            pair = fmt::format("{} / {}", core::part_name(run.setup, near.pair),
+                               core::body_name(run.setup, near.pair));
+        }
+        text += fmt::format("{:>5} {:<5} {:>4} {:>15} {:<17} {:<9} {}\n", block.line,
+                            core::name_of(result.motion),
+                            result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
+                            clearance_text(run, result), clipped(trimmed(pair), 17),
+                            core::name_of(result.verdict), clipped(trimmed(block.text), 19));
+    }
+    return text + "\n";
+}
+
+std::string assumptions_text(const std::vector<std::string>& all,
+                             const std::vector<std::string>& told) {
+    const auto is_in = [](const std::vector<std::string>& list) {
+        return [&list](const std::string& each) {
+            return std::find(list.begin(), list.end(), each) != list.end();
+        };
+    };
+    const bool is_more = !told.empty() && std::all_of(told.begin(), told.end(), is_in(all));
+    std::string text = is_more ? "  assuming   what was told before\n" : "  assuming\n";
+    for (const std::string& assumption : all)
+        if (!is_more || !is_in(told)(assumption)) text += wrapped("- " + assumption, 4, 2);
+    return text;
+}
+
+std::string summary_text(const CheckRun& run, const std::vector<std::string>& told) {
+    size_t moving = 0;
+    for (const CheckedBlock& block : run.blocks)
+        moving += block.result.motion != core::BlockMotion::none;
+    std::string text = fmt::format("{}: {}\n", trimmed(run.program_file), outcome_text(run));
+    text += fmt::format("  findings   {}\n", counts_text(run));
+    text += fmt::format("  blocks     {}, {} of them move; dialect {}\n", run.blocks.size(), moving,
+                        gcode::dialect(run.dialect).name);
+    if (const CheckedBlock* block = nearest_block(run)) {
+        const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
+        const std::string heading = "  tightest   ";
+        const std::string tightest = fmt::format(
+            "line {}: {} / {}, {} mm, {} mm to keep", block->line,
+            core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
+            clearance_text(run, block->result), core::at_most(pair.allowance.distance));
+        text += heading + wrapped(tightest, heading.size()).substr(heading.size());
+    }
+    text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
+    text += fmt::format("  removed    {:.1f} mm3\n", run.removed);
+    text +=
+        fmt::format("  model      mesh size {} mm, {} scan lines, {} points, {:.0f} MB; {:.2f} s\n",
+                    run.setup.mesh_size, run.lines, run.points, std::ceil(1e-6 * run.memory),
+                    run.times.read + run.times.model + run.times.check);
+    if (run.comparison)
+        text +=
+            fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
+    if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
+    return text + assumptions_text(run.assumptions, told);
+}
+
+/// Whether a text has a name that is not a part of another word.
+bool has_word(const std::string& text, const std::string& name) {
+    const auto ends_word = [&](size_t at) {
+        return at >= text.size()
+               || std::string_view(" :'\",;()").find(text[at]) != std::string::npos;
+    };
+    if (name.empty()) return true;
+    for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+        if ((at == 0 || ends_word(at - 1)) && ends_word(at + name.size())) return true;
+    return false;
+}
+
+} // namespace
+
+std::string counts_text(const CheckRun& run) {
+    std::map<core::Severity, size_t> counts;
+    for (const core::Finding& finding : run.findings) ++counts[finding.severity];
+    return fmt::format("{}, {}, {}", counted(counts[core::Severity::error], "error"),
+                       counted(counts[core::Severity::warning], "warning"),
+                       counted(counts[core::Severity::note], "note"));
+}
+
+std::string outcome_text(const CheckRun& run) {
+    if (run.stopped) return "STOPPED, not checked to its end";
+    if (run.verdict == core::Verdict::clear && run.has_errors())
+        return "ERRORS in the program; all distances are kept";
+    return verdict_text(run.verdict);
+}
+
+std::string text_report(const CheckRun& run, const TextOptions& options) {
+    std::string text = findings_text(run);
+    if (options.blocks) text += blocks_text(run);
+    return printable(text + summary_text(run, options.told));
+}
+
+std::string error_text(const core::Error& error) {
+    // Messages about a file as a whole name it themselves.
+    const bool is_named = error.where.line == 0 && has_word(error.message, error.file);
+    std::string text = is_named ? std::string() : error.file;
+    if (error.where.line > 0) text += fmt::format(":{}", error.where.line);
+    if (error.where.column > 0) text += fmt::format(":{}", error.where.column);
+    return text.empty() ? error.message : text + ": " + error.message;
+}
+
+} // namespace app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/check/check_run.h"
+
+namespace app {
+
+/// What a text report holds beside findings and summary.
+struct TextOptions {
+    bool blocks = false;                // the table of all blocks that move
+    std::vector<std::string> told = {}; // assumptions that need not be told again while they hold
+};
+
+/// The report of a check for a person at an 80-column terminal: findings first.
+std::string text_report(const CheckRun& run, const TextOptions& options);
+
+/// What is read first: the verdict, or that there is none.
+std::string outcome_text(const CheckRun& run);
+
+/// "1 error, 2 warnings, 0 notes".
+std::string counts_text(const CheckRun& run);
+
+/// An error as `file:line:column: message`.
+std::string error_text(const core::Error& error);
+
+} // namespace app

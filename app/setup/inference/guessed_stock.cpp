@@ -1,0 +1,280 @@
+#include "app/setup/inference/guessed_stock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/setup/inference/program_survey.h"
+
+namespace app {
+namespace {
+
+using core::Aabb;
+using core::Vec3;
+
+constexpr double below_the_cuts = 2.0; // mm of stock under the deepest cut
+constexpr double smallest_height = 1.0;
+
+/// Where the top of the material lies above a zero, and why.
+struct Top {
+    double z = 0.0;
+    std::string why;
+};
+
+Top top_of(const ProgramSurvey& seen, double zero) {
+    constexpr double near = 2.0, share = 0.25; // how far above zero ramps and leads begin
+    const double lowest = seen.lowest - zero;
+    if (seen.retract && *seen.retract - zero < 0.0 && *seen.retract > seen.lowest)
+        return {*seen.retract - zero, "where rapids travel"};
+    if (!seen.cuts_sideways)
+        return lowest < 0.0 ? Top{0.0, "at Z0, where cuts go below it"}
+                            : Top{lowest + smallest_height, "just above the deepest feed"};
+    const double highest = seen.highest_cut - zero;
+    const bool at_zero = lowest < 0.0 && highest <= std::max(near, -share * lowest);
+    if (at_zero) return {0.0, "at Z0, where cuts go below it"};
+    return {highest, "at the highest cut"};
+}
+
+/// A top above zero is no higher than where rapids go down to, holes before they are drilled.
+void lower_top(const std::vector<UncutPlunge>& plunges, double zero, Aabb& box, Top& top) {
+    for (const UncutPlunge& plunge : plunges) {
+        const double z = plunge.tip.z;
+        if (z < zero || z >= box.max.z || z < box.min.z + smallest_height) continue;
+        box.max.z = z;
+        top.why = fmt::format("where line {} goes down to by rapid", plunge.line);
+    }
+}
+
+/// The sides of a box that go back, and the plunge that each ends at.
+struct Sides {
+    Aabb whole, box;
+    std::array<const UncutPlunge*, 4> ends{}; // X from, X to, Y from, Y to
+
+    double& place(size_t side) {
+        return side % 2 == 0 ? box.min[static_cast<int>(side / 2)]
+                             : box.max[static_cast<int>(side / 2)];
+    }
+
+    /// Where a side has to stand so that a plunge comes down beside it.
+    static double beside(const UncutPlunge& plunge, size_t side) {
+        const double at = plunge.tip[static_cast<int>(side / 2)];
+        return side % 2 == 0 ? at + plunge.radius : at - plunge.radius;
+    }
+
+    bool holds(const UncutPlunge& plunge) {
+        for (size_t side = 0; side < 4; ++side)
+            if ((side % 2 == 0) == (beside(plunge, side) <= place(side))) return false;
+        return true;
+    }
+
+    void go_back(const UncutPlunge& plunge) {
+        constexpr double most = 0.2; // of the whole, from both sides together
+        double least = most;
+        std::optional<size_t> chosen;
+        for (size_t side = 0; side < 4; ++side) {
+            const int axis = static_cast<int>(side / 2);
+            const double gone = std::abs(beside(plunge, side) - place(side)) + whole.size()[axis]
+                                - box.size()[axis];
+            const double share = gone / whole.size()[axis];
+            if (share >= least) continue;
+            least = share;
+            chosen = side;
+        }
+        if (!chosen) return;
+        place(*chosen) = beside(plunge, *chosen);
+        ends[*chosen] = &plunge;
+    }
+
+    std::string why(const Vec3& frame) {
+        constexpr const char* names[] = {"X", "X", "Y", "Y"};
+        std::string text;
+        for (size_t side = 0; side < 4; ++side)
+            if (ends[side])
+                text +=
+                    fmt::format("{} {} {:.3f}, where line {} goes down beside it by rapid",
+                                text.empty() ? "; it ends at" : " and at", names[side],
+                                place(side) - frame[static_cast<int>(side / 2)], ends[side]->line);
+        return text;
+    }
+};
+
+} // namespace
+
+GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin) {
+    return guessed_stock(seen, frame, margin, {});
+}
+
+GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin,
+                           const std::vector<UncutPlunge>& plunges) {
+    if (!seen.feeds)
+        return {{frame + Vec3(-5, -5, -5), frame + Vec3(5, 5, 0)},
+                "the program cuts nothing, so the stock is a cube of 10 mm at its zero"};
+    Top top = top_of(seen, seen.zero.z);
+    const double below = std::max(margin, below_the_cuts);
+    Aabb box{seen.cutting.min - Vec3(margin, margin, 0.0),
+             seen.cutting.max + Vec3(margin, margin, 0.0)};
+    box.min.z = seen.lowest - below;
+    box.max.z = std::max(top.z + seen.zero.z, box.min.z + smallest_height);
+    lower_top(plunges, seen.zero.z, box, top);
+    Sides sides{box, box};
+    for (const UncutPlunge& plunge : plunges)
+        if (plunge.tip.z < box.max.z && sides.holds(plunge)) sides.go_back(plunge);
+    const Vec3 low = sides.box.min - frame, high = sides.box.max - frame;
+    return {sides.box,
+            fmt::format("the stock is what the tools reach on cutting moves{}: X {:.3f} to {:.3f}, "
+                        "Y {:.3f} to {:.3f}, Z {:.3f} ({:g} mm below the deepest cut) to {:.3f} "
+                        "({}){}",
+                        margin > 0.0 ? fmt::format(" and {:g} mm around", margin) : "", low.x,
+                        high.x, low.y, high.y, low.z, below, high.z, top.why, sides.why(frame))};
+}
+
+std::string box_text(const Aabb& box) {
+    return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f}", box.min.x,
+                       box.max.x, box.min.y, box.max.y, box.min.z, box.max.z);
+}
+
+core::Aabb stock_out_of_the_way() { return {{-5, -5, -100'010}, {5, 5, -100'000}}; }
+
+namespace {
+
+using core::Aabb;
+using core::Vec3;
+
+constexpr double same_height = 0.05; // mm
+
+/// How deep feeds have been, in square cells over a box.
+class CutHeights {
+public:
+    CutHeights(const Aabb& box, double widest)
+        : box_(box),
+          cell_(std::max({0.5, std::max(box.size().x, box.size().y) / 400.0, widest / 8.0})),
+          columns_(1 + static_cast<long>(box.size().x / cell_)),
+          rows_(1 + static_cast<long>(box.size().y / cell_)),
+          heights_(static_cast<size_t>(columns_ * rows_), box.max.z) {}
+
+    void cut(const TipTrack& track, double radius) {
+        for (size_t i = 1; i < track.places.size(); ++i) {
+            const Vec3 from = track.places[i - 1], way = track.places[i] - from;
+            const long steps = 1 + static_cast<long>(std::hypot(way.x, way.y) / cell_);
+            for (long step = 0; step <= steps; ++step)
+                cut(from + way * (static_cast<double>(step) / static_cast<double>(steps)), radius);
+        }
+    }
+
+    /// Whether a tool that stands there stands in what no feed has cut. Cells count by their
+    /// middle; between two places of a cut, its side is that much nearer than its radius.
+    bool is_uncut(const Vec3& tip, double radius) const {
+        const double missed = 0.01 + cell_ * cell_ / (8.0 * std::max(radius, cell_));
+        bool uncut = false;
+        visit(tip, radius - missed,
+              [&](size_t at) { uncut |= heights_[at] > tip.z + same_height; });
+        return uncut;
+    }
+
+private:
+    void cut(const Vec3& tip, double radius) {
+        visit(tip, radius, [&](size_t at) { heights_[at] = std::min(heights_[at], tip.z); });
+    }
+
+    /// Calls for every cell whose middle lies within a radius, the one below the place at least.
+    template <typename Visit>
+    void visit(const Vec3& place, double radius, Visit&& call) const {
+        const double x = (place.x - box_.min.x) / cell_, y = (place.y - box_.min.y) / cell_;
+        const double reach = std::max(0.75, radius / cell_);
+        const auto first = [](double v) { return std::max(0L, std::lround(std::floor(v))); };
+        const auto last = [](double v, long count) {
+            return std::min(count - 1, std::lround(std::floor(v)));
+        };
+        for (long row = first(y - reach); row <= last(y + reach, rows_); ++row)
+            for (long column = first(x - reach); column <= last(x + reach, columns_); ++column)
+                if (std::hypot(static_cast<double>(column) + 0.5 - x,
+                               static_cast<double>(row) + 0.5 - y)
+                    <= reach)
+                    call(static_cast<size_t>(row * columns_ + column));
+    }
+
+    Aabb box_;
+    double cell_;
+    long columns_, rows_;
+    std::vector<double> heights_;
+};
+
+bool goes_straight_down(const TipTrack& track) {
+    return !track.sideways && track.places.back().z < track.places[0].z;
+}
+
+bool ends_inside(const TipTrack& track, const Aabb& box) {
+    const Vec3& tip = track.places.back();
+    return tip.z < box.max.z - same_height && tip.x > box.min.x && tip.x < box.max.x
+           && tip.y > box.min.y && tip.y < box.max.y;
+}
+
+} // namespace
+
+std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
+                                       const gcode::Environment& environment,
+                                       const SurveyTools& tools, const Aabb& box) {
+    double widest = 0.0;
+    for (const auto& [number, radius] : tools.radii) widest = std::max(widest, radius);
+    CutHeights heights(box, widest);
+    std::vector<UncutPlunge> plunges;
+    visit_events(program, environment, [&](const ProgramEvent& event) {
+        const auto* motion = std::get_if<core::Motion>(&event.event);
+        if (!motion) return;
+        const auto track = tip_track(*motion, size_of(tools.lengths, event.tool));
+        if (!track) return;
+        const double radius = size_of(tools.radii, event.tool);
+        if (motion->kind != core::MotionKind::rapid)
+            heights.cut(*track, radius);
+        else if (goes_straight_down(*track) && ends_inside(*track, box)
+                 && heights.is_uncut(track->places.back(), radius))
+            plunges.push_back({track->places.back(), radius, event.line});
+    });
+    return plunges;
+}
+
+namespace {
+
+constexpr double between = 500.0; // mm of X from one part to the next, holders and rapids included
+
+std::string name_of_place(size_t offset) {
+    if (offset < 6) return fmt::format("G{}", 54 + offset);
+    if (offset < gcode::plain_offset_count) return fmt::format("G59.{}", offset - 5);
+    return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
+}
+
+} // namespace
+
+std::optional<size_t> main_place(const ProgramSurvey& seen) {
+    std::optional<size_t> main;
+    for (const auto& [offset, place] : seen.places)
+        if (!main || place.way > seen.places.at(*main).way) main = offset;
+    return main;
+}
+
+std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
+    const auto main = main_place(seen);
+    if (!main || seen.places.size() < 2 || seen.sets_offsets) return {};
+    std::vector<std::string> others;
+    double edge = seen.places.at(*main).reach.max.x;
+    for (const auto& [offset, place] : seen.places) {
+        if (offset == *main) continue;
+        others.push_back(name_of_place(offset));
+        if (offset >= environment.work_offsets.size()) continue; // at machine zero, high above
+        const double shift = edge + between - place.reach.min.x;
+        environment.work_offsets[offset][0] += shift;
+        edge = place.reach.max.x + shift;
+    }
+    return {fmt::format("the program works at {} and {}: each is taken as a part of its own, apart "
+                        "from the others. The stock stands at {}, where most is cut; at {} nothing "
+                        "is there, and what is done there is not judged: to check it, give the "
+                        "offsets and a stock in a set-up",
+                        name_of_place(*main), fmt::join(others, ", "), name_of_place(*main),
+                        fmt::join(others, ", "))};
+}
+
+} // namespace app

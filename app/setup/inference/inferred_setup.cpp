@@ -1,0 +1,343 @@
+#include "app/setup/inference/inferred_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/setup/inference/guessed_stock.h"
+#include "app/setup/inference/program_survey.h"
+#include "app/setup/inference/stated_stock.h"
+#include "app/setup/ini_file.h"
+#include "app/setup/tools/program_tools.h"
+#include "app/setup/tools/tool_library.h"
+
+namespace app {
+namespace {
+
+using core::ToolNumber;
+using core::Vec3;
+
+constexpr double zero_above_program = 500.0; // mm, of the machine
+
+/// A number that no tool has.
+ToolNumber free_number(const ProgramSurvey& seen) {
+    int number = 1;
+    while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
+        ++number;
+    return ToolNumber{number};
+}
+
+/// A tool that is called a drill and cuts sideways is some mill of that width.
+FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
+    const auto use = seen.mills.find(tool.tool.number);
+    const bool mills = use != seen.mills.end() && use->second;
+    if (!mills || tool.tool.shape != core::ToolShape::drill || tool.tool.point_deg) return tool;
+    tool.tool.shape = core::ToolShape::flat;
+    tool.source += " and its use, as no drill cuts sideways";
+    return tool;
+}
+
+/// What is known of the tools that the program uses and the set-up has not.
+core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
+                                                   const ProgramSurvey& seen) {
+    FEELER_TRY(const OfferedTools offered, offered_tools(file, program));
+    const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
+    const auto mills = [&](ToolNumber number) {
+        const auto found = seen.mills.find(number);
+        return found == seen.mills.end() || found->second;
+    };
+    std::vector<FoundTool> missing;
+    std::vector<ToolNumber> wanted = seen.tools;
+    const bool only_empties = seen.tools.empty() && seen.empties_spindle;
+    if (file.is_inferred && only_empties) wanted.push_back(ToolNumber{0}); // T0 M6, and it cuts
+    for (const ToolNumber number : wanted) {
+        const auto found = offered.tools.find(number);
+        if (file.setup.tools.contains(number)) continue;
+        if (found != offered.tools.end())
+            missing.push_back(file.is_inferred ? as_used(found->second, seen) : found->second);
+        else if (file.is_inferred)
+            missing.push_back(unknown_tool(number, mills(number), unit));
+    }
+    const bool one_is_held = seen.feeds_before_call || !seen.calls_tools;
+    if (!one_is_held || !file.setup.tools.empty() || file.setup.tool_at_start) return missing;
+    if (offered.in_spindle) {
+        missing.push_back(*offered.in_spindle);
+        if (core::value_of(missing.back().tool.number) == 0)
+            missing.back().tool.number = ToolNumber{1};
+    } else if (file.is_inferred) {
+        missing.push_back(unknown_tool(free_number(seen), mills(ToolNumber{0}), unit));
+    }
+    if (file.is_inferred && seen.calls_tools) {
+        file.setup.tool_at_start = missing.back().tool.number;
+        file.assumptions.push_back(
+            fmt::format("the program cuts before it calls a tool: tool {} is in the spindle then",
+                        core::value_of(*file.setup.tool_at_start)));
+    }
+    return missing;
+}
+
+std::vector<std::string> put_tools(SetupFile& file, const std::vector<FoundTool>& tools,
+                                   const ProgramSurvey& seen, double least_flutes) {
+    std::vector<std::string> assumed;
+    for (const FoundTool& tool : tools) {
+        auto length = seen.control_lengths.find(tool.tool.number);
+        if (length == seen.control_lengths.end()) // of what is in the spindle before any call
+            length = seen.control_lengths.find(ToolNumber{0});
+        assumed.push_back(put_tool(file, tool, least_flutes,
+                                   length == seen.control_lengths.end() ? 0.0 : length->second));
+    }
+    return assumed;
+}
+
+SurveyTools sizes(const SetupFile& file, bool calls_tools) {
+    SurveyTools known;
+    for (const auto& [number, tool] : file.setup.tools) {
+        double widest = 0.0;
+        for (const core::ToolPart& part : tool.parts)
+            if (part.kind == core::PartKind::flutes) widest = core::bounds(part.profile).max.x;
+        known.lengths[number] = tool.length;
+        known.radii[number] = widest;
+    }
+    // A motion before any call is one of the tool that is held, or of the only one there is.
+    const bool only_one = !calls_tools && file.setup.tools.size() == 1;
+    if (file.setup.tool_at_start || only_one) {
+        const ToolNumber only = file.setup.tool_at_start.value_or(file.setup.tools.begin()->first);
+        known.lengths[ToolNumber{0}] = known.lengths[only];
+        known.radii[ToolNumber{0}] = known.radii[only];
+    }
+    return known;
+}
+
+/// Puts the stock where the program shows that it is, or says that it is.
+core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
+                                                      const gcode::Program& program,
+                                                      const ProgramSurvey& seen,
+                                                      const SurveyTools& tools) {
+    if (!seen.feeds && !file.is_inferred)
+        return core::fail(core::ErrorCode::invalid_value,
+                          "[stock] is missing, and the program has no cutting move that it could "
+                          "be inferred from");
+    const Vec3 frame = file.setup.stock_mount.link_from_body.translation;
+    const double margin = file.stock_margin.value_or(0.0);
+    const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
+    std::optional<core::Aabb> reach;
+    if (seen.feeds) reach = core::Aabb{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
+    const auto stated = file.is_inferred ? stated_stock(program, unit, reach) : std::nullopt;
+    GuessedStock stock;
+    if (stated) {
+        const Vec3 shift = seen.zero - frame;
+        stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
+                 fmt::format("the stock is the box of {}: {}", stated->source,
+                             box_text({stated->box.min + shift, stated->box.max + shift}))};
+    } else {
+        stock = guessed_stock(seen, frame, margin);
+        if (seen.feeds && file.is_inferred)
+            stock = guessed_stock(seen, frame, margin,
+                                  uncut_plunges(program, file.environment, tools, stock.box));
+    }
+    const double tolerance = file.setup.stock.tolerance;
+    file.setup.stock = {core::SolidBox{{stock.box.min - frame, stock.box.max - frame}}, tolerance};
+    return std::vector<std::string>{stock.why};
+}
+
+/// A program that cuts nothing that could be known: no stock is put where it moves.
+///
+/// Result: why, empty for all others.
+std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
+    if (!file.is_inferred) return std::nullopt;
+    std::string why;
+    if (const auto turning = turning_reason(program)) {
+        why =
+            fmt::format("this is a program for a lathe, because {}. Turning is not checked: there "
+                        "is no stock, and only what the codes themselves tell is judged",
+                        *turning);
+        file.not_judged = why;
+    } else if (const auto line = line_that_asks_for_places(program); line && file.needs_stock) {
+        why =
+            fmt::format("line {} asks where the axes stand, so what is done depends on where they "
+                        "were jogged: no stock is assumed",
+                        *line);
+    } else {
+        return std::nullopt;
+    }
+    file.setup.rules["missing-length-offset"] = core::Severity::off;
+    file.setup.rules["tool-change-unsafe"] = core::Severity::off;
+    if (file.needs_stock)
+        file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
+    return why;
+}
+
+/// What an operator does who runs such a program.
+void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
+    if (!seen.turns_spindle) {
+        file.setup.spindle_at_start = core::SpindleDirection::clockwise;
+        file.assumptions.push_back(
+            "the program never starts the spindle: it is switched on by hand");
+    } else if (!seen.states_speed) {
+        file.speed_by_hand = true;
+        file.assumptions.push_back("the program never says how fast the spindle turns: that is set "
+                                   "by hand");
+    }
+    if (seen.offsets_lengths) return;
+    file.setup.rules["missing-length-offset"] = core::Severity::off;
+    file.assumptions.push_back(
+        "the program offsets no tool's length: the work offset is set again with every tool");
+}
+
+/// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small
+/// ones a finer one.
+void choose_mesh_size(SetupFile& file) {
+    constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
+    if (!file.is_inferred) return;
+    const Vec3 size = core::bounds(file.setup.stock).size();
+    const double longest = std::max({size.x, size.y, size.z});
+    const double fine = std::ceil(longest / least_cells / finest) * finest; // of a small stock
+    file.setup.mesh_size =
+        std::max(std::min(usual, fine), std::ceil(10.0 * longest / cells) / 10.0);
+}
+
+} // namespace
+
+core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
+    SetupFile file;
+    file.is_inferred = file.needs_stock = true;
+    FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
+    file.dialect = settings.dialect;
+    file.tool_table = settings.tool_table;
+    for (gcode::AxisValues& offset : file.environment.work_offsets)
+        offset = {0.0, 0.0, -zero_above_program};
+    file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
+    if (!file.environment.home) file.environment.home = gcode::AxisValues{};
+    file.assumptions = notes;
+    const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
+    if (!speeds.empty()) file.assumptions.push_back(speeds);
+    file.assumptions.push_back(
+        fmt::format("no set-up: no fixtures, no limits of axes; all work offsets are at one place, "
+                    "and the machine's zero, where it starts and has its home, is {:g} mm above "
+                    "it",
+                    zero_above_program));
+    file.assumptions.push_back("every tool was touched off: the control knows its true length");
+    return file;
+}
+
+core::Result<SetupFile> infer_setup(const gcode::Program& program,
+                                    const ProgramSettings& settings) {
+    FEELER_TRY(SetupFile file, bare_setup(settings));
+    if (!file.dialect) file.dialect = gcode::recognise(program).dialect;
+    if (!gcode::dialect(*file.dialect).supported)
+        return core::fail(core::ErrorCode::unsupported,
+                          fmt::format("the dialect {} is not supported by this version",
+                                      gcode::dialect(*file.dialect).name));
+    file.environment.dialect = *file.dialect;
+    if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
+    return file;
+}
+
+core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
+    const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
+    FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
+    put_tools(file, tools, first, 0.0);
+    std::vector<std::string> about_stock;
+    if (file.is_inferred) {
+        assume_handwork(file, first);
+        about_stock = move_apart(file.environment, first);
+    }
+    if (!file.needs_stock) choose_mesh_size(file);
+    if (!file.needs_stock && tools.empty() && !file.is_inferred) return {};
+    const SurveyTools known = sizes(file, first.calls_tools);
+    const auto place = file.is_inferred ? main_place(first) : std::nullopt;
+    const ProgramSurvey seen = survey(program, file.environment, known, place);
+    if (const auto why = leave_out_stock(file, program)) {
+        about_stock = {*why};
+    } else if (file.needs_stock) {
+        FEELER_TRY(const auto notes, complete_stock(file, program, seen, known));
+        about_stock.insert(about_stock.end(), notes.begin(), notes.end());
+        choose_mesh_size(file);
+    }
+    // Flutes of which nothing is said are as long as the program needs them.
+    const double top =
+        core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
+    const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
+    std::vector<std::string> notes = put_tools(file, tools, first, deep);
+    for (size_t i = 0; i < tools.size(); ++i)
+        file.inferred_tools.insert_or_assign(tools[i].tool.number, notes[i]);
+    if (!about_stock.empty()) file.inferred_stock = about_stock.back();
+    if (!file.not_judged.empty()) notes.clear(); // mills that turn nothing
+    notes.insert(notes.end(), about_stock.begin(), about_stock.end());
+    file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
+    return {};
+}
+
+namespace {
+
+using core::ToolNumber;
+
+/// The size of a tool of which nothing is known.
+double usual_diameter(gcode::LengthUnit unit) {
+    return unit == gcode::LengthUnit::inch ? 6.35 : 6.0;
+}
+
+/// The plainest tool of that width, when the sizes that were found contradict each other.
+core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
+    FoundTool plain;
+    plain.tool.number = tool.number;
+    plain.tool.diameter = tool.diameter;
+    plain.tool.touched_off = tool.touched_off;
+    const auto assembled = core::assemble(complete(plain).tool);
+    return assembled ? *assembled : core::ToolAssembly{.description = plain.tool, .parts = {}};
+}
+
+} // namespace
+
+core::Result<OfferedTools> offered_tools(const SetupFile& file, const gcode::Program& program) {
+    OfferedTools offered;
+    offered.tools = file.library;
+    ProgramTools named =
+        tools_of_program(program, unit_of_program(program, file.environment.machine_unit));
+    offered.tools.merge(named.tools);
+    offered.in_spindle = std::move(named.in_spindle);
+    if (!file.tool_table.empty()) {
+        FEELER_TRY(auto table, read_tool_library(file.tool_table, file.environment.machine_unit));
+        offered.tools.merge(table);
+    }
+    return offered;
+}
+
+FoundTool unknown_tool(ToolNumber number, bool mills, gcode::LengthUnit unit) {
+    FoundTool guess;
+    guess.tool.number = number;
+    guess.tool.shape = mills ? core::ToolShape::flat : core::ToolShape::drill;
+    guess.tool.diameter = usual_diameter(unit);
+    guess.has_shape = true;
+    guess.source = fmt::format("its use alone: it {}, and nothing is said about it",
+                               mills ? "cuts sideways" : "only goes up and down");
+    return guess;
+}
+
+std::string put_tool(SetupFile& file, const FoundTool& found, double least_flutes,
+                     double control_length) {
+    CompleteTool whole = complete(found, least_flutes);
+    core::ToolDescription& tool = whole.tool;
+    if (file.is_inferred) tool.touched_off = control_length;
+    // The control's table knows how long a tool is, if it knows it at all.
+    const auto entry =
+        file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
+    const bool longer = entry != file.environment.length_offsets.end()
+                        && entry->second.length > tool.stick_out.value_or(0.0);
+    if (!file.is_inferred && longer && !tool.gauge_length) tool.gauge_length = entry->second.length;
+    auto assembled = core::assemble(tool);
+    if (!assembled) {
+        whole.assumed = fmt::format("{}; it is taken as a flat end mill of {:g} mm",
+                                    assembled.error().message, tool.diameter);
+        assembled = plain_tool(tool);
+    }
+    file.environment.tool_lengths[tool.number] = assembled->length;
+    file.environment.tool_diameters[tool.number] = assembled->description.diameter;
+    file.setup.tools.insert_or_assign(tool.number, *std::move(assembled));
+    return whole.assumed;
+}
+
+} // namespace app

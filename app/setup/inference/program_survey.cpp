@@ -1,0 +1,242 @@
+#include "app/setup/inference/program_survey.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/lower/lowering.h"
+
+namespace app {
+namespace {
+
+using core::Motion;
+using core::MotionKind;
+using core::Vec3;
+
+/// The highest plane, to 0.1 mm, in which rapids travel much: a fifth of the way of the busiest
+/// one.
+std::optional<double> plane_of(const std::map<long, double>& travel) {
+    constexpr double much = 0.2;
+    double most = 0.0;
+    for (const auto& [height, way] : travel) most = std::max(most, way);
+    for (auto plane = travel.rbegin(); plane != travel.rend(); ++plane)
+        if (plane->second >= much * most) return 0.1 * static_cast<double>(plane->first);
+    return std::nullopt;
+}
+
+/// Ways sideways at one height each, by heights in tenths of a millimetre.
+struct Travel {
+    std::map<long, double> of_rapids, of_feeds;
+    bool has_rapids = false;
+
+    void note(bool rapid, const TipTrack& path) {
+        has_rapids = has_rapids || rapid;
+        const core::Vec3 &from = path.places[0], &to = path.places.back();
+        if (!path.sideways || from.z != to.z) return;
+        (rapid ? of_rapids : of_feeds)[std::lround(10.0 * path.lowest())] +=
+            glm::distance(from, to);
+    }
+
+    /// The plane in which the program travels; without any rapid, the highest one above zero.
+    std::optional<double> plane(double zero) const {
+        if (has_rapids) return plane_of(of_rapids);
+        if (of_feeds.empty()) return std::nullopt;
+        const double height = 0.1 * static_cast<double>(of_feeds.rbegin()->first);
+        return height > zero ? std::optional(height) : std::nullopt;
+    }
+};
+
+/// What a program says beside its motions.
+struct Notes {
+    ProgramSurvey& result;
+    double length = 0.0; // that the control counts now
+
+    void operator()(const core::ToolChange& change) {
+        auto& tools = result.tools;
+        result.calls_tools = true;
+        result.empties_spindle = result.empties_spindle || !change.tool;
+        if (change.tool && std::find(tools.begin(), tools.end(), *change.tool) == tools.end())
+            tools.push_back(*change.tool);
+    }
+    void operator()(const core::SpindleChange& spindle) {
+        const bool turns = spindle.direction != core::SpindleDirection::stopped;
+        result.turns_spindle = result.turns_spindle || turns;
+        result.states_speed = result.states_speed || (turns && spindle.speed > 0.0);
+    }
+    void operator()(const core::LengthOffsetChange& change) {
+        length = change.length;
+        result.offsets_lengths = result.offsets_lengths || change.number.has_value();
+    }
+    template <typename Other>
+    void operator()(const Other&) {} // says nothing here
+};
+
+void note_cut(const TipTrack& path, double radius, ProgramSurvey& result) {
+    if (!result.feeds) result.lowest = core::infinity;
+    result.feeds = true;
+    result.lowest = std::min(result.lowest, path.lowest());
+    for (const Vec3& p : path.places)
+        result.cutting.extend(
+            core::Aabb{p - Vec3(radius, radius, 0.0), p + Vec3(radius, radius, 0.0)});
+    if (!path.sideways) return;
+    if (!result.cuts_sideways) result.highest_cut = -core::infinity;
+    result.cuts_sideways = true;
+    result.highest_cut = std::max(result.highest_cut, path.lowest());
+}
+
+/// The zero of the program, machine frame, as far as G52 and G92 tell.
+Vec3 zero_of(const gcode::Offsets& offsets) {
+    Vec3 zero(0.0);
+    for (int axis = 0; axis < 3; ++axis)
+        zero[axis] =
+            offsets.work.origin[axis] + offsets.local[axis] + offsets.axis[axis].value_or(0.0);
+    return zero;
+}
+
+void note_place(const ProgramEvent& event, const TipTrack& path,
+                const gcode::Environment& environment, ProgramSurvey& result) {
+    const size_t active = event.offsets.active;
+    const auto [place, is_new] = result.places.try_emplace(active);
+    if (is_new) place->second.zero = zero_of(event.offsets);
+    for (const Vec3& p : path.places) place->second.reach.extend(p);
+    place->second.way += path.length();
+    if (active < environment.work_offsets.size())
+        result.sets_offsets =
+            result.sets_offsets || event.offsets.work.origin != environment.work_offsets[active];
+}
+
+/// Of the place that is looked at, else of the first one.
+Vec3 zero_of_place(const gcode::Environment& environment, const std::optional<size_t>& place,
+                   const ProgramSurvey& seen) {
+    auto found = seen.places.begin();
+    if (place) found = seen.places.find(*place);
+    if (found != seen.places.end()) return found->second.zero;
+    const gcode::AxisValues& origin = environment.work_offsets[0];
+    return {origin[0], origin[1], origin[2]};
+}
+
+} // namespace
+
+double size_of(const std::map<core::ToolNumber, double>& sizes,
+               const std::optional<core::ToolNumber>& tool) {
+    const auto found = sizes.find(tool.value_or(core::ToolNumber{0}));
+    return found == sizes.end() ? 0.0 : found->second;
+}
+
+ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
+                     const SurveyTools& tools, const std::optional<size_t>& place) {
+    ProgramSurvey result;
+    Notes notes{result};
+    Travel travel;
+    visit_events(program, environment, [&](const ProgramEvent& event) {
+        std::visit(notes, event.event);
+        const auto* motion = std::get_if<Motion>(&event.event);
+        if (!motion) return;
+        const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
+        if (!path) return;
+        travel.note(motion->kind == MotionKind::rapid, *path);
+        if (motion->kind == MotionKind::rapid) return;
+        const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
+        bool& mills = result.mills[tool];
+        mills = mills || path->sideways;
+        result.control_lengths.try_emplace(tool, notes.length);
+        result.feeds_before_call = result.feeds_before_call || !result.calls_tools;
+        note_place(event, *path, environment, result);
+    });
+    result.zero = zero_of_place(environment, place, result);
+    result.retract = travel.plane(result.zero.z);
+    const auto look_at_cuts = [&] {
+        visit_events(program, environment, [&](const ProgramEvent& event) {
+            const auto* motion = std::get_if<Motion>(&event.event);
+            if (!motion || motion->kind == MotionKind::rapid) return;
+            if (place && event.offsets.active != *place) return;
+            const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
+            if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
+            note_cut(*path, size_of(tools.radii, event.tool), result);
+        });
+    };
+    look_at_cuts();
+    if (!result.feeds && result.retract) { // rapids travel at the depth of the cuts
+        result.retract.reset();
+        look_at_cuts();
+    }
+    return result;
+}
+
+void visit_events(const gcode::Program& program, const gcode::Environment& environment,
+                  const std::function<void(const ProgramEvent&)>& visit) {
+    gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
+                                  environment.search_path);
+    gcode::Interpreter interpreter(library, environment);
+    gcode::InterpreterState state = gcode::initial_state(environment);
+    gcode::Lowering lowering = gcode::initial_lowering(environment);
+    std::optional<core::ToolNumber> tool;
+    while (true) {
+        const auto block = interpreter.next(state);
+        if (!block || !*block) return;
+        for (const core::Event& event : gcode::lower(**block, lowering)) {
+            if (const auto* change = std::get_if<core::ToolChange>(&event)) tool = change->tool;
+            visit({event, tool, lowering.offsets, (*block)->line, (*block)->is_cycle});
+        }
+    }
+}
+
+namespace {
+
+using core::Vec3;
+
+constexpr double sideways_from = 0.01; // mm
+
+std::optional<Vec3> known(const core::AxisPosition& position) {
+    if (!position[0] || !position[1] || !position[2]) return std::nullopt;
+    return Vec3(*position[0], *position[1], *position[2]);
+}
+
+/// Places along an arc, so many that its box is found to a thousandth of its radius.
+void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
+             std::vector<Vec3>& places) {
+    constexpr int places_of_turn = 72;
+    const int u = (arc.normal + 1) % 3, v = (arc.normal + 2) % 3, w = arc.normal;
+    const double du = from[u] - arc.centre[u], dv = from[v] - arc.centre[v];
+    const int count =
+        1 + static_cast<int>(std::min(20.0, std::abs(arc.angle) / (2.0 * M_PI)) * places_of_turn);
+    for (int i = 1; i < count; ++i) {
+        const double share = static_cast<double>(i) / count, angle = share * arc.angle;
+        Vec3 p(0.0);
+        p[u] = arc.centre[u] + du * std::cos(angle) - dv * std::sin(angle);
+        p[v] = arc.centre[v] + du * std::sin(angle) + dv * std::cos(angle);
+        p[w] = from[w] + share * (to[w] - from[w]);
+        places.push_back(p);
+    }
+}
+
+} // namespace
+
+double TipTrack::lowest() const {
+    double z = core::infinity;
+    for (const Vec3& p : places) z = std::min(z, p.z);
+    return z;
+}
+
+double TipTrack::length() const {
+    double way = 0.0;
+    for (size_t i = 1; i < places.size(); ++i) way += glm::distance(places[i - 1], places[i]);
+    return way;
+}
+
+std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length) {
+    const auto from = known(motion.from), to = known(motion.to);
+    if (!from || !to) return std::nullopt;
+    TipTrack track;
+    track.places.push_back(*from);
+    if (motion.arc) add_arc(*motion.arc, *from, *to, track.places);
+    track.places.push_back(*to);
+    for (Vec3& p : track.places) {
+        p.z -= tool_length;
+        track.sideways =
+            track.sideways
+            || std::hypot(p.x - track.places[0].x, p.y - track.places[0].y) > sideways_from;
+    }
+    return track;
+}
+
+} // namespace app

@@ -1,0 +1,196 @@
+#include "app/setup/setup_text.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/base/text.h"
+
+namespace app {
+namespace {
+
+std::string key(const char* name, double value) {
+    return fmt::format("{} = {}\n", name, toml_number(value));
+}
+
+std::string key(const char* name, const std::optional<double>& value) {
+    return value ? key(name, *value) : std::string();
+}
+
+std::string cones(const char* name, const std::vector<core::ConeStep>& steps) {
+    std::vector<std::string> rows;
+    for (const core::ConeStep& s : steps)
+        rows.push_back(fmt::format("[{}, {}, {}]", toml_number(s.lower_diameter),
+                                   toml_number(s.upper_diameter), toml_number(s.length)));
+    return rows.empty() ? "" : fmt::format("{} = [{}]\n", name, fmt::join(rows, ", "));
+}
+
+std::string outline(const core::ToolDescription& tool) {
+    std::vector<std::string> rows;
+    for (const auto& [r, z] : tool.outline)
+        rows.push_back(fmt::format("[{}, {}]", toml_number(r), toml_number(z)));
+    return rows.empty() ? "" : fmt::format("profile = [{}]\n", fmt::join(rows, ", "));
+}
+
+std::string lengths(const core::ToolDescription& tool) {
+    std::string text = cones("shank", tool.shank) + key("shank_diameter", tool.shank_diameter)
+                       + key("stick_out", tool.stick_out) + cones("holder", tool.holder)
+                       + key("gauge_length", tool.gauge_length);
+    if (tool.touched_off)
+        text += fmt::format("touched_off = {}     # the control counts this as its length, and the "
+                            "work offset fits; take it out to have the true length count\n",
+                            toml_number(*tool.touched_off));
+    return text;
+}
+
+} // namespace
+
+std::string toml_number(double value) { return fmt::format("{}", value); }
+
+std::string toml_text(std::string_view text) {
+    std::string safe;
+    for (const char c : utf8_text(text)) {
+        const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+        if (c == '"' || c == '\\') safe += '\\';
+        if (is_control)
+            safe += fmt::format("\\u{:04x}", c);
+        else
+            safe += c;
+    }
+    return "\"" + safe + "\"";
+}
+
+std::string tool_table(const core::ToolDescription& tool) {
+    std::string text = "\n[[tool]]\n";
+    text += fmt::format("number = {}\n", core::value_of(tool.number));
+    if (!tool.name.empty()) text += fmt::format("name = {}\n", toml_text(tool.name));
+    text += fmt::format("shape = \"{}\"\n", core::name_of(tool.shape));
+    text += key("diameter", tool.diameter);
+    if (tool.flute_length > 0.0) text += key("flute_length", tool.flute_length);
+    text += key("corner_radius", tool.corner_radius) + key("point_deg", tool.point_deg)
+            + key("angle_deg", tool.angle_deg);
+    if (tool.tip_diameter > 0.0) text += key("tip_diameter", tool.tip_diameter);
+    text += outline(tool) + key("neck_diameter", tool.neck_diameter)
+            + key("neck_length", tool.neck_length) + key("pitch", tool.pitch)
+            + key("thread_deg", tool.thread_deg);
+    if (tool.teeth) text += fmt::format("teeth = {}\n", *tool.teeth);
+    text += lengths(tool);
+    if (tool.cuts == core::SpindleDirection::counterclockwise)
+        text += "spindle = \"counterclockwise\"\n";
+    if (!tool.cuts_at_centre)
+        text += "cuts_at_centre = false\n" + key("centre_diameter", 2.0 * tool.centre_radius);
+    return text;
+}
+
+std::string stock_table(const core::Solid& stock, std::string_view frame) {
+    const auto triple = [](const core::Vec3& v) {
+        return fmt::format("[{}, {}, {}]", toml_number(v.x), toml_number(v.y), toml_number(v.z));
+    };
+    std::string text = "\n[stock]";
+    if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
+        text += fmt::format("     # two corners\nbox = [{}, {}]\n", triple(box->box.min),
+                            triple(box->box.max));
+    } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
+        text += fmt::format("     # stands on `at`\ncylinder = {{ radius = {}, height = {}, axis = "
+                            "\"{}\" }}\nat = {}\n",
+                            toml_number(round->radius), toml_number(round->height),
+                            "XYZ"[round->axis], triple(round->base));
+    } else {
+        return {};
+    }
+    text += fmt::format("frame = {}\n", toml_text(frame));
+    if (stock.tolerance > 0.0) text += key("tolerance", stock.tolerance);
+    return text;
+}
+
+namespace {
+
+constexpr const char* offset_keys[] = {"G54", "G55",       "G56",       "G57",      "G58",
+                                       "G59", "\"G59.1\"", "\"G59.2\"", "\"G59.3\""};
+
+/// Lines of a comment; what a program says must not end it.
+std::string comment(const std::string& text) {
+    std::string lines;
+    for (const char c : wrapped(utf8_text(text), 1, 2)) {
+        const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+        lines += is_control && c != '\n' ? ' ' : c;
+    }
+    std::string commented;
+    for (size_t at = 0; at < lines.size();) {
+        const size_t end = std::min(lines.find('\n', at), lines.size());
+        commented += "#" + lines.substr(at, end - at) + "\n";
+        at = end + 1;
+    }
+    return commented;
+}
+
+std::string program_text(const SetupFile& setup) {
+    const gcode::Position& start = setup.environment.start;
+    std::string text = "\n[program]\n";
+    if (setup.dialect)
+        text += fmt::format("dialect = \"{}\"\n", gcode::dialect(*setup.dialect).name);
+    text += fmt::format("start = {{ X = {}, Y = {}, Z = {} }}     # machine coordinates\n",
+                        toml_number(start[0].value_or(0.0)), toml_number(start[1].value_or(0.0)),
+                        toml_number(start[2].value_or(0.0)));
+    if (setup.environment.machine_unit == gcode::LengthUnit::inch) text += "unit = \"inch\"\n";
+    if (setup.environment.counts_smallest_steps) text += "no_decimal_point = \"steps\"\n";
+    if (setup.environment.block_delete) text += "block_delete = true\n";
+    if (setup.setup.tool_at_start)
+        text += fmt::format("tool_at_start = {}\n", core::value_of(*setup.setup.tool_at_start));
+    if (setup.setup.spindle_at_start == core::SpindleDirection::clockwise)
+        text += "spindle_at_start = \"clockwise\"     # the program never starts it\n";
+    if (setup.speed_by_hand) text += "speed_by_hand = true     # the program has no S\n";
+    return text;
+}
+
+/// The axes with the home that was assumed.
+std::string machine_text(const SetupFile& setup) {
+    if (!setup.environment.home) return {};
+    constexpr const char* directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
+    std::string text;
+    for (size_t axis = 0; axis < 3; ++axis)
+        text += fmt::format("\n[[machine.axis]]{}\nname = \"{}\"\ndirection = {}\nhome = {}\n",
+                            axis == 0 ? "     # add min, max and rapid (mm/min)" : "",
+                            gcode::axis_letters[axis], directions[axis],
+                            toml_number((*setup.environment.home)[axis]));
+    return text;
+}
+
+std::string offsets_text(const SetupFile& setup) {
+    std::string text = "\n[offsets]     # machine coordinates of each origin\n";
+    for (size_t i = 0; i < std::size(offset_keys); ++i) {
+        const gcode::AxisValues& origin = setup.environment.work_offsets[i];
+        text += fmt::format("{} = {{ X = {}, Y = {}, Z = {} }}\n", offset_keys[i],
+                            toml_number(origin[0]), toml_number(origin[1]), toml_number(origin[2]));
+    }
+    return text;
+}
+
+std::string rules_text(const SetupFile& setup) {
+    if (setup.setup.rules.empty()) return {};
+    std::string text = "\n[rules]\n";
+    for (const auto& [rule, severity] : setup.setup.rules)
+        text += fmt::format("{} = \"{}\"\n", rule, core::name_of(severity));
+    return text;
+}
+
+} // namespace
+
+std::string setup_text(const SetupFile& setup, const std::string& program) {
+    std::string text = comment("What the program " + program
+                               + " says about its set-up, and what was assumed where it says "
+                                 "nothing. Compare it with what stands in the machine, add the "
+                                 "fixtures, and check the program against it.");
+    text += "#\n";
+    for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
+    text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));
+    if (setup.setup.allowance)
+        text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
+    text += program_text(setup) + machine_text(setup) + offsets_text(setup)
+            + stock_table(setup.setup.stock, "G54");
+    for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_table(tool.description);
+    return text + rules_text(setup);
+}
+
+} // namespace app

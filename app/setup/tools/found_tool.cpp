@@ -1,0 +1,145 @@
+#include "app/setup/tools/found_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace app {
+namespace {
+
+using core::ToolDescription;
+using core::ToolShape;
+
+/// What tools of a size usually have, in multiples of the diameter and in mm.
+constexpr double flutes_of_mill = 3.0, flutes_of_drill = 8.0, shank_beyond_flutes = 3.0;
+constexpr double longest_flutes_of_mill = 60.0, longest_flutes_of_drill = 250.0;
+constexpr double shortest_shank = 20.0, longest_shank = 60.0;
+
+const char* words_for(const FoundTool& found) {
+    switch (found.tool.shape) {
+    case ToolShape::ball:
+        return "a ball end mill";
+    case ToolShape::bull:
+        return "a bull nose end mill";
+    case ToolShape::drill:
+        return "a drill";
+    case ToolShape::taper:
+        return "a tapered mill";
+    case ToolShape::chamfer:
+        return "a chamfer mill";
+    case ToolShape::tslot:
+        return "a T-slot cutter";
+    case ToolShape::dovetail:
+        return "a dovetail cutter";
+    case ToolShape::lollipop:
+        return "a lollipop";
+    case ToolShape::threadmill:
+        return "a thread mill";
+    case ToolShape::profile:
+        return "a form tool";
+    case ToolShape::flat:
+        break;
+    }
+    return "a flat end mill";
+}
+
+double cone_height(const ToolDescription& tool, double angle_deg) {
+    return 0.5 * (tool.diameter - tool.tip_diameter)
+           / std::tan(angle_deg * std::numbers::pi / 180.0);
+}
+
+/// Sizes that belong to the shape; those that are impossible together are left out.
+void complete_shape(ToolDescription& tool, std::vector<std::string>& assumed) {
+    const auto assume_angle = [&](std::optional<double>& angle, double usual, const char* name) {
+        if (angle && *angle > 0.0 && *angle < (angle == tool.point_deg ? 180.0 : 90.0)) return;
+        angle = usual;
+        assumed.push_back(fmt::format("{} {:g} degrees", name, usual));
+    };
+    if (tool.shape == ToolShape::drill && tool.point_deg.value_or(118.0) != 180.0)
+        assume_angle(tool.point_deg, 118.0, "point");
+    if (tool.shape == ToolShape::chamfer || tool.shape == ToolShape::dovetail)
+        assume_angle(tool.angle_deg, 45.0, "flank");
+    if (tool.shape == ToolShape::taper) assume_angle(tool.angle_deg, 5.0, "flank");
+    if (tool.shape == ToolShape::bull && !tool.corner_radius) {
+        tool.corner_radius = 0.1 * tool.diameter;
+        assumed.push_back(fmt::format("corner radius {:g} mm", *tool.corner_radius));
+    }
+    if (tool.shape == ToolShape::lollipop && !tool.neck_diameter) {
+        tool.neck_diameter = 0.6 * tool.diameter;
+        assumed.push_back(fmt::format("neck {:g} mm", *tool.neck_diameter));
+    }
+}
+
+double usual_flutes(const ToolDescription& tool) {
+    const double d = tool.diameter;
+    switch (tool.shape) {
+    case ToolShape::drill:
+        return std::max(std::min(flutes_of_drill * d, longest_flutes_of_drill), d);
+    case ToolShape::chamfer:
+        return cone_height(tool, *tool.angle_deg) + 0.5 * d;
+    case ToolShape::tslot:
+        return 0.25 * d;
+    case ToolShape::dovetail: // up to half its radius, so that something is left
+        return 0.25 * d / std::tan(*tool.angle_deg * std::numbers::pi / 180.0);
+    case ToolShape::taper:
+        return std::max(std::min(flutes_of_mill * d, longest_flutes_of_mill),
+                        cone_height(tool, *tool.angle_deg));
+    case ToolShape::ball:
+    case ToolShape::bull: // at least as high as they are round
+        return std::max(std::min(flutes_of_mill * d, longest_flutes_of_mill), d);
+    default:
+        return std::min(flutes_of_mill * d, longest_flutes_of_mill);
+    }
+}
+
+void complete_lengths(ToolDescription& tool, double least_flutes,
+                      std::vector<std::string>& assumed) {
+    if (tool.flute_length <= 0.0 && tool.shape != ToolShape::lollipop) {
+        tool.flute_length = usual_flutes(tool);
+        const bool undercuts = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
+        if (!undercuts) tool.flute_length = std::max(tool.flute_length, least_flutes);
+        assumed.push_back(fmt::format("flutes {:.4g} mm", tool.flute_length));
+    }
+    if (!tool.shank_diameter) {
+        const bool slender = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
+        tool.shank_diameter =
+            tool.neck_diameter.value_or(slender ? 0.4 * tool.diameter : tool.diameter);
+        assumed.push_back(fmt::format("shank {:.4g} mm", *tool.shank_diameter));
+    }
+    const bool known =
+        tool.stick_out || !tool.shank.empty() || (tool.gauge_length && !tool.holder.empty());
+    if (known || tool.shape == ToolShape::profile) return;
+    const double head =
+        std::max(tool.flute_length, tool.shape == ToolShape::lollipop ? tool.diameter : 0.0)
+        + tool.neck_length.value_or(0.0);
+    tool.stick_out =
+        head + std::clamp(shank_beyond_flutes * tool.diameter, shortest_shank, longest_shank);
+    if (tool.gauge_length && *tool.gauge_length < *tool.stick_out)
+        tool.stick_out = std::max(head, *tool.gauge_length);
+    if (tool.gauge_length && *tool.gauge_length < head) tool.gauge_length.reset();
+    assumed.push_back(
+        fmt::format("{:.4g} mm from the tip to the end of its shank", *tool.stick_out));
+}
+
+} // namespace
+
+CompleteTool complete(const FoundTool& found, double least_flutes) {
+    CompleteTool whole{found.tool, {}};
+    std::vector<std::string> assumed;
+    if (!found.has_shape) assumed.emplace_back("its shape");
+    if (!found.has_diameter) assumed.emplace_back("its diameter");
+    complete_shape(whole.tool, assumed);
+    complete_lengths(whole.tool, least_flutes, assumed);
+    if (whole.tool.holder.empty()) assumed.emplace_back("no holder");
+    whole.assumed =
+        fmt::format("tool {} is {} of {:.4g} mm, by {}; {} {} assumed",
+                    core::value_of(whole.tool.number), words_for(found), whole.tool.diameter,
+                    found.source, fmt::join(assumed, ", "), assumed.size() == 1 ? "is" : "are");
+    if (assumed.empty()) whole.assumed = whole.assumed.substr(0, whole.assumed.find(';'));
+    return whole;
+}
+
+} // namespace app

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "gcode/language/modal_state.h"
+#include "gcode/language/tables.h"
+
+namespace app {
+
+/// The offsets in a LinuxCNC tool table, by tool number: `T3 P3 Z53.0 D5.0 ;comment` on each line.
+///
+/// Units:  `unit` is that of the file's lengths.
+/// Errors: io when it cannot be read; syntax, with its line, for one that says something else, has
+///         no T, or has a number that was there before.
+core::Result<std::map<core::OffsetNumber, gcode::LengthOffset>>
+read_tool_file(const std::string& path, gcode::LengthUnit unit);
+
+} // namespace app

@@ -1,0 +1,505 @@
+#include "app/setup/tools/tool_library.h"
+
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/base/text.h"
+#include "app/setup/tools/found_tool.h"
+#include "app/setup/tools/tool_file.h"
+#include "app/setup/tools/tool_text.h"
+#include "core/base/file_reads.h"
+#include "core/base/result.h"
+
+namespace app {
+
+using ToolMap = std::map<core::ToolNumber, FoundTool>;
+
+/// The JSON in a file.
+///
+/// Errors: io and syntax, with the file.
+core::Result<nlohmann::json> read_json(const std::filesystem::path& path);
+
+/// A text or number of an object; what else stands there, or nothing, is empty or 0.
+std::string text_at(const nlohmann::json& object, const char* key);
+double number_at(const nlohmann::json& object, const char* key);
+
+/// FreeCAD: a library, which names its bits, or a single bit, which becomes tool 1.
+core::Result<ToolMap> tools_of_freecad_library(const nlohmann::json& library,
+                                               const std::filesystem::path& path);
+core::Result<ToolMap> tools_of_freecad_bit(const nlohmann::json& bit,
+                                           const std::filesystem::path& path);
+
+/// FreeCAD's older tables: tools by number, mm and degrees.
+core::Result<ToolMap> tools_of_freecad_table(const nlohmann::json& table,
+                                             const std::filesystem::path& path);
+
+/// Fusion 360 and HSM. A tool's number is that of its post process.
+core::Result<ToolMap> tools_of_fusion_library(const nlohmann::json& library,
+                                              const std::filesystem::path& path);
+
+/// Puts a tool in the map.
+///
+/// Errors: invalid_value when its number was there before or its diameter is none.
+core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
+                            const std::filesystem::path& path);
+
+namespace {
+
+using core::ErrorCode;
+using core::ToolNumber;
+
+bool has_numbers_as_keys(const nlohmann::json& json) {
+    if (!json.is_object() || json.empty()) return false;
+    for (const auto& [key, value] : json.items())
+        if (!number_in(key) || !value.is_object()) return false;
+    return true;
+}
+
+core::Result<ToolMap> tools_of_json(const std::filesystem::path& path) {
+    FEELER_TRY(const nlohmann::json json, read_json(path));
+    if (json.is_object() && json.contains("tools") && json["tools"].is_array())
+        return tools_of_freecad_library(json, path);
+    if (json.is_object() && json.contains("parameter") && json.contains("shape"))
+        return tools_of_freecad_bit(json, path);
+    if (json.is_object() && json.contains("data") && json["data"].is_array())
+        return tools_of_fusion_library(json, path);
+    if (json.is_object() && json.contains("Tools"))
+        return tools_of_freecad_table(json["Tools"], path);
+    if (json.is_array() && !json.empty() && json[0].is_object() && json[0].contains("Tools"))
+        return tools_of_freecad_table(json[0]["Tools"], path);
+    if (has_numbers_as_keys(json)) return tools_of_freecad_table(json, path);
+    return tl::unexpected(core::Error{ErrorCode::syntax,
+                                      {},
+                                      "is no tool library of FreeCAD or Fusion 360 (tools, data, "
+                                      "Tools or parameter is missing)",
+                                      path.string()});
+}
+
+/// What stands behind the semicolon in each line of a tool table, by the number in its T word.
+std::map<int, std::string> names_in_table(const std::vector<std::string>& lines) {
+    std::map<int, std::string> names;
+    for (const std::string& line : lines) {
+        const size_t semicolon = line.find(';');
+        if (semicolon == std::string::npos) continue;
+        for (const std::string& word : words_of_line(line.substr(0, semicolon)))
+            if (word[0] == 'T' || word[0] == 't')
+                if (const auto number = number_in(std::string_view(word).substr(1)))
+                    names[static_cast<int>(*number)] = line.substr(semicolon + 1);
+    }
+    return names;
+}
+
+core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit unit) {
+    FEELER_TRY(const auto offsets, read_tool_file(path, unit));
+    FEELER_TRY(const std::vector<std::string> lines, lines_of_file(path));
+    std::map<int, std::string> names = names_in_table(lines);
+    ToolMap tools;
+    for (const auto& [number, offset] : offsets) {
+        if (offset.diameter <= 0.0) continue; // a touch probe, or nothing known
+        ToolText text = read_tool_text(names[core::value_of(number)], unit);
+        FoundTool found;
+        found.has_shape = text.shape.has_value();
+        found.source = path;
+        if (!text.shape) text.shape = core::ToolShape::flat;
+        text.diameter = offset.diameter;
+        const auto tool = tool_of_text(text);
+        if (!tool) continue;
+        found.tool = *tool;
+        found.tool.number = ToolNumber{core::value_of(number)};
+        if (offset.length > 0.0) found.tool.gauge_length = offset.length;
+        tools.emplace(found.tool.number, found);
+    }
+    return tools;
+}
+
+} // namespace
+
+core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
+    if (std::string why = core::why_no_file(path); !why.empty())
+        return tl::unexpected(core::Error{ErrorCode::io, {}, std::move(why), path.string()});
+    const std::optional<std::string> bytes = core::file_bytes(path);
+    if (!bytes)
+        return tl::unexpected(core::Error{ErrorCode::io, {}, "cannot be read", path.string()});
+    nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
+    if (json.is_discarded())
+        return tl::unexpected(core::Error{ErrorCode::syntax, {}, "is no JSON", path.string()});
+    return json;
+}
+
+std::string text_at(const nlohmann::json& object, const char* key) {
+    if (!object.is_object()) return {};
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+double number_at(const nlohmann::json& object, const char* key) {
+    if (!object.is_object()) return 0.0;
+    const auto found = object.find(key);
+    return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
+}
+
+core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
+                            const std::filesystem::path& path) {
+    const int number = core::value_of(tool.tool.number);
+    const auto refuse = [&](const std::string& why) {
+        return tl::unexpected(core::Error{
+            ErrorCode::invalid_value, {}, fmt::format("tool {} {}", number, why), path.string()});
+    };
+    if (!(tool.tool.diameter > 0.0)) return refuse("has no diameter");
+    if (!tools.emplace(tool.tool.number, tool).second) return refuse("is there twice");
+    return {};
+}
+
+core::Result<std::map<ToolNumber, FoundTool>> read_tool_library(const std::string& path,
+                                                                gcode::LengthUnit unit) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension == ".json" || extension == ".fctl" || extension == ".fctb")
+        return tools_of_json(path);
+    if (extension == ".tbl") return tools_of_table(path, unit);
+    return tl::unexpected(core::Error{ErrorCode::unsupported,
+                                      {},
+                                      "is no tool library by its name: .fctl, .fctb, .json and "
+                                      ".tbl are known",
+                                      path});
+}
+
+namespace {
+
+using core::ErrorCode;
+using core::ToolDescription;
+using core::ToolShape;
+using nlohmann::json;
+
+core::Error error(const std::filesystem::path& path, const std::string& why) {
+    return {ErrorCode::syntax, {}, why, path.string()};
+}
+
+/// "5.0000 mm", "1/4 in", "60 °" or a plain number; lengths in mm.
+std::optional<double> quantity(const json& value) {
+    if (value.is_number()) return value.get<double>();
+    if (!value.is_string()) return std::nullopt;
+    const std::vector<TextNumber> numbers = numbers_of(plain_capitals(value.get<std::string>()));
+    if (numbers.size() != 1) return std::nullopt;
+    const TextNumber& number = numbers[0];
+    const bool inch = number.suffix == "IN" || number.suffix == "\"";
+    if (number.suffix == "M") return 1000.0 * number.value;
+    return number.value * (inch ? 25.4 : 1.0);
+}
+
+/// A parameter by any of its names; they changed over the versions.
+std::optional<double> parameter(const json& parameters, std::initializer_list<const char*> names) {
+    if (!parameters.is_object()) return std::nullopt;
+    for (const char* name : names)
+        if (const auto found = parameters.find(name); found != parameters.end())
+            return quantity(*found);
+    return std::nullopt;
+}
+
+std::optional<ToolShape> shape_of_bit(std::string shape) {
+    shape = shape.substr(0, shape.find(".fcstd"));
+    std::string letters;
+    for (const char c : shape.substr(shape.find_last_of('/') + 1))
+        if (std::isalpha(static_cast<unsigned char>(c)) != 0)
+            letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    static const std::map<std::string, ToolShape> shapes = {{"endmill", ToolShape::flat},
+                                                            {"ballend", ToolShape::ball},
+                                                            {"ballnose", ToolShape::ball},
+                                                            {"bullnose", ToolShape::bull},
+                                                            {"torus", ToolShape::bull},
+                                                            {"chamfer", ToolShape::chamfer},
+                                                            {"vbit", ToolShape::chamfer},
+                                                            {"drill", ToolShape::drill},
+                                                            {"dovetail", ToolShape::dovetail},
+                                                            {"slittingsaw", ToolShape::tslot},
+                                                            {"threadmill", ToolShape::threadmill},
+                                                            {"reamer", ToolShape::flat},
+                                                            {"tap", ToolShape::flat},
+                                                            {"taperedballnose", ToolShape::taper}};
+    const auto found = shapes.find(letters);
+    if (found == shapes.end()) return std::nullopt;
+    return found->second;
+}
+
+void read_angles(const json& parameters, ToolDescription& tool) {
+    const auto cutting =
+        parameter(parameters, {"CuttingEdgeAngle", "cuttingAngle", "CuttingAngle"});
+    const auto tip = parameter(parameters, {"TipAngle"});
+    if (tool.shape == ToolShape::drill) tool.point_deg = tip;
+    if (tool.shape == ToolShape::chamfer && cutting) tool.angle_deg = 0.5 * *cutting;
+    if (tool.shape == ToolShape::dovetail && cutting) tool.angle_deg = 90.0 - *cutting;
+    if (tool.shape == ToolShape::taper) tool.angle_deg = parameter(parameters, {"TaperAngle"});
+}
+
+/// A slitting saw is a T-slot cutter with a thin head.
+void read_lengths(const json& parameters, ToolDescription& tool) {
+    tool.flute_length =
+        parameter(parameters, {"CuttingEdgeHeight", "BladeThickness", "CuttingEdge"}).value_or(0.0);
+    tool.shank_diameter = parameter(parameters, {"ShankDiameter", "ShaftDiameter"});
+    const auto length = parameter(parameters, {"Length", "OverallLength"});
+    if (length && *length > tool.flute_length) tool.stick_out = length;
+    const bool necked = tool.shape == ToolShape::dovetail || tool.shape == ToolShape::threadmill;
+    if (necked) tool.neck_diameter = parameter(parameters, {"NeckDiameter"});
+    if (necked && tool.neck_diameter)
+        tool.neck_length = parameter(parameters, {"NeckHeight", "NeckLength"});
+    if (tool.shape == ToolShape::threadmill) tool.flute_length = 0.0; // "Crest" is a tooth
+}
+
+core::Result<FoundTool> tool_of_bit(const json& bit, int number,
+                                    const std::filesystem::path& path) {
+    FoundTool found;
+    found.source = path.string();
+    found.tool.number = core::ToolNumber{number};
+    found.tool.name = text_at(bit, "name");
+    const std::string shape = text_at(bit, "shape");
+    const auto known = shape_of_bit(shape);
+    found.has_shape = known.has_value();
+    found.tool.shape = known.value_or(ToolShape::flat);
+    if (!bit.is_object()) return tl::unexpected(error(path, "is no tool bit"));
+    const json& parameters = bit.contains("parameter") ? bit["parameter"] : bit;
+    const auto diameter = parameter(parameters, {"Diameter"});
+    if (!diameter) return tl::unexpected(error(path, "the bit has no Diameter"));
+    found.tool.diameter = *diameter;
+    read_angles(parameters, found.tool);
+    read_lengths(parameters, found.tool);
+    if (found.tool.shape == ToolShape::chamfer)
+        found.tool.tip_diameter = parameter(parameters, {"TipDiameter"}).value_or(0.0);
+    if (found.tool.shape == ToolShape::bull) {
+        const auto flat = parameter(parameters, {"FlatRadius"});
+        found.tool.corner_radius = parameter(parameters, {"CornerRadius", "TorusRadius"});
+        if (!found.tool.corner_radius && flat) found.tool.corner_radius = 0.5 * *diameter - *flat;
+    }
+    if (found.tool.shape == ToolShape::taper) // its Diameter is that of the ball at the tip
+        found.tool.corner_radius = 0.5 * *diameter,
+        found.tool.diameter = parameter(parameters, {"TaperDiameter"}).value_or(2.0 * *diameter);
+    return found;
+}
+
+/// The bits of a library lie beside it, in ../Bit, or where its path says.
+std::optional<std::filesystem::path> find_bit(const std::filesystem::path& library,
+                                              const std::string& name) {
+    const std::filesystem::path folder = library.parent_path();
+    for (const std::filesystem::path& candidate :
+         {folder / name, folder.parent_path() / "Bit" / name, folder / "Bit" / name,
+          folder / std::filesystem::path(name).filename(),
+          folder.parent_path() / "Bit" / std::filesystem::path(name).filename()})
+        if (core::is_file(candidate)) return candidate;
+    return std::nullopt;
+}
+
+FoundTool freecad_tool(const json& entry, int number, const std::filesystem::path& path) {
+    const auto size = [&](const char* key) {
+        const auto found = entry.find(key);
+        return found == entry.end() ? 0.0 : quantity(*found).value_or(0.0);
+    };
+    const std::string type = text_at(entry, "tooltype");
+    FoundTool found;
+    found.source = path.string();
+    ToolDescription& tool = found.tool;
+    tool.number = core::ToolNumber{number};
+    tool.name = text_at(entry, "name");
+    tool.diameter = size("diameter");
+    const auto shape = shape_of_words(plain_capitals(type == "Undefined" ? tool.name : type));
+    found.has_shape = shape.has_value();
+    tool.shape = shape.value_or(ToolShape::flat);
+    if (type == "CornerRound" || type == "Engraver") tool.shape = ToolShape::chamfer;
+    if (tool.shape == ToolShape::tslot && type.starts_with("Slot")) tool.shape = ToolShape::flat;
+    const double corner = size("cornerRadius"), angle = size("cuttingEdgeAngle");
+    const bool flat = tool.shape == ToolShape::flat || tool.shape == ToolShape::bull;
+    if (flat && corner > 0.0 && 2.0 * corner <= tool.diameter) {
+        tool.shape = ToolShape::bull;
+        tool.corner_radius = corner;
+    }
+    if (angle > 0.0 && angle < 180.0) {
+        if (tool.shape == ToolShape::drill) tool.point_deg = angle;
+        if (tool.shape == ToolShape::chamfer) tool.angle_deg = 0.5 * angle;
+    }
+    if (tool.shape == ToolShape::chamfer) tool.tip_diameter = 2.0 * size("flatRadius");
+    tool.flute_length = size("cuttingEdgeHeight");
+    if (tool.flute_length < 0.5 * tool.diameter) tool.flute_length = 0.0; // often left as it was
+    if (const double length = size("lengthOffset"); length > 0.0) tool.gauge_length = length;
+    return found;
+}
+
+} // namespace
+
+core::Result<ToolMap> tools_of_freecad_library(const json& library,
+                                               const std::filesystem::path& path) {
+    ToolMap tools;
+    for (const json& entry : library["tools"]) {
+        const bool named = entry.is_object() && entry.contains("nr")
+                           && entry["nr"].is_number_integer() && entry.contains("path")
+                           && entry["path"].is_string();
+        if (!named) return tl::unexpected(error(path, "each of tools needs nr and path"));
+        const std::string name = entry["path"];
+        const auto place = find_bit(path, name);
+        if (!place)
+            return tl::unexpected(error(path, fmt::format("there is no bit {} beside it or in "
+                                                          "../Bit",
+                                                          name)));
+        FEELER_TRY(const json bit, read_json(*place));
+        FEELER_TRY(const FoundTool tool, tool_of_bit(bit, entry["nr"].get<int>(), *place));
+        if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
+    }
+    return tools;
+}
+
+core::Result<ToolMap> tools_of_freecad_bit(const json& bit, const std::filesystem::path& path) {
+    ToolMap tools;
+    FEELER_TRY(const FoundTool tool, tool_of_bit(bit, 1, path));
+    if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
+    return tools;
+}
+
+core::Result<ToolMap> tools_of_freecad_table(const json& table, const std::filesystem::path& path) {
+    ToolMap tools;
+    if (!table.is_object()) return tl::unexpected(error(path, "Tools must map numbers to tools"));
+    for (const auto& [key, entry] : table.items()) {
+        const auto number = number_in(key);
+        if (!number || !entry.is_object())
+            return tl::unexpected(error(path, fmt::format("'{}' is no number of a tool", key)));
+        const FoundTool tool = freecad_tool(entry, static_cast<int>(*number), path);
+        if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
+    }
+    return tools;
+}
+
+namespace {
+
+using core::ToolDescription;
+using core::ToolShape;
+using nlohmann::json;
+
+std::optional<ToolShape> shape_of_type(const std::string& type) {
+    static const std::map<std::string, ToolShape> shapes = {{"flat end mill", ToolShape::flat},
+                                                            {"ball end mill", ToolShape::ball},
+                                                            {"bull nose end mill", ToolShape::bull},
+                                                            {"face mill", ToolShape::flat},
+                                                            {"tapered mill", ToolShape::taper},
+                                                            {"chamfer mill", ToolShape::chamfer},
+                                                            {"lollipop mill", ToolShape::lollipop},
+                                                            {"slot mill", ToolShape::tslot},
+                                                            {"dovetail mill", ToolShape::dovetail},
+                                                            {"thread mill", ToolShape::threadmill},
+                                                            {"drill", ToolShape::drill},
+                                                            {"spot drill", ToolShape::drill},
+                                                            {"center drill", ToolShape::drill},
+                                                            {"counter sink", ToolShape::chamfer},
+                                                            {"reamer", ToolShape::flat},
+                                                            {"boring bar", ToolShape::flat},
+                                                            {"counter bore", ToolShape::flat}};
+    if (const auto found = shapes.find(type); found != shapes.end()) return found->second;
+    return shape_of_words(plain_capitals(type));
+}
+
+/// One tool of the library, whose sizes are in its unit.
+struct Reader {
+    const json& tool;
+    double unit; // mm
+
+    std::optional<double> plain(const char* key) const {
+        const auto geometry = tool.find("geometry");
+        if (geometry == tool.end() || !geometry->is_object()) return std::nullopt;
+        const auto found = geometry->find(key);
+        if (found == geometry->end() || !found->is_number()) return std::nullopt;
+        return found->get<double>();
+    }
+    std::optional<double> size(const char* key) const {
+        const auto value = plain(key);
+        return value && *value > 0.0 ? std::optional(*value * unit) : std::nullopt;
+    }
+};
+
+void read_shape(const Reader& reader, ToolDescription& made) {
+    const auto corner = reader.size("RE");
+    const auto flank = reader.plain("TA"), point = reader.plain("SIG");
+    if (made.shape == ToolShape::bull || made.shape == ToolShape::tslot)
+        made.corner_radius = corner;
+    if (made.shape == ToolShape::flat && corner && 2.0 * *corner < made.diameter) {
+        made.shape = ToolShape::bull;
+        made.corner_radius = corner;
+    }
+    if (made.shape == ToolShape::drill) made.point_deg = point;
+    if (made.shape == ToolShape::chamfer || made.shape == ToolShape::dovetail)
+        made.angle_deg = flank;
+    if (made.shape == ToolShape::chamfer && !flank && point) made.angle_deg = 0.5 * *point;
+    if (made.shape == ToolShape::chamfer)
+        made.tip_diameter = reader.size("tip-diameter").value_or(0.0);
+    if (made.shape == ToolShape::lollipop) made.neck_diameter = reader.size("shoulder-diameter");
+    if (made.shape == ToolShape::threadmill) made.pitch = reader.size("TP");
+    if (made.shape == ToolShape::taper) { // DC is measured at the tip
+        made.tip_diameter = made.diameter;
+        made.corner_radius = corner;
+        made.angle_deg = flank;
+        made.diameter = std::max(reader.size("SFDM").value_or(0.0), 1.5 * made.tip_diameter);
+    }
+}
+
+/// The holder's segments stand from the tool's end up.
+void read_holder(const json& tool, ToolDescription& made) {
+    const auto holder = tool.find("holder");
+    if (holder == tool.end() || !holder->is_object() || !holder->contains("segments")
+        || !(*holder)["segments"].is_array())
+        return;
+    const double unit = text_at(*holder, "unit") == "inches" ? 25.4 : 1.0;
+    for (const json& segment : (*holder)["segments"]) {
+        if (!segment.is_object()) continue;
+        const double height = number_at(segment, "height") * unit;
+        const double lower = number_at(segment, "lower-diameter") * unit;
+        const double upper = number_at(segment, "upper-diameter") * unit;
+        if (height > 0.0 && std::max(lower, upper) > 0.0)
+            made.holder.push_back({lower, upper, height});
+    }
+}
+
+std::optional<int> number_of(const json& tool) {
+    const auto post = tool.find("post-process");
+    if (post == tool.end() || !post->is_object()) return std::nullopt;
+    const auto number = post->find("number");
+    if (number == post->end() || !number->is_number_integer()) return std::nullopt;
+    return number->get<int>();
+}
+
+FoundTool fusion_tool(const json& entry, int number, const std::filesystem::path& path) {
+    const Reader reader{entry, text_at(entry, "unit") == "inches" ? 25.4 : 1.0};
+    FoundTool found;
+    found.source = path.string();
+    found.tool.number = core::ToolNumber{number};
+    found.tool.name = text_at(entry, "description");
+    found.tool.diameter = reader.size("DC").value_or(0.0);
+    const auto shape = shape_of_type(text_at(entry, "type"));
+    found.has_shape = shape.has_value();
+    found.tool.shape = shape.value_or(ToolShape::flat);
+    read_shape(reader, found.tool);
+    found.tool.flute_length = reader.size("LCF").value_or(0.0);
+    found.tool.shank_diameter = reader.size("SFDM");
+    found.tool.stick_out = reader.size("LB");
+    read_holder(entry, found.tool);
+    return found;
+}
+
+} // namespace
+
+core::Result<ToolMap> tools_of_fusion_library(const json& library,
+                                              const std::filesystem::path& path) {
+    ToolMap tools;
+    for (const json& entry : library["data"]) {
+        if (!entry.is_object()) continue;
+        const std::string type = text_at(entry, "type");
+        const auto number = number_of(entry);
+        if (!number || type == "holder" || type == "probe" || type.starts_with("turning")) continue;
+        if (tools.contains(core::ToolNumber{*number})) continue; // a library of variants: the first
+        const FoundTool tool = fusion_tool(entry, *number, path);
+        if (tool.tool.diameter > 0.0) tools.emplace(tool.tool.number, tool);
+    }
+    if (tools.empty())
+        return tl::unexpected(core::Error{
+            core::ErrorCode::syntax, {}, "holds no milling tool with a number", path.string()});
+    return tools;
+}
+
+} // namespace app

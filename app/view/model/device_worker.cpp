@@ -1,0 +1,182 @@
+#include "app/view/model/device_worker.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace app::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto progress_interval = std::chrono::milliseconds(100);
+
+} // namespace
+
+DeviceWorker::DeviceWorker(std::function<void()> wake)
+    : wake_(std::move(wake)), thread_([this] { work(); }) {}
+
+DeviceWorker::~DeviceWorker() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+uint64_t DeviceWorker::start(const DeviceJob& job) {
+    uint64_t run = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        wanted_ = job;
+        news_ = {};
+        run = ++runs_;
+    }
+    changed_.notify_all();
+    return run;
+}
+
+void DeviceWorker::stop() {
+    const std::lock_guard lock(mutex_);
+    wanted_.reset();
+    news_ = {};
+    ++runs_;
+}
+
+DeviceUpdate DeviceWorker::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(news_, {});
+}
+
+void DeviceWorker::deliver(DeviceUpdate news) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (is_over(news.run)) return;
+        // What nobody has looked at yet is not lost.
+        if (!news.study) news.study = std::move(news_.study);
+        news_ = std::move(news);
+        news_.has_news = true;
+    }
+    wake_();
+}
+
+void DeviceWorker::work() {
+    while (true) {
+        DeviceJob job;
+        uint64_t run = 0;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] { return stopping_ || wanted_; });
+            if (stopping_) return;
+            job = *std::exchange(wanted_, std::nullopt);
+            run = runs_;
+        }
+        carry_out(job, run);
+    }
+}
+
+core::Result<CoprocessorResult> DeviceWorker::emulate(const DeviceJob& job, const DeviceFile& file,
+                                                      std::vector<uint32_t> others, uint64_t run) {
+    CoprocessorJob asked;
+    asked.check = job.check;
+    asked.check.detail = core::Detail::every_pair;
+    asked.device = file.device;
+    asked.other_elements = std::move(others);
+    const bool is_fitting = !asked.other_elements.empty();
+    Clock::time_point told = {};
+    asked.check.after_block = [&](const CheckProgress& progress) {
+        if (Clock::now() - told > progress_interval) {
+            told = Clock::now();
+            deliver({.run = run,
+                     .share = progress.share,
+                     .blocks = progress.blocks,
+                     .is_fitting = is_fitting});
+        }
+        return !is_over(run);
+    };
+    FEELER_TRY(CoprocessorRun made, run_beside_coprocessor(asked));
+    if (is_over(run)) return CoprocessorResult{};
+    return in_time(std::move(made), file, true);
+}
+
+void DeviceWorker::carry_out(const DeviceJob& job, uint64_t run) {
+    const auto fail = [&](const core::Error& error) {
+        deliver({.run = run, .is_done = true, .failure = error});
+    };
+    DeviceFile file;
+    if (!job.file.empty()) {
+        const auto read = read_device_file(job.file);
+        if (!read) return fail(read.error());
+        file = *read;
+    }
+    const std::vector<uint32_t> tried(tried_elements.begin(), tried_elements.end());
+    for (const std::vector<uint32_t>& others : {std::vector<uint32_t>(), tried}) {
+        auto result = emulate(job, file, others, run);
+        if (is_over(run)) return;
+        if (!result) return fail(result.error());
+        deliver({.run = run,
+                 .share = others.empty() ? 0.0 : 1.0,
+                 .is_fitting = true,
+                 .is_done = !others.empty(),
+                 .study = study_of(*std::move(result))});
+    }
+}
+
+namespace {
+
+/// Set points between permit and need below which slack is little.
+constexpr double near_periods = 10.0;
+
+TimelineCell slack_cell(const DeviceStudy& study, size_t block) {
+    const DeviceAnswer answer = answer_of(&study, block);
+    const auto slack = slack_of(&study, block);
+    TimelineCell cell;
+    cell.known = answer != DeviceAnswer::unknown;
+    cell.offending = stops_machine(answer);
+    cell.moves = slack.has_value() || cell.offending;
+    if (slack) cell.least = *slack;
+    cell.near = slack && *slack < study.near;
+    return cell;
+}
+
+} // namespace
+
+std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result) {
+    auto study = std::make_shared<DeviceStudy>();
+    study->figures = figures(result);
+    study->agreement = agreement(result.run);
+    study->near = near_periods * result.file.control.servo.period;
+    study->result = std::move(result);
+    study->result.run.check.stock.reset(); // nobody looks at it
+    study->slack.resize(study->size());
+    for (size_t i = 0; i < study->size(); ++i) {
+        const TimelineCell cell = slack_cell(*study, i);
+        study->slack.set(i, cell);
+        if (cell.offending) study->stops.push_back(i);
+        if (!study->held && !study->result.run.blocks[i].permit.permitted) study->held = i;
+    }
+    return study;
+}
+
+DeviceAnswer answer_of(const DeviceStudy* study, size_t block) {
+    if (!study || block >= study->size()) return DeviceAnswer::unknown;
+    const BlockPermit& permit = study->result.run.blocks[block].permit;
+    if (!permit.not_asked.empty()) return DeviceAnswer::not_asked;
+    if (!permit.permitted) return DeviceAnswer::refused;
+    if (study->result.timing.blocks[block].is_late()) return DeviceAnswer::late;
+    return permit.segments == 0 ? DeviceAnswer::nothing : DeviceAnswer::permitted;
+}
+
+bool stops_machine(DeviceAnswer answer) {
+    return answer == DeviceAnswer::late || answer == DeviceAnswer::refused
+           || answer == DeviceAnswer::not_asked;
+}
+
+std::optional<double> slack_of(const DeviceStudy* study, size_t block) {
+    if (!study || block >= study->size()) return {};
+    const double slack = study->result.timing.blocks[block].slack();
+    if (!std::isfinite(slack)) return {};
+    return slack;
+}
+
+} // namespace app::viewer

@@ -1,0 +1,91 @@
+#include "app/view/model/file_watch.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+namespace app::viewer {
+namespace {
+
+bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
+}
+
+/// What stands between quotes on each line.
+std::vector<std::string> quoted_in(const std::string& path) {
+    std::ifstream file(path);
+    std::vector<std::string> found;
+    for (std::string line; std::getline(file, line);)
+        for (const char quote : {'"', '\''})
+            for (size_t first = line.find(quote); first != std::string::npos;) {
+                const size_t last = line.find(quote, first + 1);
+                if (last == std::string::npos) break;
+                found.push_back(line.substr(first + 1, last - first - 1));
+                first = line.find(quote, last + 1);
+            }
+    return found;
+}
+
+} // namespace
+
+bool is_mesh_file(const std::string& path) {
+    return has_ending(path, {".stl", ".obj", ".ply", ".off"});
+}
+
+bool is_setup_file(const std::string& path) { return has_ending(path, {".toml"}); }
+
+std::vector<std::string> files_of_setup(const std::string& setup) {
+    std::vector<std::string> files{setup};
+    // A machine names files, too; no set-up names another one.
+    for (size_t i = 0; i < files.size(); ++i) {
+        if (!is_setup_file(files[i])) continue;
+        const std::filesystem::path folder = std::filesystem::path(files[i]).parent_path();
+        for (const std::string& name : quoted_in(files[i])) {
+            if (!is_mesh_file(name) && !is_setup_file(name)) continue;
+            const std::string path = (folder / name).string();
+            if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
+        }
+    }
+    return files;
+}
+
+FileWatch::Seen FileWatch::look_at(const std::string& path) {
+    Seen seen{path};
+    std::error_code gone;
+    const auto time = std::filesystem::last_write_time(path, gone);
+    if (!gone) seen.time = time;
+    const auto size = std::filesystem::file_size(path, gone);
+    if (!gone) seen.size = size;
+    return seen;
+}
+
+void FileWatch::set(std::vector<std::string> paths) {
+    known_.clear();
+    for (const std::string& path : paths)
+        if (!path.empty()) known_.push_back(look_at(path));
+    last_ = known_;
+    missing_.clear();
+}
+
+void FileWatch::look_for_missing(const std::vector<Seen>& now) {
+    missing_.clear();
+    for (size_t i = now.size(); i-- > 0;)
+        if (now[i].size == 0 && now[i] != known_[i]) missing_ = now[i].path;
+}
+
+bool FileWatch::has_changed() {
+    std::vector<Seen> now;
+    for (const Seen& seen : known_) now.push_back(look_at(seen.path));
+    const bool rests = now == last_;
+    last_ = now;
+    if (!rests) return false;
+    // An editor that replaces a file takes it away for a moment.
+    look_for_missing(now);
+    if (now == known_ || !missing_.empty()) return false;
+    known_ = std::move(now);
+    return true;
+}
+
+} // namespace app::viewer

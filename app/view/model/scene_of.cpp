@@ -1,0 +1,256 @@
+#include "app/view/model/scene_of.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/check/setup_sheet.h"
+#include "render/picking.h"
+
+namespace app::viewer {
+namespace {
+
+/// The view of the cursor's block; an older one while the worker makes it.
+const PlaceView* view_of(const ViewModel& model) {
+    return model.place ? model.place.get() : nullptr;
+}
+
+std::optional<core::AxisValues> axes_now(const ViewModel& model, const PlaceView& view) {
+    const double share = view.block == model.cursor.block ? model.cursor.share : 1.0;
+    if (const auto pose = pose_at(view.poses, share)) return pose;
+    return view.standing;
+}
+
+bool shows(const Shown& shown, render::BodyRole role) {
+    switch (role) {
+    case render::BodyRole::fixture:
+    case render::BodyRole::clamp:
+        return shown.fixtures;
+    case render::BodyRole::machine:
+        return shown.machine;
+    case render::BodyRole::stock:
+        return shown.stock;
+    default:
+        return shown.tool;
+    }
+}
+
+void mark_pair(const BlockRow& row, std::vector<render::Body>& bodies) {
+    const render::ClearanceState state = state_of(row);
+    if (!row.has_pair() || state < render::ClearanceState::near) return;
+    for (render::Body& body : bodies) {
+        if (body.name != row.part && body.name != row.body) continue;
+        body.highlighted = true;
+        body.mark = state;
+    }
+}
+
+/// The tool where the hovered block ends, on machines whose tool does not turn.
+void add_ghost(const ViewModel& model, const PlaceView& view, const core::AxisValues& values,
+               const std::vector<render::Body>& tool, render::Scene& scene) {
+    if (!model.hovered || *model.hovered == model.cursor.block || !model.path || tool.empty())
+        return;
+    const core::Setup& setup = view.scene->setup;
+    if (setup.machine.has_rotary()) return;
+    const auto [first, last] =
+        render::points_of_block(*model.path, static_cast<uint32_t>(*model.hovered));
+    if (first == last) return;
+    const auto length = setup.tools.find(*view.tool)->second.length;
+    const core::Vec3 by = core::Vec3(model.path->points[last - 1].place)
+                          - render::tip_in_stock(setup, length, values);
+    for (render::Body body : tool) {
+        body.stock_from_body = core::translation(by) * body.stock_from_body;
+        scene.ghost.push_back(std::move(body));
+    }
+}
+
+void add_bodies(const ViewModel& model, const PlaceView& view, render::Scene& scene) {
+    const core::Setup& setup = view.scene->setup;
+    const auto values = axes_now(model, view);
+    const core::AxisValues standing = values.value_or(core::AxisValues{});
+    scene.bodies = render::setup_bodies(setup, view.scene->meshes, standing, view.fixtures_there);
+    if (!values)
+        std::erase_if(scene.bodies,
+                      [](const auto& body) { return body.role == render::BodyRole::machine; });
+    std::vector<render::Body> tool;
+    if (values && view.tool && view.scene->tools.contains(*view.tool))
+        tool = render::tool_bodies(setup, setup.tools.at(*view.tool),
+                                   view.scene->tools.at(*view.tool), *values);
+    for (render::Body& body : tool)
+        if (body.role == render::BodyRole::holder && !model.settings.shown.holder_xray)
+            body.alpha = 1.0;
+    if (values) add_ghost(model, view, *values, tool, scene);
+    scene.bodies.insert(scene.bodies.end(), tool.begin(), tool.end());
+    mark_pair(model.row(), scene.bodies);
+    scene.stock = view.stock;
+}
+
+/// What is known before the first view is there: the raw stock and the fixtures.
+void add_raw_bodies(const SceneSetup& known, render::Scene& scene) {
+    std::optional<core::AxisValues> home = core::AxisValues{};
+    scene.bodies = render::setup_bodies(known.setup, known.meshes, *home, {});
+    std::erase_if(scene.bodies,
+                  [](const auto& body) { return body.role == render::BodyRole::machine; });
+    if (!known.meshes.raw_stock) return;
+    render::Body stock;
+    stock.name = "stock";
+    stock.role = render::BodyRole::stock;
+    stock.mesh = known.meshes.raw_stock;
+    stock.alpha = 0.35;
+    scene.bodies.push_back(std::move(stock));
+}
+
+} // namespace
+
+std::optional<core::Vec3> tip_now(const ViewModel& model) {
+    const PlaceView* view = view_of(model);
+    if (!view || !view->tool || !view->scene->setup.tools.contains(*view->tool)) return {};
+    const auto values = axes_now(model, *view);
+    if (!values) return {};
+    const core::Setup& setup = view->scene->setup;
+    return render::tip_in_stock(setup, setup.tools.at(*view->tool).length, *values);
+}
+
+std::optional<render::Witness> witness_of(const ViewModel& model) {
+    if (!model.has_rows() || !model.settings.shown.witness) return {};
+    // While the worker makes another view the tool stands where the last one has it.
+    if (model.place && model.place->block != model.cursor.block) return {};
+    const BlockRow& row = model.row();
+    if (!row.has_witness()) return {};
+    return render::Witness{row.on_tool, row.on_body, state_of(row)};
+}
+
+render::Scene scene_of(const ViewModel& model) {
+    render::Scene scene;
+    if (const PlaceView* view = view_of(model); view && model.has_rows())
+        add_bodies(model, *view, scene);
+    else if (model.program && model.program->scene)
+        add_raw_bodies(*model.program->scene, scene);
+    for (render::Body& body : scene.bodies) body.visible = shows(model.settings.shown, body.role);
+    scene.stock_visible = model.settings.shown.stock;
+    scene.path = model.path;
+    scene.path_visible = model.settings.shown.path;
+    if (model.has_rows()) scene.current_block = static_cast<uint32_t>(model.cursor.block);
+    if (model.hovered) scene.hovered_block = static_cast<uint32_t>(*model.hovered);
+    scene.witness = witness_of(model);
+    scene.section = model.section;
+    scene.measured = model.measuring.places;
+    return scene;
+}
+
+SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
+    SceneKey key;
+    key.opening = model.opening;
+    key.place = model.place ? model.place->serial : 0;
+    key.path = model.path.get();
+    key.cursor = model.cursor;
+    key.camera = model.camera;
+    key.shown = model.settings.shown;
+    key.theme = model.settings.theme;
+    key.hovered = model.hovered;
+    if (model.section) {
+        key.section = model.section->normal;
+        key.section_offset = model.section->offset;
+    }
+    key.measured = model.measuring.places;
+    key.width = size.width;
+    key.height = size.height;
+    key.has_program = model.program != nullptr;
+    return key;
+}
+
+namespace {
+
+/// How much is seen round the pair at least, mm.
+constexpr double least_room = 22.0;
+
+/// Whether something that is not seen through stands between the eye and a point.
+bool is_hidden(const render::Scene& scene, const render::Camera& camera, const core::Vec3& point) {
+    const core::Vec3 eye = render::eye(camera);
+    const double far = glm::length(point - eye);
+    const render::Ray ray{eye, (point - eye) / far};
+    const double reach = far - 0.5;
+    if (const auto hit = render::pick_stock(scene, ray); hit && hit->at.distance < reach)
+        return true;
+    const auto body = render::pick_body(scene, ray, false);
+    return body && body->at.distance < reach;
+}
+
+/// The camera's direction first, then those that turn it more and more.
+std::vector<render::Camera> sides(const render::Camera& camera) {
+    std::vector<render::Camera> all;
+    for (const double pitch : {std::clamp(camera.pitch, 0.15, 0.9), 0.25, 0.6, 1.1})
+        for (const int step : {0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6}) {
+            render::Camera side = camera;
+            side.yaw += step * 0.5235987755982988;
+            side.pitch = pitch;
+            all.push_back(side);
+        }
+    std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+        const auto turn = [&](const render::Camera& c) {
+            return std::abs(c.yaw - camera.yaw) + std::abs(c.pitch - camera.pitch);
+        };
+        return turn(a) < turn(b);
+    });
+    return all;
+}
+
+} // namespace
+
+render::Camera witness_camera(const ViewModel& model, const render::Viewport& size) {
+    core::Aabb box;
+    if (!model.has_rows()) return model.camera;
+    const BlockRow& row = model.row();
+    if (!row.has_witness()) {
+        if (model.path)
+            box = render::bounds_of_block(*model.path, static_cast<uint32_t>(model.cursor.block));
+        return box.empty() ? model.camera : render::framing(model.camera, size, box.grown(8.0));
+    }
+    box.extend(row.on_tool);
+    box.extend(row.on_body);
+    // Where a part passes through a body the pair may lie anywhere along the way: the tip is shown
+    // as well.
+    if (const auto tip = tip_now(model); tip && row.verdict == core::Verdict::collision)
+        box.extend(*tip);
+    const double apart = glm::length(row.on_tool - row.on_body);
+    box = box.grown(std::max(least_room, 1.2 * apart));
+    const core::Vec3 middle = 0.5 * (row.on_tool + row.on_body);
+    const render::Scene scene = scene_of(model);
+    for (const render::Camera& side : sides(model.camera)) {
+        const render::Camera camera = render::framing(side, size, box);
+        if (!is_hidden(scene, camera, middle)) return camera;
+    }
+    return render::framing(model.camera, size, box);
+}
+
+namespace {
+
+constexpr size_t most_tools = 3;
+
+std::string stock_line(const ViewModel& model, const SetupSheet& sheet) {
+    const core::Vec3 size = core::bounds(sheet.stock).size();
+    return fmt::format("Stock {} x {} x {} {}", length_text(model, size.x),
+                       length_text(model, size.y), length_text(model, size.z), length_unit(model));
+}
+
+std::string tool_line(const ViewModel& model, const SheetTool& tool) {
+    return fmt::format("T{} {}, D{} {}", core::value_of(tool.tool.number),
+                       core::name_of(tool.tool.shape), length_text(model, tool.tool.diameter),
+                       length_unit(model));
+}
+
+} // namespace
+
+std::vector<std::string> inferred_summary(const ViewModel& model) {
+    if (!model.program || !model.program->is_inferred || !model.program->sheet) return {};
+    const SetupSheet& sheet = *model.program->sheet;
+    std::vector<std::string> lines = {"Inferred set-up: E edits it", stock_line(model, sheet)};
+    for (size_t i = 0; i < std::min(sheet.tools.size(), most_tools); ++i)
+        lines.push_back(tool_line(model, sheet.tools[i]));
+    if (sheet.tools.size() > most_tools)
+        lines.push_back(fmt::format("and {} more tools", sheet.tools.size() - most_tools));
+    lines.push_back("No fixtures are known");
+    return lines;
+}
+
+} // namespace app::viewer

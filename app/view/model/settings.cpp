@@ -1,0 +1,99 @@
+#include "app/view/model/settings.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "app/setup/toml_file.h"
+
+namespace app::viewer {
+namespace {
+
+template <typename T>
+void take(const toml::table& table, std::string_view name, T& value) {
+    if (const auto found = table[name].value<T>()) value = *found;
+}
+
+void take_within(const toml::table& table, std::string_view name, double& value, double least,
+                 double largest) {
+    double found = value;
+    take(table, name, found);
+    if (found >= least && found <= largest) value = found;
+}
+
+void take_within(const toml::table& table, std::string_view name, int& value, int least,
+                 int largest) {
+    int found = value;
+    take(table, name, found);
+    if (found >= least && found <= largest) value = found;
+}
+
+} // namespace
+
+Settings settings_in(const std::string& text) {
+    Settings settings;
+    const auto parsed = parsed_toml(text);
+    if (!parsed) return settings; // as if there was no file
+    const toml::table& table = *parsed;
+    std::string word;
+    take(table, "theme", word);
+    if (word == "light") settings.theme = render::Theme::light;
+    take(table, "projection", word);
+    if (word == "parallel") settings.projection = render::Projection::orthographic;
+    take(table, "inch", settings.inch);
+    take_within(table, "scale", settings.scale, least_scale, largest_scale);
+    int mouse = 0;
+    take_within(table, "mouse", mouse, 0, 2);
+    settings.mouse = static_cast<MousePreset>(mouse);
+    take_within(table, "width", settings.width, 320, 20000);
+    take_within(table, "height", settings.height, 240, 20000);
+    take_within(table, "x", settings.x, -20000, 20000);
+    take_within(table, "y", settings.y, -20000, 20000);
+    take(table, "maximised", settings.maximised);
+    take_within(table, "list_width", settings.list_width, 120.0, 2000.0);
+    take_within(table, "inspector_width", settings.inspector_width, 120.0, 2000.0);
+    take_within(table, "device_width", settings.device_width, 120.0, 2000.0);
+    take_within(table, "timeline_height", settings.timeline_height, 60.0, 1000.0);
+    take(table, "show_stock", settings.shown.stock);
+    take(table, "show_fixtures", settings.shown.fixtures);
+    take(table, "show_tool", settings.shown.tool);
+    take(table, "show_machine", settings.shown.machine);
+    take(table, "show_path", settings.shown.path);
+    take(table, "show_witness", settings.shown.witness);
+    take(table, "holder_xray", settings.shown.holder_xray);
+    return settings;
+}
+
+std::string text_of(const Settings& s) {
+    const Shown& shown = s.shown;
+    return fmt::format(
+        "# The window of feeler, as it was closed last.\n"
+        "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nscale = {:.2f}\nmouse = {}\n"
+        "width = {}\nheight = {}\nx = {}\ny = {}\nmaximised = {}\n"
+        "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
+        "{:.1f}\n"
+        "show_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = {}\n"
+        "show_path = {}\nshow_witness = {}\nholder_xray = {}\n",
+        s.theme == render::Theme::light ? "light" : "dark",
+        s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
+        s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y, s.maximised, s.list_width,
+        s.inspector_width, s.device_width, s.timeline_height, shown.stock, shown.fixtures,
+        shown.tool, shown.machine, shown.path, shown.witness, shown.holder_xray);
+}
+
+Settings read_settings(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) return {};
+    return settings_in(std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
+void write_settings(const Settings& settings, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    std::error_code ignored; // there is nobody left to be told
+    std::filesystem::create_directories(file.parent_path(), ignored);
+    std::ofstream(file) << text_of(settings);
+}
+
+} // namespace app::viewer

@@ -1,0 +1,313 @@
+#include "app/view/model/view_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/view/model/navigation.h"
+#include "core/sim/verdict.h"
+
+namespace app::viewer {
+namespace {
+
+/// A length in the unit that is shown.
+struct ShownLength {
+    double value = 0.0;
+    int decimals = 0;
+
+    ShownLength(const ViewModel& model, double mm, int decimals_of_mm)
+        : value(model.settings.inch ? mm / 25.4 : mm),
+          decimals(model.settings.inch ? decimals_of_mm + 2 : decimals_of_mm) {}
+};
+
+/// What was said of one program says nothing of another.
+void forget_place(ViewModel& model) {
+    model.resume.reset();
+    model.cursor = {};
+    model.bookmarks.clear();
+    model.section.reset();
+    model.measuring.places.clear();
+    model.follows_timeline = true;
+    model.camera_placed = false;
+}
+
+/// Another program, or the same one read again: what a person has said of it stays.
+void start_anew(ViewModel& model, uint64_t opening) {
+    if (model.opening != 0 && model.has_rows()) model.resume = model.row();
+    if (std::exchange(model.opens_another, false)) forget_place(model);
+    model.opening = opening;
+    model.program = nullptr;
+    model.rows.clear();
+    model.least.resize(0);
+    model.bands.clear();
+    model.findings.clear();
+    model.groups.clear();
+    model.selected.reset();
+    model.offending.clear();
+    model.filtered.clear();
+    model.path = nullptr;
+    model.place = nullptr;
+    model.changes.clear();
+    model.failure.reset();
+    model.stopped.reset();
+    model.walk.reset();
+    stay(model);
+    model.playback.running = false;
+    model.share = 0.0;
+    model.is_recorded = false;
+    model.device.study = nullptr;
+}
+
+/// How bad the findings about each block are: they come and go until the check is complete.
+void mark_rows(ViewModel& model) {
+    std::vector<core::Severity> worst(model.rows.size(), core::Severity::off);
+    for (const core::Finding& finding : model.findings) {
+        if (!finding.block || core::value_of(*finding.block) >= worst.size()) continue;
+        core::Severity& of_block = worst[core::value_of(*finding.block)];
+        of_block = std::max(of_block, finding.severity);
+    }
+    for (size_t i = 0; i < worst.size(); ++i) {
+        if (model.rows[i].worst == worst[i]) continue;
+        model.rows[i].worst = worst[i];
+        model.least.set(i, cell_of(model.rows[i]));
+    }
+}
+
+void count_rows(ViewModel& model) {
+    model.offending.clear();
+    model.near_count = 0;
+    for (size_t i = 0; i < model.rows.size(); ++i) {
+        if (is_offending(model.rows[i])) model.offending.push_back(i);
+        if (is_near(model.rows[i])) ++model.near_count;
+    }
+}
+
+void take_rows(ViewModel& model, RowsUpdate& update) {
+    if (update.rows.empty() && !update.count) return;
+    const size_t end = update.first + update.rows.size();
+    if (model.rows.size() < end) model.rows.resize(end);
+    std::move(update.rows.begin(), update.rows.end(),
+              model.rows.begin() + static_cast<ptrdiff_t>(update.first));
+    if (update.count) model.rows.resize(*update.count);
+    model.least.resize(model.rows.size());
+    for (size_t i = update.first; i < std::min(end, model.rows.size()); ++i)
+        model.least.set(i, cell_of(model.rows[i]));
+    model.bands = tool_bands(model.rows);
+    if (model.follows_timeline) model.range = whole(model.rows.size());
+    if (model.has_rows() && model.cursor.block >= model.rows.size())
+        go_to(model, model.rows.size() - 1);
+}
+
+/// To the line at which the program stood before it was read again.
+void resume(ViewModel& model) {
+    const auto before = std::exchange(model.resume, std::nullopt);
+    if (!before) return;
+    model.cursor.block = std::min(model.cursor.block, model.rows.size() - 1);
+    const auto same = [&](const BlockRow& row) {
+        return row.line == before->line && row.file == before->file;
+    };
+    if (same(model.row())) return;
+    const auto found = std::find_if(model.rows.begin(), model.rows.end(), same);
+    if (found != model.rows.end())
+        model.cursor.block = static_cast<size_t>(found - model.rows.begin());
+}
+
+std::string sentence_of(const Stop& stop) {
+    switch (stop.reason) {
+    case StopReason::breakpoint:
+        return fmt::format("Stopped at breakpoint {}", stop.id);
+    case StopReason::watch:
+        return stop.message;
+    case StopReason::end:
+        return "The program ends here";
+    case StopReason::beginning:
+        return "The program begins here";
+    case StopReason::error:
+        return "The control would stop here";
+    case StopReason::interrupted:
+        return "Stopped";
+    case StopReason::found:
+    case StopReason::step:
+        return {};
+    }
+    return {};
+}
+
+void end_walk(ViewModel& model, const WalkEnd& end, double now) {
+    // Who has gone elsewhere meanwhile is not called back.
+    if (model.walking != end.walk || !model.has_rows()) return;
+    model.walking.reset();
+    const bool is_past = end.block >= model.rows.size();
+    if (is_past) {
+        go_to(model, end.block == 0 ? 0 : end.block - 1);
+    } else {
+        go_to(model, end.block, 0.0);
+    }
+    const std::string text = sentence_of(end.stop);
+    if (!text.empty()) say(model, text, now);
+}
+
+} // namespace
+
+void stay(ViewModel& model) {
+    model.awaits_offending = false;
+    model.wants_interrupt = model.wants_interrupt || model.walking;
+    model.walking.reset();
+}
+
+void take_in(ViewModel& model, SessionUpdate news, double now) {
+    if (!news.has_news) return;
+    if (news.opening != model.opening) start_anew(model, news.opening);
+    if (news.opened) model.program = news.opened;
+    const bool has_rows = !news.rows.empty();
+    const bool is_first = !model.has_rows() && has_rows;
+    take_rows(model, news.rows);
+    if (news.findings) model.findings = *std::move(news.findings);
+    if (has_rows || news.findings) {
+        mark_rows(model);
+        count_rows(model);
+        apply_filter(model);
+        if (news.findings || !model.findings.empty())
+            model.groups = grouped(model.rows, model.findings);
+    }
+    if (news.path) model.path = news.path;
+    if (news.place) model.place = news.place;
+    if (news.breakpoints) model.breakpoints = *std::move(news.breakpoints);
+    if (news.changes) {
+        model.changes = *std::move(news.changes);
+        model.stopped.reset(); // it goes another way
+    }
+    if (news.failure) model.failure = news.failure;
+    if (news.stopped) model.stopped = news.stopped;
+    model.share = news.share;
+    model.is_recorded = news.is_recorded;
+    model.is_busy = news.is_busy;
+    if (news.saved) model.saved = news.saved;
+    if (news.refusal) say(model, *news.refusal, now);
+    if (is_first) resume(model);
+    if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.share);
+    if (news.walk) end_walk(model, *news.walk, now);
+    if (!await_offending(model)) say(model, no_violation(model), now);
+}
+
+std::string no_violation(const ViewModel& model) {
+    if (!model.is_recorded) return "No violation is known yet";
+    const bool is_judged = std::all_of(model.rows.begin(), model.rows.end(), [](const auto& row) {
+        return !moves(row) || (row.is_known && row.is_judged);
+    });
+    if (model.stopped)
+        return fmt::format("No violation as far as it was checked, which is to line {}",
+                           model.stopped->where.line);
+    return is_judged ? "There is no violation"
+                     : "No violation in what was checked; blocks with ? were not";
+}
+
+void say(ViewModel& model, const std::string& text, double now) {
+    model.message = text;
+    model.message_until = now + 5.0;
+}
+
+void apply_filter(ViewModel& model) {
+    model.filter = RowFilter(model.filter_text);
+    model.filtered = model.filter.passed(model.rows, model.findings);
+}
+
+std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block) {
+    std::vector<const core::Finding*> found;
+    for (const core::Finding& finding : model.findings) {
+        const bool same = block ? finding.block && core::value_of(*finding.block) == *block
+                                : !finding.block.has_value();
+        if (same) found.push_back(&finding);
+    }
+    return found;
+}
+
+std::string length_text(const ViewModel& model, double mm, int decimals) {
+    const ShownLength shown(model, mm, decimals);
+    return fmt::format("{:.{}f}", shown.value == 0.0 ? 0.0 : shown.value, shown.decimals);
+}
+
+std::string length_at_least(const ViewModel& model, double mm, int decimals) {
+    const ShownLength shown(model, mm, decimals);
+    return core::clearance_at_least(shown.value, shown.decimals);
+}
+
+std::string length_at_most(const ViewModel& model, double mm, int decimals) {
+    const ShownLength shown(model, mm, decimals);
+    return core::at_most(shown.value, shown.decimals);
+}
+
+const char* length_unit(const ViewModel& model) { return model.settings.inch ? "in" : "mm"; }
+
+namespace {
+
+/// A device runs what the files say; a program that goes another way than they do is not asked.
+bool can_run(const ViewModel& model) {
+    return model.program && !model.failure && model.changes.empty();
+}
+
+/// Of which program answers are wanted; 0: of none.
+uint64_t wanted_opening(const ViewModel& model) {
+    const DeviceModel& device = model.device;
+    if (!can_run(model)) return 0;
+    if (device.shown) return model.opening;
+    return device.study && device.opening == model.opening ? model.opening : 0;
+}
+
+void forget_run(DeviceModel& device) {
+    device = {.file = std::move(device.file), .shown = device.shown};
+}
+
+} // namespace
+
+void show_device(ViewModel& model, bool shown) { model.device.shown = shown; }
+
+void switch_off_device(ViewModel& model) {
+    model.device.shown = false;
+    model.device.study = nullptr;
+}
+
+void take_in(ViewModel& model, DeviceUpdate news) {
+    DeviceModel& device = model.device;
+    if (!news.has_news || news.run != device.run || device.run == 0) return;
+    device.share = news.share;
+    device.blocks = news.blocks;
+    device.is_fitting = news.is_fitting;
+    device.is_running = !news.is_done;
+    if (news.study) device.study = std::move(news.study);
+    if (news.failure) device.failure = std::move(news.failure);
+}
+
+bool send_device_orders(ViewModel& model, DeviceWorker& worker,
+                        const std::optional<CheckJob>& check) {
+    DeviceModel& device = model.device;
+    const uint64_t wanted = check ? wanted_opening(model) : 0;
+    if (wanted == device.opening) return false;
+    forget_run(device);
+    device.opening = wanted;
+    if (wanted == 0) {
+        worker.stop();
+        return true;
+    }
+    device.run = worker.start({*check, device.file});
+    device.is_running = true;
+    return true;
+}
+
+bool go_to_stop(ViewModel& model, bool forward) {
+    if (!model.device.study || !model.has_rows()) return false;
+    const std::vector<size_t>& all = model.device.study->stops;
+    if (all.empty()) return false;
+    const size_t here = model.cursor.block;
+    model.playback.running = false;
+    const auto above = std::upper_bound(all.begin(), all.end(), here);
+    const auto below = std::lower_bound(all.begin(), all.end(), here);
+    if (forward)
+        go_to(model, above == all.end() ? all.front() : *above);
+    else
+        go_to(model, below == all.begin() ? all.back() : *(below - 1));
+    return true;
+}
+
+} // namespace app::viewer

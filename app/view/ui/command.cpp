@@ -1,0 +1,133 @@
+#include "app/view/ui/command.h"
+
+namespace app::viewer {
+namespace {
+
+using C = Command;
+using G = CommandGroup;
+
+constexpr int shift = mod::shift, control = mod::control, alt = mod::alt;
+
+constexpr KeyBinding bindings[] = {
+    {C::step, G::walk, key::right, 0, "Right", "Next block"},
+    {C::step, G::walk, key::down, 0, "Down", ""},
+    {C::step_back, G::walk, key::left, 0, "Left", "Block before"},
+    {C::step_back, G::walk, key::up, 0, "Up", ""},
+    {C::step_ten, G::walk, key::right, shift, "Shift+Right", "Ten blocks on"},
+    {C::step_ten, G::walk, key::down, shift, "Shift+Down", ""},
+    {C::step_back_ten, G::walk, key::left, shift, "Shift+Left", "Ten blocks back"},
+    {C::step_back_ten, G::walk, key::up, shift, "Shift+Up", ""},
+    {C::next_tool, G::walk, key::right, control, "Ctrl+Right", "Next tool change"},
+    {C::previous_tool, G::walk, key::left, control, "Ctrl+Left", "Tool change before"},
+    {C::page_forward, G::walk, key::page_down, 0, "PageDown", "A page on"},
+    {C::page_back, G::walk, key::page_up, 0, "PageUp", "A page back"},
+    {C::first_block, G::walk, key::home, 0, "Home", "First block"},
+    {C::last_block, G::walk, key::end, 0, "End", "Last block"},
+    {C::step_over, G::walk, key::function(10), 0, "F10", "Step over a subprogram"},
+    {C::step_over_back, G::walk, key::function(10), shift, "Shift+F10", "The same backwards"},
+    {C::step, G::walk, key::function(11), 0, "F11", ""},
+    {C::step_out, G::walk, key::function(11), shift, "Shift+F11", "Step out of a subprogram"},
+    {C::play, G::walk, key::space, 0, "Space", "Play and stop"},
+    {C::faster, G::walk, key::right_bracket, 0, "]", "Faster"},
+    {C::slower, G::walk, key::left_bracket, 0, "[", "Slower"},
+    {C::go_to_line, G::walk, key::of('G'), 0, "G", "Go to a line or N number"},
+
+    {C::next_offending, G::stops, key::of('N'), 0, "N", "Next violation"},
+    {C::next_offending, G::stops, key::function(3), 0, "F3", ""},
+    {C::previous_offending, G::stops, key::of('N'), shift, "Shift+N", "Violation before"},
+    {C::previous_offending, G::stops, key::function(3), shift, "Shift+F3", ""},
+    {C::toggle_breakpoint, G::stops, key::function(9), 0, "F9", "Breakpoint on this line"},
+    {C::break_if, G::stops, key::function(9), shift, "Shift+F9", "Breakpoint on a condition"},
+    {C::go_on, G::stops, key::function(5), 0, "F5", "Continue to a breakpoint"},
+    {C::go_on_back, G::stops, key::function(5), shift, "Shift+F5", "The same backwards"},
+    {C::toggle_bookmark, G::stops, key::of('B'), 0, "B", "Bookmark"},
+    {C::next_bookmark, G::stops, key::of('B'), shift, "Shift+B", "Next bookmark"},
+    {C::show_findings, G::stops, key::of('V'), 0, "V", "Findings in groups, or the lines again"},
+    {C::next_stretch, G::stops, key::down, control, "Ctrl+Down", "Next one in that list"},
+    {C::previous_stretch, G::stops, key::up, control, "Ctrl+Up", "The one before"},
+    {C::write_note, G::stops, key::of('R'), 0, "R", "Write a note on a finding"},
+    {C::next_stop, G::stops, key::of('L'), 0, "L", "Next block late or refused"},
+    {C::previous_stop, G::stops, key::of('L'), shift, "Shift+L", "The one before"},
+    {C::filter, G::stops, key::of('F'), control, "Ctrl+F", "Filter the list"},
+    {C::filter, G::stops, key::slash, 0, "/", ""},
+    {C::what_if, G::stops, key::of('W'), 0, "W", "What if: change lengths, offsets, allowance"},
+
+    {C::frame_witness, G::look, key::of('F'), 0, "F", "Look at the closest pair"},
+    {C::frame_all, G::look, key::of('A'), 0, "A", "Look at everything"},
+    {C::view_iso, G::look, key::of('0'), 0, "0", "From the corner"},
+    {C::view_top, G::look, key::of('1'), 0, "1", "From the top"},
+    {C::view_front, G::look, key::of('2'), 0, "2", "From the front"},
+    {C::view_right, G::look, key::of('3'), 0, "3", "From the right"},
+    {C::view_back, G::look, key::of('4'), 0, "4", "From the back"},
+    {C::view_left, G::look, key::of('5'), 0, "5", "From the left"},
+    {C::view_bottom, G::look, key::of('6'), 0, "6", "From below"},
+    {C::projection, G::look, key::of('P'), 0, "P", "With and without perspective"},
+    {C::orbit_left, G::look, key::left, alt, "Alt+Left", "Turn the view to the left"},
+    {C::orbit_right, G::look, key::right, alt, "Alt+Right", "Turn it to the right"},
+    {C::orbit_up, G::look, key::up, alt, "Alt+Up", "Turn it upwards"},
+    {C::orbit_down, G::look, key::down, alt, "Alt+Down", "Turn it downwards"},
+    {C::zoom_in, G::look, key::equal, 0, "+", "Nearer"},
+    {C::zoom_in, G::look, key::equal, shift, "+", ""},
+    {C::zoom_in, G::look, key::keypad_add, 0, "+", ""},
+    {C::zoom_out, G::look, key::minus, 0, "-", "Farther"},
+    {C::zoom_out, G::look, key::keypad_subtract, 0, "-", ""},
+
+    {C::show_stock, G::show, key::of('S'), shift, "Shift+S", "Stock"},
+    {C::show_fixtures, G::show, key::of('C'), shift, "Shift+C", "Fixtures and clamps"},
+    {C::show_tool, G::show, key::of('H'), shift, "Shift+H", "Tool and holder"},
+    {C::show_machine, G::show, key::of('M'), shift, "Shift+M", "Machine"},
+    {C::show_path, G::show, key::of('P'), shift, "Shift+P", "Path"},
+    {C::show_device, G::show, key::of('D'), 0, "D", "Coprocessor: run beside it, panel"},
+    {C::section, G::show, key::of('X'), 0, "X", "Section through the closest pair"},
+    {C::measure, G::show, key::of('M'), 0, "M", "Measure between two clicks"},
+
+    {C::edit_setup, G::window, key::of('E'), 0, "E", "Edit the set-up: stock, tools, allowance"},
+    {C::save_setup, G::window, key::of('S'), control, "Ctrl+S", "Save it as a file"},
+    {C::theme, G::window, key::of('T'), 0, "T", "Dark or light"},
+    {C::units, G::window, key::of('I'), 0, "I", "mm or inch"},
+    {C::larger, G::window, key::equal, control, "Ctrl++", "Everything larger"},
+    {C::larger, G::window, key::equal, control | shift, "Ctrl++", ""},
+    {C::smaller, G::window, key::minus, control, "Ctrl+-", "Everything smaller"},
+    {C::picture, G::window, key::function(12), 0, "F12", "Save a picture"},
+    {C::open, G::window, key::of('O'), control, "Ctrl+O", "Open a program or set-up"},
+    {C::reload, G::window, key::of('R'), control, "Ctrl+R", "Read the files again"},
+    {C::shortcuts, G::window, key::function(1), 0, "F1", "This list (also ?)"},
+    {C::shortcuts, G::window, key::slash, shift, "?", ""},
+    {C::close_popup, G::window, key::escape, 0, "Esc", "Close what is open on top"},
+    {C::quit, G::window, key::of('Q'), control, "Ctrl+Q", "Close the window"},
+};
+
+} // namespace
+
+const char* title_of(CommandGroup group) {
+    switch (group) {
+    case CommandGroup::walk:
+        return "Walk through the program";
+    case CommandGroup::stops:
+        return "Find and stop";
+    case CommandGroup::look:
+        return "Look";
+    case CommandGroup::show:
+        return "Show";
+    case CommandGroup::window:
+        return "Window";
+    }
+    return "";
+}
+
+std::span<const KeyBinding> key_bindings() { return bindings; }
+
+std::optional<Command> command_of(int code, int modifiers) {
+    for (const KeyBinding& binding : bindings)
+        if (binding.code == code && binding.modifiers == modifiers) return binding.command;
+    return {};
+}
+
+std::string tip_of(Command command) {
+    for (const KeyBinding& binding : bindings)
+        if (binding.command == command)
+            return std::string(binding.help) + " (" + binding.keys + ")";
+    return {};
+}
+
+} // namespace app::viewer

@@ -1,0 +1,255 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/view/model/navigation.h"
+#include "app/view/ui/panels.h"
+#include "app/view/ui/widgets.h"
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+
+void draw_number(Frame& frame) {
+    const ViewModel& model = frame.model;
+    const BlockRow& row = model.row();
+    text(frame.fonts.small, frame.look.color(Role::dim), "CLEARANCE");
+    std::string number = "\xE2\x80\x94";
+    if (row.is_known && row.lower)
+        number = (row.upper ? "" : ">") + length_at_least(model, *row.lower, row.upper ? 2 : 0);
+    const ImVec2 at = ImGui::GetCursorPos();
+    text(frame.fonts.big, frame.look.of(row, Role::text), number);
+    if (!row.lower || !row.is_known) return;
+    const float width =
+        frame.fonts.big->CalcTextSizeA(frame.fonts.big->FontSize, 1e9F, 0.0F, number.c_str()).x;
+    ImGui::SameLine(at.x + width + frame.px(9));
+    ImGui::SetCursorPosY(at.y + frame.px(21));
+    text(frame.fonts.text, frame.look.color(Role::dim), length_unit(model));
+    if (is_offending(row)) {
+        ImGui::SameLine(0, frame.px(10));
+        text(frame.fonts.text, frame.look.color(Role::violation), frame.fonts.icon(Icon::warning));
+    }
+    ImGui::SetCursorPosY(at.y + frame.px(46));
+}
+
+std::string sentence_of(const ViewModel& model, const BlockRow& row) {
+    if (!row.is_known) return "not checked yet";
+    if (!moves(row)) return "this block does not move";
+    if (!row.is_judged) return "nothing can be said of this motion";
+    if (!row.upper) return "nothing is nearer than the search goes";
+    const std::string unit = length_unit(model);
+    const std::string allowance = "allowance " + length_at_most(model, *row.allowance) + " " + unit;
+    if (row.verdict == core::Verdict::collision) return allowance + " \xC2\xB7 collision";
+    const double margin = *row.lower - *row.allowance;
+    if (margin >= -core::resolution)
+        return allowance + " \xC2\xB7 " + length_at_least(model, margin) + " " + unit + " to spare";
+    return allowance + " \xC2\xB7 short by " + length_at_most(model, -margin) + " " + unit;
+}
+
+/// Violation, near, clear in proportion, up to six times the allowance, and where the block is.
+void draw_scale(Frame& frame) {
+    const BlockRow& row = frame.model.row();
+    const float width = ImGui::GetContentRegionAvail().x, height = frame.px(10);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float top = at.y + frame.px(11);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const auto part = [&](double from, double to, Role role) {
+        list.AddRectFilled({at.x + width * static_cast<float>(from), top},
+                           {at.x + width * static_cast<float>(to), top + height},
+                           frame.look.color(role, 0.9));
+    };
+    const bool has_scale = row.is_known && row.upper && *row.allowance > 0.0;
+    if (has_scale) {
+        part(0.0, 1.0 / 6.0, Role::violation);
+        part(1.0 / 6.0, 2.0 / 6.0, Role::near);
+        part(2.0 / 6.0, 1.0, Role::clear);
+        const double share = std::clamp(*row.lower / (6.0 * *row.allowance), 0.0, 1.0);
+        const float x = at.x + width * static_cast<float>(share), half = frame.px(5);
+        list.AddTriangleFilled({x - half, at.y}, {x + half, at.y}, {x, at.y + frame.px(8)},
+                               frame.look.color(Role::text));
+        ImGui::Dummy(ImVec2(width, frame.px(24)));
+    } else {
+        list.AddRectFilled({at.x, top}, {at.x + width, top + height},
+                           frame.look.color(Role::raised));
+        ImGui::Dummy(ImVec2(width, frame.px(24)));
+    }
+    wrapped_text(frame.fonts.small, frame.look.color(Role::dim), sentence_of(frame.model, row));
+}
+
+void draw_pair(Frame& frame) {
+    const BlockRow& row = frame.model.row();
+    if (!row.has_pair() || !row.is_known) return;
+    heading(frame, "Closest pair");
+    value_row(frame, "Tool side", row.part);
+    value_row(frame, "Obstacle", row.body);
+    if (row.duration > 0.0)
+        value_row(frame, "At",
+                  fmt::format("{:.0f} % of block",
+                              std::clamp(100.0 * row.witness_time / row.duration, 0.0, 100.0)));
+    value_row(frame, "Proven",
+              fmt::format("{} \xE2\x80\xA6 {} {}", length_at_least(frame.model, *row.lower, 3),
+                          length_at_most(frame.model, *row.upper, 3), length_unit(frame.model)));
+    if (ImGui::Button("Look at it", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+        frame.perform(Command::frame_witness);
+    tip(frame, tip_of(Command::frame_witness));
+}
+
+void draw_finding(Frame& frame, const core::Finding& finding) {
+    const bool bad = finding.severity == core::Severity::error;
+    const Role role = bad ? Role::violation
+                          : (finding.severity == core::Severity::warning ? Role::near : Role::dim);
+    const Icon icon = bad ? Icon::warning
+                          : (finding.severity == core::Severity::warning ? Icon::near : Icon::note);
+    text(frame.fonts.text, frame.look.color(role), frame.fonts.icon(icon));
+    ImGui::SameLine(0, frame.px(7));
+    text(frame.fonts.strong, frame.look.color(Role::text), finding.rule);
+    wrapped_text(frame.fonts.text, frame.look.color(Role::text), finding.message);
+    if (finding.cure.empty()) return;
+    text(frame.fonts.text, frame.look.color(Role::accent), frame.fonts.icon(Icon::bulb));
+    ImGui::SameLine(0, frame.px(7));
+    wrapped_text(frame.fonts.text, frame.look.color(Role::dim), finding.cure);
+}
+
+void draw_findings(Frame& frame) {
+    const auto found = findings_of(frame.model, frame.model.cursor.block);
+    if (found.empty()) return;
+    heading(frame, found.size() == 1 ? "Finding" : "Findings");
+    for (const core::Finding* finding : found) draw_finding(frame, *finding);
+}
+
+/// What moves, and by which code.
+std::string motion_text(const ViewModel& model) {
+    std::string words = core::name_of(model.row().motion);
+    if (!model.place) return words;
+    for (const ShownValue& value : model.place->modal)
+        if (value.name == "motion" && value.text != words) words += "  " + value.text;
+    return words;
+}
+
+std::string plain_name(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+void draw_block(Frame& frame) {
+    const ViewModel& model = frame.model;
+    const BlockRow& row = model.row();
+    heading(frame, fmt::format("Block {}", model.cursor.block).c_str());
+    value_row(frame, "line",
+              row.file.empty() ? std::to_string(row.line)
+                               : fmt::format("{} of {}", row.line, row.file),
+              104.0);
+    value_row(frame, "motion", motion_text(model), 104.0);
+    if (row.duration > 0.0) value_row(frame, "time", fmt::format("{:.2f} s", row.duration), 104.0);
+    if (!model.place) return;
+    for (const ShownValue& value : model.place->modal)
+        if (value.name != "motion")
+            value_row(frame, plain_name(value.name).c_str(), value.text, 104.0, value.changed);
+}
+
+void draw_values(Frame& frame, const char* title, const std::vector<ShownValue>& values) {
+    if (values.empty() || !ImGui::CollapsingHeader(title)) return;
+    for (const ShownValue& value : values)
+        value_row(frame, value.name.c_str(), value.text, 104.0, value.changed);
+}
+
+void draw_watches(Frame& frame, std::string& typed) {
+    ViewModel& model = frame.model;
+    if (!ImGui::CollapsingHeader("Watch")) return;
+    if (model.place)
+        for (const ShownValue& value : model.place->watched)
+            value_row(frame, value.name.c_str(), value.text, 104.0);
+    ImGui::SetNextItemWidth(-1.0F);
+    if (ImGui::InputTextWithHint("##watch", "#100, machine.z, G54.x, H3 \xE2\x80\xA6", &typed,
+                                 ImGuiInputTextFlags_EnterReturnsTrue)
+        && !typed.empty()) {
+        model.watches.push_back(std::exchange(typed, {}));
+        model.watches_changed = true;
+    }
+    if (!model.watches.empty() && ImGui::SmallButton("Clear")) {
+        model.watches.clear();
+        model.watches_changed = true;
+    }
+}
+
+void draw_show(Frame& frame) {
+    Shown& shown = frame.model.settings.shown;
+    heading(frame, "Show");
+    if (!ImGui::BeginTable("show", 2)) return;
+    const auto box = [&](const char* name, bool& value) {
+        ImGui::TableNextColumn();
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(frame.px(2), frame.px(2)));
+        ImGui::Checkbox(name, &value);
+        ImGui::PopStyleVar();
+    };
+    box("Stock", shown.stock);
+    box("Fixtures", shown.fixtures);
+    box("Tool", shown.tool);
+    box("Holder x-ray", shown.holder_xray);
+    box("Path", shown.path);
+    box("Machine", shown.machine);
+    box("Witness line", shown.witness);
+    ImGui::EndTable();
+}
+
+void draw_assumptions(Frame& frame) {
+    const OpenedProgram* program = frame.model.program.get();
+    if (!program) return;
+    heading(frame, program->is_inferred ? "Inferred set-up" : "Set-up");
+    if (program->is_inferred)
+        wrapped_text(frame.fonts.small, frame.look.color(Role::near),
+                     "No set-up was given: this is what the program itself tells. Drop a set-up "
+                     "file here to replace it.");
+    else
+        value_row(frame, "File", program->setup, 50.0);
+    if (ImGui::Button("Edit and save \xE2\x80\xA6", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+        frame.perform(Command::edit_setup);
+    tip(frame, tip_of(Command::edit_setup));
+    for (const std::string& words : program->assumptions) {
+        text(frame.fonts.small, frame.look.color(Role::dim), "\xC2\xB7");
+        ImGui::SameLine(0, frame.px(6));
+        wrapped_text(frame.fonts.small, frame.look.color(Role::dim), words);
+    }
+}
+
+void draw_whole(Frame& frame) {
+    const ViewModel& model = frame.model;
+    const auto whole = findings_of(model, std::nullopt);
+    if (whole.empty() && !model.stopped && model.changes.empty()) return;
+    heading(frame, "Program");
+    for (const std::string& change : model.changes)
+        wrapped_text(frame.fonts.text, frame.look.color(Role::accent), "what if: " + change);
+    if (model.stopped)
+        wrapped_text(frame.fonts.text, frame.look.color(Role::violation),
+                     fmt::format("Line {}: {}", model.stopped->where.line, model.stopped->message));
+    for (const core::Finding* finding : whole) draw_finding(frame, *finding);
+}
+
+} // namespace
+
+void InspectorPanel::draw(Frame& frame, const Area&) {
+    if (!frame.model.has_rows()) return draw_assumptions(frame);
+    draw_number(frame);
+    draw_scale(frame);
+    draw_findings(frame);
+    draw_pair(frame);
+    draw_block(frame);
+    if (frame.model.place) {
+        const PlaceView& place = *frame.model.place;
+        draw_values(frame, "Axes", place.axes);
+        draw_values(frame, "Offsets", place.offsets);
+        draw_values(frame, "Parameters", place.parameters);
+        draw_watches(frame, watch_);
+    }
+    if (ImGui::Button("What if \xE2\x80\xA6", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+        frame.perform(Command::what_if);
+    tip(frame, tip_of(Command::what_if));
+    draw_show(frame);
+    draw_whole(frame);
+    draw_assumptions(frame);
+}
+
+} // namespace app::viewer

@@ -1,0 +1,210 @@
+#include "app/view/ui/offscreen_viewer.h"
+
+#include <algorithm>
+
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
+#include "app/view/ui/imgui_backends.h"
+#include "app/view/ui/layout.h"
+#include "app/view/ui/perform.h"
+#include "app/view/ui/widgets.h"
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+
+/// A picture as a texture, for as long as it is needed.
+struct Texture {
+    render::GlTexture texture = render::GlTexture::make();
+
+    explicit Texture(const render::Image& image) {
+        glBindTexture(GL_TEXTURE_2D, texture.id());
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image.width, image.height, 0, GL_RGBA,
+                     GL_UNSIGNED_BYTE, image.rgba.data());
+    }
+    ImTextureID id() const {
+        return reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(texture.id()));
+    }
+};
+
+} // namespace
+
+core::Result<std::unique_ptr<Studio>> Studio::make(render::Theme theme, double scale) {
+    FEELER_TRY(render::Offscreen context, render::Offscreen::make());
+    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+    return std::unique_ptr<Studio>(
+        new Studio(std::move(context), std::move(renderer), theme, scale));
+}
+
+Studio::Studio(render::Offscreen context, render::Renderer renderer, render::Theme theme,
+               double scale)
+    : context_(std::move(context)), still_(std::move(renderer)) {
+    model.settings.theme = theme;
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+    fonts_ = std::make_unique<Fonts>(load_fonts(scale));
+    apply_style(Look{theme}, scale);
+    const auto wake = [this] {
+        {
+            const std::lock_guard lock(mutex_);
+            is_woken_ = true;
+        }
+        woken_.notify_all();
+    };
+    worker_ = std::make_unique<SessionWorker>(wake);
+    device_ = std::make_unique<DeviceWorker>(wake);
+}
+
+Studio::~Studio() {
+    device_.reset();
+    worker_.reset();
+    desk_.reset();
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Studio::wait() {
+    std::unique_lock lock(mutex_);
+    woken_.wait(lock, [&] { return is_woken_; });
+    is_woken_ = false;
+}
+
+void Studio::update() {
+    take_in(model, worker_->take(), 0.0);
+    take_in(model, device_->take());
+    model.message.clear();
+    send_device_orders(model, *device_, job_);
+    send_requests(model, *worker_);
+}
+
+core::Result<void> Studio::open(const CheckJob& job) {
+    job_ = job;
+    worker_->open(job);
+    while (!model.failure && !model.is_recorded) {
+        wait();
+        update();
+    }
+    if (model.failure) return tl::unexpected(*model.failure);
+    return {};
+}
+
+core::Result<void> Studio::run_device(const std::string& file) {
+    model.device.file = file;
+    model.device.shown = true;
+    update();
+    while (model.device.is_running) {
+        wait();
+        update();
+    }
+    if (model.device.failure) return tl::unexpected(*model.device.failure);
+    return {};
+}
+
+void Studio::settle() {
+    if (!model.has_rows()) return;
+    model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
+    const bool at_end = model.wanted->at_end;
+    const uint64_t before = model.place ? model.place->serial : 0;
+    if (model.place && model.place->block == model.cursor.block && model.place->at_end == at_end) {
+        model.wanted.reset();
+        return;
+    }
+    update();
+    const auto is_there = [&] {
+        return model.place && model.place->serial > before
+               && model.place->block == model.cursor.block && model.place->at_end == at_end;
+    };
+    while (!is_there()) {
+        wait();
+        update();
+    }
+}
+
+void Studio::look(ShotView view, const render::Viewport& size) {
+    const auto from = [&](render::StandardView side) {
+        model.camera = render::seen_from(model.camera, side);
+        model.camera = render::framing(model.camera, size, render::work_bounds(scene_of(model)));
+    };
+    from(view == ShotView::top     ? render::StandardView::top
+         : view == ShotView::front ? render::StandardView::front
+                                   : render::StandardView::iso);
+    if (view == ShotView::witness) model.camera = witness_camera(model, size);
+    model.camera_placed = true;
+}
+
+core::Result<render::Image> Studio::drawn(const render::Viewport& size, int frames,
+                                          const std::function<void()>& draw) {
+    FEELER_TRY(render::Canvas canvas, render::Canvas::make(size));
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
+    io.DeltaTime = 1.0F / 60.0F;
+    for (int i = 0; i < frames; ++i) {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui::NewFrame();
+        draw();
+        ImGui::Render();
+    }
+    canvas.begin();
+    glViewport(0, 0, size.width, size.height);
+    const ImVec4 back = Look{model.settings.theme}.vector(Role::panel);
+    glClearColor(back.x, back.y, back.z, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    canvas.finish();
+    render::Image image = canvas.pixels();
+    for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+core::Result<render::Image> Studio::picture(const render::Viewport& size, bool with_ui) {
+    if (!with_ui) {
+        render::DrawOptions options;
+        options.theme = model.settings.theme;
+        return render::still_picture(still_, scene_of(model), model.camera, options, size);
+    }
+    if (!desk_) {
+        FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+        desk_ = std::make_unique<Desk>(std::move(renderer));
+        desk_->scene().set_samples(4);
+    }
+    return drawn(size, 4, [&] {
+        model.list_follows = true;
+        desk_->draw(model, *fonts_, 0.0);
+    });
+}
+
+core::Result<render::Image> Studio::sheet(const std::vector<Print>& prints, size_t columns) {
+    const int gap = 14, foot = 30;
+    const render::Image& first = prints.front().image;
+    const auto rows = static_cast<int>((prints.size() + columns - 1) / columns);
+    const render::Viewport size{static_cast<int>(columns) * (first.width + gap) + gap,
+                                rows * (first.height + foot + gap) + gap};
+    std::vector<Texture> textures;
+    for (const Print& print : prints) textures.emplace_back(print.image);
+    const Look look{model.settings.theme};
+    return drawn(size, 1, [&] {
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        for (size_t i = 0; i < prints.size(); ++i) {
+            const auto x =
+                static_cast<float>(gap + static_cast<int>(i % columns) * (first.width + gap));
+            const auto y = static_cast<float>(
+                gap + static_cast<int>(i / columns) * (first.height + foot + gap));
+            const auto width = static_cast<float>(first.width);
+            const auto bottom = y + static_cast<float>(first.height);
+            list.AddImage(textures[i].id(), {x, y}, {x + width, bottom});
+            list.AddText(fonts_->small, fonts_->small->FontSize, {x + 2, bottom + 6},
+                         look.color(Role::text),
+                         shortened(fonts_->small, prints[i].caption, width - 4).c_str());
+        }
+    });
+}
+
+} // namespace app::viewer

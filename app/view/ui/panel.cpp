@@ -1,0 +1,231 @@
+#include "app/view/ui/panel.h"
+
+#include <filesystem>
+
+#include <imgui.h>
+#include <imgui_freetype.h>
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+
+ImU32 packed(const render::Color& color) { return IM_COL32(color.r, color.g, color.b, color.a); }
+
+void set_colors(const Look& look, ImVec4* colors) {
+    const ImVec4 clear(0, 0, 0, 0);
+    colors[ImGuiCol_Text] = look.vector(Role::text);
+    colors[ImGuiCol_TextDisabled] = look.vector(Role::dim);
+    colors[ImGuiCol_TextSelectedBg] = look.vector(Role::accent, 0.35);
+    colors[ImGuiCol_WindowBg] = look.vector(Role::panel);
+    colors[ImGuiCol_ChildBg] = clear;
+    colors[ImGuiCol_PopupBg] = look.vector(Role::panel, 0.98);
+    colors[ImGuiCol_Border] = look.vector(Role::line);
+    colors[ImGuiCol_FrameBg] = look.vector(Role::raised);
+    colors[ImGuiCol_FrameBgHovered] = look.vector(Role::line);
+    colors[ImGuiCol_FrameBgActive] = look.vector(Role::line);
+    colors[ImGuiCol_ScrollbarBg] = clear;
+    colors[ImGuiCol_ScrollbarGrab] = look.vector(Role::line);
+    colors[ImGuiCol_ScrollbarGrabHovered] = look.vector(Role::dim, 0.7);
+    colors[ImGuiCol_ScrollbarGrabActive] = look.vector(Role::dim);
+    colors[ImGuiCol_CheckMark] = look.vector(Role::accent);
+    colors[ImGuiCol_SliderGrab] = look.vector(Role::accent);
+    colors[ImGuiCol_SliderGrabActive] = look.vector(Role::accent);
+    colors[ImGuiCol_Button] = look.vector(Role::raised);
+    colors[ImGuiCol_ButtonHovered] = look.vector(Role::line);
+    colors[ImGuiCol_ButtonActive] = look.vector(Role::accent, 0.45);
+    colors[ImGuiCol_Header] = look.vector(Role::raised);
+    colors[ImGuiCol_HeaderHovered] = look.vector(Role::line);
+    colors[ImGuiCol_HeaderActive] = look.vector(Role::line);
+    colors[ImGuiCol_Separator] = look.vector(Role::line);
+    colors[ImGuiCol_SeparatorHovered] = look.vector(Role::accent, 0.6);
+    colors[ImGuiCol_SeparatorActive] = look.vector(Role::accent);
+    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = look.vector(Role::raised);
+    colors[ImGuiCol_NavHighlight] = look.vector(Role::accent);
+    colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0, 0, 0, 0.45F);
+    colors[ImGuiCol_PlotHistogram] = look.vector(Role::accent);
+}
+
+} // namespace
+
+ImU32 Look::color(Role role, double alpha) const {
+    render::Color found = render::color(theme, role);
+    return packed(render::with_alpha(found, alpha * found.a / 255.0));
+}
+
+ImVec4 Look::vector(Role role, double alpha) const {
+    return ImGui::ColorConvertU32ToFloat4(color(role, alpha));
+}
+
+ImU32 Look::ink(Role role) const {
+    const bool is_pale = role == Role::near && theme == render::Theme::light;
+    return is_pale ? mixed(role, Role::text, 0.55) : color(role);
+}
+
+ImU32 Look::mixed(Role a, Role b, double share) const {
+    return packed(render::mixed(render::color(theme, a), render::color(theme, b), share));
+}
+
+ImU32 Look::of(const BlockRow& row, Role otherwise) const {
+    if (is_offending(row)) return color(Role::violation);
+    if (is_near(row)) return color(Role::near);
+    return color(otherwise);
+}
+
+void apply_style(const Look& look, double scale) {
+    ImGuiStyle style;
+    style.WindowRounding = 6.0F;
+    style.ChildRounding = 0.0F;
+    style.FrameRounding = 5.0F;
+    style.PopupRounding = 6.0F;
+    style.GrabRounding = 4.0F;
+    style.ScrollbarRounding = 4.0F;
+    style.ScrollbarSize = 9.0F;
+    style.WindowBorderSize = 0.0F;
+    style.PopupBorderSize = 1.0F;
+    style.WindowPadding = ImVec2(12, 12);
+    style.FramePadding = ImVec2(9, 6);
+    style.ItemSpacing = ImVec2(7, 7);
+    style.ItemInnerSpacing = ImVec2(6, 4);
+    style.DisabledAlpha = 0.4F;
+    set_colors(look, style.Colors);
+    style.ScaleAllSizes(static_cast<float>(scale));
+    ImGui::GetStyle() = style;
+}
+
+namespace {
+
+constexpr const char* inter = "/usr/share/fonts/opentype/inter/Inter-Regular.otf";
+constexpr const char* inter_strong = "/usr/share/fonts/opentype/inter/Inter-SemiBold.otf";
+constexpr const char* inter_big = "/usr/share/fonts/opentype/inter/InterDisplay-SemiBold.otf";
+constexpr const char* jetbrains =
+    "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
+constexpr const char* awesome = "/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf";
+
+/// What programs, names and units are written in. Zero ends it.
+constexpr ImWchar letters[] = {0x0020, 0x017F, 0x0370, 0x04FF, 0x2010, 0x2027, 0x2030, 0x2044,
+                               0x2070, 0x20BF, 0x2190, 0x2199, 0x2200, 0x2265, 0};
+constexpr ImWchar digits[] = {0x0020, 0x007E, 0x2013, 0x2014, 0x2265, 0x2265, 0};
+constexpr ImWchar icons[] = {0xF000, 0xF2E0, 0};
+
+bool is_there(const char* path) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored);
+}
+
+ImFont* load(const char* path, double size, const ImWchar* ranges) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    const auto pixels = static_cast<float>(size);
+    if (is_there(path))
+        if (ImFont* font = atlas.AddFontFromFileTTF(path, pixels, nullptr, ranges)) return font;
+    ImFontConfig config;
+    config.SizePixels = pixels;
+    return atlas.AddFontDefault(&config);
+}
+
+/// Puts the icons into the font that was loaded last.
+bool merge_icons(double size) {
+    if (!is_there(awesome)) return false;
+    ImFontConfig config;
+    config.MergeMode = true;
+    config.GlyphMinAdvanceX = static_cast<float>(size);
+    config.GlyphOffset.y = static_cast<float>(0.06 * size);
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    return atlas.AddFontFromFileTTF(awesome, static_cast<float>(size), &config, icons) != nullptr;
+}
+
+struct IconText {
+    const char *glyph, *plain;
+};
+
+IconText text_of(Icon icon) {
+    switch (icon) {
+    case Icon::program:
+        return {"\xEF\x82\x85", "NC"};
+    case Icon::first:
+        return {"\xEF\x81\x89", "|<"};
+    case Icon::previous:
+        return {"\xEF\x81\x88", "<"};
+    case Icon::play:
+        return {"\xEF\x81\x8B", ">>"};
+    case Icon::pause:
+        return {"\xEF\x81\x8C", "||"};
+    case Icon::next:
+        return {"\xEF\x81\x91", ">"};
+    case Icon::last:
+        return {"\xEF\x81\x90", ">|"};
+    case Icon::warning:
+        return {"\xEF\x81\xB1", "!"};
+    case Icon::near:
+        return {"\xEF\x81\xAA", "~"};
+    case Icon::section:
+        return {"\xEF\x83\x84", "cut"};
+    case Icon::question:
+        return {"\xEF\x84\xA8", "?"};
+    case Icon::picture:
+        return {"\xEF\x80\xB0", "pic"};
+    case Icon::settings:
+        return {"\xEF\x80\x93", "set"};
+    case Icon::moon:
+        return {"\xEF\x86\x86", "dark"};
+    case Icon::sun:
+        return {"\xEF\x86\x85", "light"};
+    case Icon::search:
+        return {"\xEF\x80\x82", "/"};
+    case Icon::breakpoint:
+        return {"\xEF\x84\x91", "o"};
+    case Icon::bookmark:
+        return {"\xEF\x80\xAE", "*"};
+    case Icon::measure:
+        return {"\xEF\x81\xBE", "|-|"};
+    case Icon::check:
+        return {"\xEF\x80\x8C", "+"};
+    case Icon::close:
+        return {"\xEF\x80\x8D", "x"};
+    case Icon::open:
+        return {"\xEF\x81\xBC", "open"};
+    case Icon::locate:
+        return {"\xEF\x81\x9B", "()"};
+    case Icon::undo:
+        return {"\xEF\x83\xA2", "undo"};
+    case Icon::chevron:
+        return {"\xEF\x81\x94", ">"};
+    case Icon::note:
+        return {"\xEF\x81\x9A", "i"};
+    case Icon::bulb:
+        return {"\xEF\x83\xAB", "->"};
+    case Icon::changed:
+        return {"\xEF\x84\x91", "*"};
+    case Icon::device:
+        return {"\xEF\x8B\x9B", "dev"};
+    }
+    return {"", ""};
+}
+
+} // namespace
+
+const char* Fonts::icon(Icon icon) const {
+    const IconText known = text_of(icon);
+    return has_icons ? known.glyph : known.plain;
+}
+
+Fonts load_fonts(double scale) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    atlas.Clear();
+    atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
+    atlas.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
+    Fonts fonts;
+    fonts.scale = scale;
+    fonts.text = load(inter, 15.0 * scale, letters);
+    fonts.has_icons = merge_icons(14.0 * scale);
+    fonts.small = load(inter, 12.5 * scale, letters);
+    merge_icons(11.5 * scale);
+    fonts.strong = load(inter_strong, 15.0 * scale, letters);
+    merge_icons(14.0 * scale);
+    fonts.big = load(inter_big, 38.0 * scale, digits);
+    fonts.mono = load(jetbrains, 14.5 * scale, letters);
+    atlas.Build();
+    return fonts;
+}
+
+} // namespace app::viewer

@@ -1,0 +1,369 @@
+#include "app/view/ui/perform.h"
+
+#include <algorithm>
+
+#include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
+#include "app/view/model/session_worker.h"
+#include "app/view/ui/panel.h"
+
+namespace app::viewer {
+namespace {
+
+constexpr int page = 25;
+constexpr double key_turn = 24.0; // pixels of a drag that a key turns as far as
+constexpr render::Viewport any_view{800, 600};
+
+void toggle(bool& value) { value = !value; }
+
+void look_from(ViewModel& model, render::StandardView view) {
+    model.camera = render::seen_from(model.camera, view);
+}
+
+void turn(ViewModel& model, double x, double y) {
+    model.camera = render::orbited(model.camera, any_view, {x * key_turn, y * key_turn});
+}
+
+void zoom(ViewModel& model, double factor) {
+    model.camera = render::zoomed(model.camera, any_view, {400.0, 300.0}, factor);
+}
+
+void find_offending(ViewModel& model, bool forward, double now) {
+    if (!go_to_offending(model, forward)) return say(model, no_violation(model), now);
+    if (model.awaits_offending) say(model, "Goes to the next violation once one is found", now);
+}
+
+void step_findings(ViewModel& model, bool forward, double now) {
+    show_findings(model, true);
+    if (!step_stretch(model, forward)) say(model, "There is no other finding", now);
+}
+
+void begin_note(ViewModel& model, double now) {
+    if (!selected_stretch(model)) return say(model, "There is no finding here", now);
+    show_findings(model, true);
+    model.note_wants_focus = true;
+}
+
+void toggle_section(ViewModel& model) {
+    if (model.section) return model.section.reset();
+    render::SectionPlane plane;
+    core::Vec3 through = model.camera.target;
+    if (model.has_rows() && model.row().has_witness())
+        through = 0.5 * (model.row().on_tool + model.row().on_body);
+    // The half that hides the place is taken away.
+    const core::Vec3 to_eye = render::eye(model.camera) - through;
+    const int axis = std::abs(to_eye.x) > std::abs(to_eye.y) ? 0 : 1;
+    plane.normal = core::Vec3(0.0);
+    plane.normal[axis] = to_eye[axis] < 0.0 ? -1.0 : 1.0;
+    plane.offset = glm::dot(plane.normal, through);
+    model.section = plane;
+}
+
+void toggle_measuring(ViewModel& model, double now) {
+    toggle(model.measuring.on);
+    model.measuring.places.clear();
+    if (model.measuring.on) say(model, "Click two places on surfaces; M ends measuring", now);
+}
+
+void toggle_bookmark(ViewModel& model) {
+    if (model.bookmarks.erase(model.cursor.block) == 0) model.bookmarks.insert(model.cursor.block);
+}
+
+void set_scale(ViewModel& model, double factor) {
+    model.settings.scale = std::clamp(model.settings.scale * factor, least_scale, largest_scale);
+}
+
+void open_popup(ViewModel& model, Popup popup) {
+    model.popup = model.popup == popup ? Popup::none : popup;
+}
+
+void find_stop(ViewModel& model, bool forward, double now) {
+    if (go_to_stop(model, forward)) return;
+    say(model,
+        model.device.study ? "The machine has to wait for no block"
+                           : "The coprocessor has not answered yet; D runs the program beside it",
+        now);
+}
+
+bool walk(ViewModel& model, Command command, double now) {
+    switch (command) {
+    case Command::step:
+        step(model, 1);
+        return true;
+    case Command::step_back:
+        step(model, -1);
+        return true;
+    case Command::step_ten:
+        step(model, 10);
+        return true;
+    case Command::step_back_ten:
+        step(model, -10);
+        return true;
+    case Command::page_forward:
+        step(model, page);
+        return true;
+    case Command::page_back:
+        step(model, -page);
+        return true;
+    case Command::next_tool:
+        step_tool(model, true);
+        return true;
+    case Command::previous_tool:
+        step_tool(model, false);
+        return true;
+    case Command::first_block:
+        go_to(model, 0);
+        return true;
+    case Command::last_block:
+        go_to(model, model.rows.size());
+        return true;
+    case Command::step_over:
+        step_over(model, true);
+        return true;
+    case Command::step_over_back:
+        step_over(model, false);
+        return true;
+    case Command::step_out:
+        step_out(model);
+        return true;
+    case Command::next_offending:
+        find_offending(model, true, now);
+        return true;
+    case Command::previous_offending:
+        find_offending(model, false, now);
+        return true;
+    case Command::next_stop:
+    case Command::previous_stop:
+        find_stop(model, command == Command::next_stop, now);
+        return true;
+    case Command::next_bookmark:
+        go_to_bookmark(model);
+        return true;
+    case Command::show_findings:
+        show_findings(model, !model.shows_findings);
+        return true;
+    case Command::next_stretch:
+    case Command::previous_stretch:
+        step_findings(model, command == Command::next_stretch, now);
+        return true;
+    case Command::write_note:
+        begin_note(model, now);
+        return true;
+    case Command::toggle_bookmark:
+        toggle_bookmark(model);
+        return true;
+    case Command::toggle_breakpoint:
+        toggle_breakpoint(model, model.cursor.block);
+        return true;
+    case Command::go_on:
+        model.walk = Walk::go_on;
+        return true;
+    case Command::go_on_back:
+        model.walk = Walk::go_on_back;
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool look(ViewModel& model, Command command, double now) {
+    switch (command) {
+    case Command::frame_witness:
+        frame_witness(model);
+        return true;
+    case Command::frame_all:
+        model.camera_placed = false;
+        return true;
+    case Command::view_iso:
+        look_from(model, render::StandardView::iso);
+        return true;
+    case Command::view_top:
+        look_from(model, render::StandardView::top);
+        return true;
+    case Command::view_front:
+        look_from(model, render::StandardView::front);
+        return true;
+    case Command::view_right:
+        look_from(model, render::StandardView::right);
+        return true;
+    case Command::view_back:
+        look_from(model, render::StandardView::back);
+        return true;
+    case Command::view_left:
+        look_from(model, render::StandardView::left);
+        return true;
+    case Command::view_bottom:
+        look_from(model, render::StandardView::bottom);
+        return true;
+    case Command::orbit_left:
+        turn(model, -1.0, 0.0);
+        return true;
+    case Command::orbit_right:
+        turn(model, 1.0, 0.0);
+        return true;
+    case Command::orbit_up:
+        turn(model, 0.0, -1.0);
+        return true;
+    case Command::orbit_down:
+        turn(model, 0.0, 1.0);
+        return true;
+    case Command::zoom_in:
+        zoom(model, 0.85);
+        return true;
+    case Command::zoom_out:
+        zoom(model, 1.0 / 0.85);
+        return true;
+    case Command::section:
+        toggle_section(model);
+        return true;
+    case Command::measure:
+        toggle_measuring(model, now);
+        return true;
+    case Command::projection:
+        model.settings.projection = model.settings.projection == render::Projection::perspective
+                                        ? render::Projection::orthographic
+                                        : render::Projection::perspective;
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool show(ViewModel& model, Command command) {
+    Settings& settings = model.settings;
+    switch (command) {
+    case Command::show_stock:
+        toggle(settings.shown.stock);
+        return true;
+    case Command::show_fixtures:
+        toggle(settings.shown.fixtures);
+        return true;
+    case Command::show_tool:
+        toggle(settings.shown.tool);
+        return true;
+    case Command::show_machine:
+        toggle(settings.shown.machine);
+        return true;
+    case Command::show_path:
+        toggle(settings.shown.path);
+        return true;
+    case Command::show_device:
+        show_device(model, !model.device.shown);
+        return true;
+    case Command::units:
+        toggle(settings.inch);
+        return true;
+    case Command::theme:
+        settings.theme =
+            settings.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
+        return true;
+    case Command::larger:
+        set_scale(model, 1.1);
+        return true;
+    case Command::smaller:
+        set_scale(model, 1.0 / 1.1);
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace
+
+void Frame::perform(Command command) { viewer::perform(model, command, now); }
+
+void perform(ViewModel& model, Command command, double now) {
+    if (walk(model, command, now) || look(model, command, now) || show(model, command)) return;
+    switch (command) {
+    case Command::play:
+        toggle(model.playback.running);
+        stay(model);
+        break;
+    case Command::faster:
+        model.playback.speed = next_speed(model.playback.speed, true);
+        break;
+    case Command::slower:
+        model.playback.speed = next_speed(model.playback.speed, false);
+        break;
+    case Command::filter:
+        model.filter_wants_focus = true;
+        break;
+    case Command::go_to_line:
+        open_popup(model, Popup::go_to_line);
+        break;
+    case Command::open:
+        open_popup(model, Popup::open_file);
+        break;
+    case Command::break_if:
+        open_popup(model, Popup::breakpoint);
+        break;
+    case Command::what_if:
+        open_popup(model, Popup::what_if);
+        break;
+    case Command::edit_setup:
+        open_popup(model, Popup::setup);
+        break;
+    case Command::save_setup:
+        model.popup = Popup::setup;
+        model.wants_saving = true;
+        break;
+    case Command::shortcuts:
+        open_popup(model, Popup::shortcuts);
+        break;
+    case Command::close_popup:
+        if (model.popup == Popup::none) model.section.reset();
+        model.popup = Popup::none;
+        model.playback.running = false;
+        stay(model);
+        break;
+    case Command::picture:
+        model.wants_picture = true;
+        break;
+    case Command::reload:
+        model.wants_reload = true;
+        break;
+    case Command::quit:
+        model.wants_quit = true;
+        break;
+    default:
+        break;
+    }
+}
+
+void frame_witness(ViewModel& model) {
+    if (!model.has_rows()) return;
+    if (model.row().has_witness()) go_to_witness(model, model.cursor.block);
+    model.camera = witness_camera(model, any_view);
+}
+
+bool send_requests(ViewModel& model, SessionWorker& worker) {
+    bool any = false;
+    if (std::exchange(model.breakpoints_changed, false)) {
+        worker.set_breakpoints(model.breakpoints);
+        any = true;
+    }
+    if (std::exchange(model.watches_changed, false)) {
+        worker.watch(model.watches);
+        model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
+    }
+    if (const auto change = std::exchange(model.wanted_change, {})) {
+        worker.change(*change, model.cursor.block);
+        any = true;
+    }
+    if (std::exchange(model.wants_take_back, false)) {
+        worker.take_back();
+        any = true;
+    }
+    if (std::exchange(model.wants_interrupt, false)) worker.interrupt();
+    if (const auto walk = std::exchange(model.walk, {})) {
+        model.walking = worker.walk(*walk, model.cursor.block);
+        any = true;
+    }
+    if (const auto wanted = std::exchange(model.wanted, {})) {
+        worker.show(*wanted);
+        any = true;
+    }
+    return any;
+}
+
+} // namespace app::viewer

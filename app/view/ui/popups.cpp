@@ -1,0 +1,361 @@
+#include "app/view/ui/popups.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/view/model/navigation.h"
+#include "app/view/ui/widgets.h"
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+
+void draw_shortcuts(Frame& frame) {
+    constexpr std::array columns = {CommandGroup::walk, CommandGroup::look, CommandGroup::show,
+                                    CommandGroup::stops, CommandGroup::window};
+    if (!ImGui::BeginTable("keys", 3)) return;
+    for (const CommandGroup group : columns) {
+        if (group != CommandGroup::show && group != CommandGroup::window) ImGui::TableNextColumn();
+        text(frame.fonts.strong, frame.look.color(Role::accent), title_of(group));
+        for (const KeyBinding& binding : key_bindings()) {
+            if (binding.group != group || binding.help[0] == 0) continue;
+            const float left = ImGui::GetCursorPosX();
+            text(frame.fonts.text, frame.look.color(Role::dim), binding.keys);
+            ImGui::SameLine();
+            ImGui::SetCursorPosX(left + frame.px(100));
+            text(frame.fonts.text, frame.look.color(Role::text), binding.help);
+        }
+        ImGui::Dummy(ImVec2(0, frame.px(6)));
+    }
+    ImGui::EndTable();
+    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+                 "Mouse: drag turns, right drag moves, the wheel goes to the cursor; a click on "
+                 "the path or a cut "
+                 "surface goes to its line; a click beside a line number sets a breakpoint; drag "
+                 "the timeline to scrub, "
+                 "turn the wheel there to zoom.");
+    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+                 "Filter and breakpoints take conditions: clearance < 1 and rapid; T3 or T4; near; "
+                 "error; rule = near-miss; \"clamp-1\"; line > 200; ~ \"G81\". Other words are "
+                 "looked for in the lines.");
+}
+
+void draw_settings(Frame& frame) {
+    Settings& settings = frame.model.settings;
+    int theme = settings.theme == render::Theme::light ? 1 : 0;
+    ImGui::RadioButton("Dark", &theme, 0);
+    ImGui::SameLine();
+    ImGui::RadioButton("Light", &theme, 1);
+    settings.theme = theme == 1 ? render::Theme::light : render::Theme::dark;
+    int unit = settings.inch ? 1 : 0;
+    ImGui::RadioButton("mm", &unit, 0);
+    ImGui::SameLine();
+    ImGui::RadioButton("inch", &unit, 1);
+    settings.inch = unit == 1;
+    int mouse = static_cast<int>(settings.mouse);
+    ImGui::SetNextItemWidth(frame.px(280));
+    ImGui::Combo("Mouse", &mouse, mouse_preset_names, 3);
+    settings.mouse = static_cast<MousePreset>(mouse);
+    ImGui::TextUnformatted(fmt::format("Size {:.0f} %", 100.0 * settings.scale).c_str());
+    ImGui::SameLine();
+    if (ImGui::Button("Smaller")) frame.perform(Command::smaller);
+    ImGui::SameLine();
+    if (ImGui::Button("Larger")) frame.perform(Command::larger);
+    bool perspective = settings.projection == render::Projection::perspective;
+    if (ImGui::Checkbox("Perspective", &perspective)) frame.perform(Command::projection);
+    ImGui::Checkbox("Slow motion through a minimum", &frame.model.playback.slow_near);
+}
+
+const char* title_of(Popup popup) {
+    switch (popup) {
+    case Popup::shortcuts:
+        return "Keys";
+    case Popup::go_to_line:
+        return "Go to line";
+    case Popup::open_file:
+        return "Open";
+    case Popup::what_if:
+        return "What if";
+    case Popup::breakpoint:
+        return "Breakpoints";
+    case Popup::settings:
+        return "Settings";
+    case Popup::setup:
+        return "Set-up";
+    case Popup::none:
+        break;
+    }
+    return "";
+}
+
+/// What a row of the what-ifs is about; what follows stands beside it.
+void row_name(Frame& frame, const std::string& name) {
+    ImGui::AlignTextToFramePadding();
+    text(frame.fonts.text, frame.look.color(Role::dim), name);
+    ImGui::SameLine(frame.px(150));
+}
+
+/// A length to be typed and a button that tries it; whether it was pressed.
+bool length_to_try(Frame& frame, const char* id, double& value) {
+    ImGui::PushID(id);
+    ImGui::SetNextItemWidth(frame.px(100));
+    const bool entered =
+        ImGui::InputDouble("mm", &value, 0.0, 0.0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    const bool pressed = ImGui::Button("Try");
+    ImGui::PopID();
+    return entered || pressed;
+}
+
+} // namespace
+
+void PopupPanel::draw_go_to_line(Frame& frame) {
+    ViewModel& model = frame.model;
+    if (ImGui::IsWindowAppearing()) {
+        ImGui::SetKeyboardFocusHere();
+        line_.clear();
+    }
+    ImGui::SetNextItemWidth(frame.px(260));
+    const bool done = ImGui::InputTextWithHint("##line", "Line 188, or N1880", &line_,
+                                               ImGuiInputTextFlags_EnterReturnsTrue);
+    const auto found = find_line(model, line_);
+    if (!line_.empty() && !found)
+        text(frame.fonts.small, frame.look.color(Role::violation),
+             "No block of such a line is run.");
+    if (!done || !found) return;
+    go_to(model, *found);
+    model.popup = Popup::none;
+}
+
+void PopupPanel::draw_open_file(Frame& frame) {
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(frame.px(460));
+    const bool done = ImGui::InputTextWithHint("##path", "Program, set-up (.toml)", &path_,
+                                               ImGuiInputTextFlags_EnterReturnsTrue);
+    text(frame.fonts.small, frame.look.color(Role::dim),
+         "Files can also be dropped into the window.");
+    if (!done || path_.empty()) return;
+    frame.model.wanted_path = path_;
+    frame.model.popup = Popup::none;
+}
+
+void PopupPanel::draw_breakpoint(Frame& frame) {
+    ViewModel& model = frame.model;
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(frame.px(340));
+    const bool done = ImGui::InputTextWithHint("##condition", "clearance < 1 and rapid",
+                                               &condition_, ImGuiInputTextFlags_EnterReturnsTrue);
+    const auto condition = Condition::read(condition_);
+    if (!condition_.empty() && !condition)
+        wrapped_text(frame.fonts.small, frame.look.color(Role::violation),
+                     condition.error().message);
+    std::optional<size_t> gone;
+    for (size_t i = 0; i < model.breakpoints.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::SmallButton(frame.fonts.icon(Icon::close))) gone = i;
+        ImGui::SameLine();
+        text(frame.fonts.mono, frame.look.color(Role::text), text_of(model.breakpoints[i]));
+        ImGui::PopID();
+    }
+    if (gone) model.breakpoints.erase(model.breakpoints.begin() + static_cast<ptrdiff_t>(*gone));
+    const bool is_new = done && condition;
+    if (is_new) {
+        Breakpoint breakpoint;
+        breakpoint.condition = *condition;
+        model.breakpoints.push_back(std::move(breakpoint));
+        condition_.clear();
+        model.popup = Popup::none;
+    }
+    if (gone || is_new) model.breakpoints_changed = true;
+}
+
+void PopupPanel::draw_lengths(Frame& frame, const core::Setup& setup) {
+    ViewModel& model = frame.model;
+    const auto tool = model.place->tool;
+    if (tool && setup.tools.contains(*tool)) {
+        if (ImGui::IsWindowAppearing()) length_ = setup.tools.at(*tool).length;
+        row_name(frame, fmt::format("Length of T{}", core::value_of(*tool)));
+        if (length_to_try(frame, "tool", length_))
+            model.wanted_change = OtherToolLength{*tool, length_};
+    }
+    row_name(frame, "Offset table, H");
+    ImGui::SetNextItemWidth(frame.px(60));
+    ImGui::InputInt("##number", &table_number_, 0);
+    ImGui::SameLine();
+    if (length_to_try(frame, "table", table_length_))
+        model.wanted_change = OtherLengthOffset{core::OffsetNumber{table_number_}, table_length_};
+    row_name(frame, "Work offset");
+    ImGui::SetNextItemWidth(frame.px(74));
+    ImGui::Combo("##offset", &offset_, "G54\0G55\0G56\0G57\0G58\0G59\0");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(frame.px(56));
+    ImGui::Combo("##axis", &axis_, "X\0Y\0Z\0");
+    ImGui::SameLine();
+    if (length_to_try(frame, "origin", origin_))
+        model.wanted_change =
+            OtherWorkOffset{static_cast<size_t>(offset_), static_cast<size_t>(axis_), origin_};
+}
+
+void PopupPanel::draw_fixture(Frame& frame, const core::Setup& setup) {
+    fixture_ = std::min(fixture_, setup.fixtures.size() - 1);
+    row_name(frame, "Move a fixture");
+    ImGui::SetNextItemWidth(frame.px(140));
+    if (ImGui::BeginCombo("##fixture", setup.fixtures[fixture_].name.c_str())) {
+        for (size_t i = 0; i < setup.fixtures.size(); ++i)
+            if (ImGui::Selectable(setup.fixtures[i].name.c_str(), i == fixture_)) fixture_ = i;
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(frame.px(190));
+    ImGui::InputScalarN("X Y Z mm", ImGuiDataType_Double, by_, 3, nullptr, nullptr, "%.2f");
+    ImGui::SameLine();
+    if (ImGui::Button("Try##fixture"))
+        frame.model.wanted_change =
+            MovedFixture{setup.fixtures[fixture_].name, {by_[0], by_[1], by_[2]}};
+}
+
+void PopupPanel::draw_what_if(Frame& frame) {
+    ViewModel& model = frame.model;
+    if (!model.place) return;
+    const core::Setup& setup = model.place->scene->setup;
+    wrapped_text(
+        frame.fonts.text, frame.look.color(Role::dim),
+        fmt::format("From block {} on; what lies before stays as it is.", model.cursor.block));
+    draw_lengths(frame, setup);
+    row_name(frame, "Allowance");
+    if (length_to_try(frame, "allowance", allowance_))
+        model.wanted_change = OtherAllowance{allowance_};
+    if (!setup.fixtures.empty()) draw_fixture(frame, setup);
+    for (const std::string& change : model.changes)
+        text(frame.fonts.text, frame.look.color(Role::accent), change);
+    if (!model.changes.empty() && ImGui::Button("Take the last one back"))
+        model.wants_take_back = true;
+}
+
+void PopupPanel::draw(Frame& frame, const Area& area) {
+    ViewModel& model = frame.model;
+    if (model.popup == Popup::none) return;
+    const bool is_wide = model.popup == Popup::shortcuts;
+    const bool is_form = model.popup == Popup::setup;
+    ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
+                            ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    // What is taller than the window scrolls.
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F),
+                                        ImVec2(area.width - 20, 0.88F * area.height));
+    if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
+    if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.look.color(Role::panel, 0.98));
+    bool open = true;
+    ImGui::Begin(title_of(model.popup), &open,
+                 ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize
+                     | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
+    if (shown_ != model.popup) ImGui::SetWindowFocus();
+    shown_ = model.popup;
+    switch (model.popup) {
+    case Popup::shortcuts:
+        draw_shortcuts(frame);
+        break;
+    case Popup::go_to_line:
+        draw_go_to_line(frame);
+        break;
+    case Popup::open_file:
+        draw_open_file(frame);
+        break;
+    case Popup::what_if:
+        draw_what_if(frame);
+        break;
+    case Popup::breakpoint:
+        draw_breakpoint(frame);
+        break;
+    case Popup::settings:
+        draw_settings(frame);
+        break;
+    case Popup::setup:
+        setup_.draw(frame);
+        break;
+    case Popup::none:
+        break;
+    }
+    ImGui::End();
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(2);
+    if (!open) model.popup = Popup::none;
+    if (model.popup == Popup::none) shown_ = Popup::none;
+}
+
+void WelcomePanel::draw(Frame& frame, const Area& area) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const Look& look = frame.look;
+    list.AddRectFilledMultiColor(area.corner(), area.far_corner(), look.color(Role::view_top),
+                                 look.color(Role::view_top), look.color(Role::view_bottom),
+                                 look.color(Role::view_bottom));
+    const float width = std::min(frame.px(520), area.width - frame.px(40)), height = frame.px(220);
+    const Area box{area.x + 0.5F * (area.width - width), area.y + 0.42F * (area.height - height),
+                   width, height};
+    list.AddRect(box.corner(), box.far_corner(), look.color(Role::dim, 0.7), frame.px(12), 0,
+                 frame.px(1.5));
+    const auto put = [&](ImFont* font, const char* words, float y, Role role) {
+        const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words);
+        list.AddText(font, font->FontSize, {box.x + 0.5F * (box.width - size.x), box.y + y},
+                     look.color(role), words);
+    };
+    put(frame.fonts.big, "feeler", frame.px(26), Role::text);
+    put(frame.fonts.strong, "Drop an NC program here", frame.px(90), Role::text);
+    put(frame.fonts.text, "and a set-up (.toml), if there is one. Without it stock and tools",
+        frame.px(118), Role::dim);
+    put(frame.fonts.text, "are taken from the program, and every guess is said.", frame.px(138),
+        Role::dim);
+    put(frame.fonts.text, "Ctrl+O opens by name \xC2\xB7 F1 lists the keys", frame.px(176),
+        Role::accent);
+}
+
+void ErrorPanel::draw(Frame& frame, const Area& area) {
+    const ViewModel& model = frame.model;
+    const core::Error nothing{core::ErrorCode::missing_value, {}, "The program runs no block."};
+    const core::Error& error = model.failure   ? *model.failure
+                               : model.stopped ? *model.stopped
+                                               : nothing;
+    const float width = std::min(frame.px(680), area.width - frame.px(40));
+    const float left = area.x + 0.5F * (area.width - width), top = area.y + 0.22F * area.height;
+    ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), area.far_corner(),
+                                              frame.look.color(Role::background));
+    ImGui::SetCursorScreenPos({left, top});
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, frame.look.color(Role::panel));
+    ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, frame.px(10));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(26), frame.px(22)));
+    ImGui::BeginChild("error", ImVec2(width, frame.px(270)), true);
+    text(frame.fonts.strong, frame.look.color(Role::violation),
+         std::string(frame.fonts.icon(Icon::warning)) + "  This could not be "
+             + (model.failure ? "opened" : "run"));
+    std::string place = error.file.empty() && model.program ? model.program->program : error.file;
+    if (error.where.line > 0) place += fmt::format(":{}", error.where.line);
+    if (error.where.line > 0 && error.where.column > 0)
+        place += fmt::format(":{}", error.where.column);
+    ImGui::Dummy(ImVec2(0, frame.px(6)));
+    wrapped_text(frame.fonts.mono, frame.look.color(Role::accent), place);
+    ImGui::Dummy(ImVec2(0, frame.px(2)));
+    wrapped_text(frame.fonts.text, frame.look.color(Role::text), error.message);
+    ImGui::Dummy(ImVec2(0, frame.px(10)));
+    wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+                 "Mend the file and save it: it is read again by itself. Or drop another program "
+                 "or set-up here.");
+    ImGui::Dummy(ImVec2(0, frame.px(6)));
+    if (!model.edits.empty() && ImGui::Button("Take the set-up's changes back"))
+        frame.model.wanted_setup = SetupRequest{};
+    if (!model.edits.empty()) ImGui::SameLine();
+    if (ImGui::Button("Read it again")) frame.perform(Command::reload);
+    ImGui::SameLine();
+    if (ImGui::Button("Open another")) frame.perform(Command::open);
+    ImGui::EndChild();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
+}
+
+} // namespace app::viewer

@@ -1,0 +1,357 @@
+#include "app/view/ui/scene_panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
+#include "app/view/ui/widgets.h"
+#include "render/picking.h"
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+
+/// What a drag does.
+enum class Drag : uint8_t { none, orbit, pan };
+
+Drag drag_of(const Settings& settings) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float threshold = 3.0F;
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, threshold))
+        return io.KeyShift ? Drag::pan : Drag::orbit;
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, threshold)) return Drag::pan;
+    if (!ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F)) return Drag::none;
+    switch (settings.mouse) {
+    case MousePreset::middle_orbits:
+        return io.KeyShift ? Drag::pan : Drag::orbit;
+    case MousePreset::middle_pans:
+        return io.KeyShift ? Drag::orbit : Drag::pan;
+    case MousePreset::middle_orbits_ctrl:
+        return io.KeyCtrl ? Drag::pan : Drag::orbit;
+    }
+    return Drag::none;
+}
+
+/// A box with a word in it. `middle`: of the box.
+void draw_tag(const Frame& frame, ImDrawList& list, ImVec2 middle, const std::string& words,
+              ImU32 fill, ImU32 ink) {
+    ImFont* const font = frame.fonts.strong;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
+    const float x = frame.px(10), y = frame.px(6);
+    const ImVec2 a(middle.x - 0.5F * size.x - x, middle.y - 0.5F * size.y - y);
+    const ImVec2 b(middle.x + 0.5F * size.x + x, middle.y + 0.5F * size.y + y);
+    list.AddRectFilled(a, b, fill, frame.px(4));
+    list.AddText(font, font->FontSize, {a.x + x, a.y + y}, ink, words.c_str());
+}
+
+void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::string& words) {
+    ImFont* const font = frame.fonts.text;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
+    const float x = frame.px(11), y = frame.px(6);
+    list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
+                       frame.look.color(Role::panel, 0.86), frame.px(5));
+    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, frame.look.color(Role::text),
+                 words.c_str());
+}
+
+/// What was inferred, where it cannot be overlooked.
+void draw_summary(const Frame& frame, ImDrawList& list, const Area& area) {
+    const std::vector<std::string> lines = inferred_summary(frame.model);
+    if (lines.empty() || area.height < frame.px(360)) return;
+    ImFont* const font = frame.fonts.small;
+    const float step = font->FontSize + frame.px(4), x = frame.px(12), y = frame.px(9);
+    float width = 0.0F;
+    for (const std::string& line : lines)
+        width = std::max(width, font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, line.c_str()).x);
+    const float height = step * static_cast<float>(lines.size()) + 2 * y;
+    const ImVec2 corner(area.x + frame.px(14), area.y + area.height - frame.px(56) - height);
+    list.AddRectFilled(corner, {corner.x + width + 2 * x, corner.y + height},
+                       frame.look.color(Role::panel, 0.86), frame.px(5));
+    list.AddRectFilled(corner, {corner.x + frame.px(3), corner.y + height},
+                       frame.look.color(Role::near), frame.px(1));
+    for (size_t i = 0; i < lines.size(); ++i)
+        list.AddText(font, font->FontSize,
+                     {corner.x + x, corner.y + y + step * static_cast<float>(i)},
+                     frame.look.color(i == 0 ? Role::text : Role::dim), lines[i].c_str());
+}
+
+std::string place_text(const ViewModel& model) {
+    const BlockRow& row = model.row();
+    const BlockRow& last = model.rows.back();
+    return fmt::format("Block {} of {}   \xC2\xB7   {} / {}", model.cursor.block,
+                       model.rows.size() - 1,
+                       clock_text(row.time + model.cursor.share * row.duration),
+                       clock_text(last.time + last.duration));
+}
+
+/// What makes less of the picture than it seems to be: a file that is gone, a program that stops.
+std::string warning_text(const Frame& frame) {
+    const char* const sign = frame.fonts.icon(Icon::warning);
+    std::string words;
+    if (!frame.model.missing.empty())
+        words = fmt::format("{}  {} is gone or empty: this shows what it was before", sign,
+                            std::filesystem::path(frame.model.missing).filename().string());
+    if (!frame.model.stopped) return words;
+    const core::Error& error = *frame.model.stopped;
+    return words + (words.empty() ? "" : "\n")
+           + fmt::format("{}  Line {} could not be run, nothing behind it is checked: {}", sign,
+                         error.where.line, error.message);
+}
+
+/// The same where nobody can overlook it.
+void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
+    const std::string words = warning_text(frame);
+    if (words.empty()) return;
+    ImFont* const font = frame.fonts.text;
+    const float x = frame.px(11), y = frame.px(7);
+    const ImVec2 corner(area.x + frame.px(14), area.y + frame.px(52));
+    const float beside_axes = area.width - frame.px(128) - 2 * x;
+    const float room = std::max(beside_axes, frame.px(200));
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, room, words.c_str());
+    list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
+                       frame.look.color(Role::violation), frame.px(5));
+    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, IM_COL32(255, 255, 255, 255),
+                 words.c_str(), nullptr, room);
+}
+
+std::string words_of(const ViewModel& model, const BlockRow& row) {
+    if (row.verdict == core::Verdict::collision) return "collision";
+    return length_at_least(model, *row.lower) + " " + length_unit(model);
+}
+
+/// An end of an axis, on which a click looks along it.
+struct AxisBall {
+    const char* name;
+    core::Vec3 axis;
+    ImU32 color;
+    Command command;
+};
+
+constexpr std::array<AxisBall, 6> axis_balls = {
+    {{"X", {1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_right},
+     {"Y", {0, 1, 0}, IM_COL32(69, 168, 84, 255), Command::view_back},
+     {"Z", {0, 0, 1}, IM_COL32(58, 134, 228, 255), Command::view_top},
+     {"", {-1, 0, 0}, IM_COL32(232, 72, 85, 255), Command::view_left},
+     {"", {0, -1, 0}, IM_COL32(69, 168, 84, 255), Command::view_front},
+     {"", {0, 0, -1}, IM_COL32(58, 134, 228, 255), Command::view_bottom}}};
+
+void draw_ball(Frame& frame, ImDrawList& list, const AxisBall& ball, const ImVec2& middle,
+               const ImVec2& at) {
+    const bool is_named = ball.name[0] != 0;
+    const float size = frame.px(is_named ? 9.5 : 5.5);
+    if (is_named) list.AddLine(middle, at, ball.color, frame.px(2));
+    list.AddCircleFilled(at, size, is_named ? ball.color : (ball.color & 0x66FFFFFF));
+    ImFont* const font = frame.fonts.small;
+    const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, ball.name);
+    list.AddText(font, font->FontSize, {at.x - 0.5F * room.x, at.y - 0.5F * room.y},
+                 IM_COL32(255, 255, 255, 255), ball.name);
+    ImGui::SetCursorScreenPos({at.x - size, at.y - size});
+    ImGui::PushID(static_cast<int>(ball.command));
+    if (ImGui::InvisibleButton("ball", ImVec2(2 * size, 2 * size))) frame.perform(ball.command);
+    tip(frame, tip_of(ball.command));
+    ImGui::PopID();
+}
+
+} // namespace
+
+void ScenePanel::place_camera(ViewModel& model, const render::Viewport& size) {
+    model.camera.projection = model.settings.projection;
+    if (model.camera_placed || !model.program) return;
+    const core::Aabb box = render::work_bounds(scene_of(model));
+    if (box.empty()) return;
+    const bool is_first = framed_ == 0;
+    if (is_first) model.camera = render::seen_from(model.camera, render::StandardView::iso);
+    model.camera = render::framing(model.camera, size, box);
+    // The early picture lacks the tool; the camera is placed once more when it is there.
+    model.camera_placed = model.place != nullptr;
+    framed_ = model.camera_placed ? model.opening : 0;
+}
+
+void ScenePanel::render_scene(Frame& frame, const render::Viewport& size) {
+    const SceneKey key = key_of(frame.model, size);
+    const bool fits = canvas_ && canvas_->size().width == size.width
+                      && canvas_->size().height == size.height && canvas_->samples() == samples_;
+    if (fits && key == drawn_) return;
+    if (!fits) {
+        auto canvas = render::Canvas::make(size, samples_);
+        if (!canvas) {
+            say(frame.model, canvas.error().message, frame.now);
+            return;
+        }
+        canvas_ = *std::move(canvas);
+    }
+    scene_ = scene_of(frame.model);
+    render::DrawOptions options;
+    options.theme = frame.look.theme;
+    options.scale = frame.fonts.scale;
+    renderer_.draw(scene_, frame.model.camera, options, *canvas_);
+    drawn_ = key;
+}
+
+void ScenePanel::take_drag(ViewModel& model, const render::Viewport& size) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const render::Vec2 by(io.MouseDelta.x, io.MouseDelta.y);
+    if (by == render::Vec2(0.0)) return;
+    switch (drag_of(model.settings)) {
+    case Drag::none:
+        return;
+    case Drag::orbit:
+        model.camera = render::orbited(model.camera, size, by);
+        return;
+    case Drag::pan: {
+        const render::Vec2 middle(0.5 * size.width, 0.5 * size.height);
+        model.camera = render::panned(model.camera, size, middle, middle + by, model.camera.target);
+        return;
+    }
+    }
+}
+
+void ScenePanel::take_click(Frame& frame, const Area& area, const render::Viewport& size) {
+    ViewModel& model = frame.model;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const render::Vec2 at(mouse.x - area.x, mouse.y - area.y);
+    const render::Pick found = render::pick(scene_, model.camera, size, at, frame.px(6));
+    if (model.measuring.on) {
+        const auto surface = found.surface();
+        if (!surface) return;
+        if (model.measuring.places.size() == 2) model.measuring.places.clear();
+        model.measuring.places.push_back(surface->point);
+        return;
+    }
+    if (found.path) return go_to(model, found.path->block);
+    if (found.stock && found.stock->block) {
+        go_to(model, *found.stock->block);
+        say(model, fmt::format("Cut by block {}, line {}", model.cursor.block, model.row().line),
+            frame.now);
+        return;
+    }
+    if (found.body && found.body->body < scene_.bodies.size())
+        say(model, scene_.bodies[found.body->body].name, frame.now);
+    else if (found.stock)
+        say(model, "Raw stock: no block has cut here", frame.now);
+}
+
+void ScenePanel::take_mouse(Frame& frame, const Area& area, const render::Viewport& size) {
+    ViewModel& model = frame.model;
+    const ImGuiIO& io = ImGui::GetIO();
+    const render::Vec2 at(io.MousePos.x - area.x, io.MousePos.y - area.y);
+    if (ImGui::IsItemActive()) take_drag(model, size);
+    if (!ImGui::IsItemHovered()) return;
+    if (io.MouseWheel != 0.0F) {
+        const auto surface = render::pick(scene_, model.camera, size, at).surface();
+        model.camera =
+            render::zoomed(model.camera, size, at, std::pow(0.85, io.MouseWheel),
+                           surface ? std::optional<core::Vec3>(surface->point) : std::nullopt);
+    }
+    const ImVec2 dragged = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+    const bool stood = std::abs(dragged.x) + std::abs(dragged.y) < 4.0F;
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && stood) take_click(frame, area, size);
+    if (ImGui::IsAnyMouseDown() || !model.path || !model.settings.shown.path) return;
+    if (at != last_hover_) {
+        const auto hit = render::pick_path(*model.path, model.camera, size, at, frame.px(6));
+        hovered_ = hit ? std::optional<size_t>(hit->block) : std::nullopt;
+        last_hover_ = at;
+    }
+    if (hovered_) model.pointed_at = hovered_;
+}
+
+void ScenePanel::draw_witness(Frame& frame, const Area& area, const render::Viewport& size) {
+    const ViewModel& model = frame.model;
+    const auto witness = witness_of(model);
+    if (!witness) return;
+    const auto seen = render::project(model.camera, size, 0.5 * (witness->a + witness->b));
+    if (!seen) return;
+    const BlockRow& row = model.row();
+    const bool loud = is_offending(row) || is_near(row);
+    const ImVec2 at(area.x + static_cast<float>(seen->place.x),
+                    area.y + static_cast<float>(seen->place.y));
+    const ImVec2 middle(at.x + frame.px(62), at.y - frame.px(58));
+    const ImU32 fill =
+        loud ? frame.look.of(row, Role::clear) : frame.look.color(Role::raised, 0.95);
+    ImU32 ink = frame.look.color(Role::text);
+    if (is_near(row)) ink = IM_COL32(20, 23, 28, 255);
+    if (is_offending(row)) ink = IM_COL32(255, 255, 255, 255);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddLine(at, {middle.x - frame.px(20), middle.y + frame.px(10)}, fill, frame.px(1.5));
+    draw_tag(frame, list, middle, words_of(model, row), fill, ink);
+}
+
+void ScenePanel::draw_measure(Frame& frame, const Area& area, const render::Viewport& size) {
+    const ViewModel& model = frame.model;
+    const std::vector<core::Vec3>& places = model.measuring.places;
+    if (places.size() != 2) return;
+    const core::Vec3 way = places[1] - places[0];
+    const auto seen = render::project(model.camera, size, 0.5 * (places[0] + places[1]));
+    if (!seen) return;
+    draw_tag(frame, *ImGui::GetWindowDrawList(),
+             {area.x + static_cast<float>(seen->place.x),
+              area.y + static_cast<float>(seen->place.y) - frame.px(26)},
+             fmt::format("{} {}   X {}  Y {}  Z {}", length_text(model, glm::length(way)),
+                         length_unit(model), length_text(model, way.x), length_text(model, way.y),
+                         length_text(model, way.z)),
+             frame.look.color(Role::accent), IM_COL32(255, 255, 255, 255));
+}
+
+void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewport& size) {
+    const ViewModel& model = frame.model;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(area.corner(), area.far_corner(), true);
+    draw_witness(frame, area, size);
+    draw_measure(frame, area, size);
+    if (model.has_rows())
+        draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)}, place_text(model));
+    draw_warning(frame, list, area);
+    draw_summary(frame, list, area);
+    std::string words;
+    if (frame.now < model.message_until) words = model.message;
+    if (model.is_busy && !model.place)
+        words = model.has_rows() ? "Modelling the stock \xE2\x80\xA6" : "Reading \xE2\x80\xA6";
+    if (!words.empty())
+        draw_pill(frame, list, {area.x + frame.px(14), area.y + area.height - frame.px(44)}, words);
+    list.PopClipRect();
+}
+
+void ScenePanel::draw_axes(Frame& frame, const Area& area) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float radius = frame.px(43);
+    const ImVec2 middle(area.x + area.width - radius - frame.px(14),
+                        area.y + radius + frame.px(14));
+    list.AddCircleFilled(middle, radius, frame.look.color(Role::panel, 0.6), 48);
+    const render::CameraAxes seen = render::axes(frame.model.camera);
+    std::array<AxisBall, 6> balls = axis_balls;
+    std::sort(balls.begin(), balls.end(), [&](const AxisBall& a, const AxisBall& b) {
+        return glm::dot(a.axis, seen.backward) < glm::dot(b.axis, seen.backward);
+    });
+    const float reach = radius - frame.px(13);
+    for (const AxisBall& ball : balls)
+        draw_ball(frame, list, ball, middle,
+                  {middle.x + reach * static_cast<float>(glm::dot(ball.axis, seen.right)),
+                   middle.y - reach * static_cast<float>(glm::dot(ball.axis, seen.up))});
+}
+
+void ScenePanel::draw(Frame& frame, const Area& area) {
+    const render::Viewport size{std::max(static_cast<int>(area.width), 16),
+                                std::max(static_cast<int>(area.height), 16)};
+    place_camera(frame.model, size);
+    render_scene(frame, size);
+    if (!canvas_) return;
+    ImGui::SetCursorScreenPos(area.corner());
+    const auto texture = reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(canvas_->texture()));
+    ImGui::GetWindowDrawList()->AddImage(texture, area.corner(), area.far_corner(), ImVec2(0, 1),
+                                         ImVec2(1, 0));
+    ImGui::InvisibleButton("scene", area.size(),
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle
+                               | ImGuiButtonFlags_MouseButtonRight);
+    ImGui::SetItemAllowOverlap();
+    take_mouse(frame, area, size);
+    draw_labels(frame, area, size);
+    if (area.width > frame.px(440)) draw_axes(frame, area);
+}
+
+} // namespace app::viewer

@@ -1,0 +1,563 @@
+#include "app/view/ui/window.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <utility>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/view/model/file_watch.h"
+#include "app/view/model/navigation.h"
+#include "app/view/model/session_worker.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/command.h"
+#include "app/view/ui/imgui_backends.h"
+#include "app/view/ui/layout.h"
+#include "app/view/ui/perform.h"
+#include "app/view/ui/window_files.h"
+#include "render/image.h"
+
+namespace app::viewer {
+
+/// Writes down when keys came and frames were drawn, to measure how fast the window is. Times are
+/// seconds since 1970.
+///
+///     key TIME CODE
+///     frame BEGIN END CURSOR SHOWN PATH    the cursor's block, the block whose stock is shown (-1:
+///                                          none yet), points of the path
+class FrameLog {
+public:
+    /// Nothing is written where the path is empty.
+    explicit FrameLog(const std::filesystem::path& path);
+
+    void key(int code);
+    /// Before and after a frame was drawn.
+    void begin_frame();
+    void end_frame(const ViewModel& model);
+
+private:
+    std::ofstream file_;
+    double begin_ = 0.0;
+};
+
+} // namespace app::viewer
+
+struct ImGuiIO;
+
+namespace app::viewer {
+
+/// Keys on their way to ImGui 1.86, which knows of each only whether it is down in a frame.
+///
+/// One that is pressed and released between two frames gets a frame for each; a modifier that goes
+/// up behind a key is down as long as that one is new.
+class KeyQueue {
+public:
+    /// A key by its code in GLFW.
+    void add(int code, bool is_down);
+
+    /// Tells ImGui what it can be told for the next frame; whether something is left for a later
+    /// one.
+    bool feed(ImGuiIO& io);
+
+private:
+    std::deque<std::pair<int, bool>> keys_;
+};
+
+/// What the window's own framebuffer shows. Needs its context to be current.
+render::Image screen_picture(int width, int height);
+
+/// A file of a folder that does not exist yet: feeler-0001.png and so on.
+std::filesystem::path free_picture_name(const std::filesystem::path& folder);
+
+} // namespace app::viewer
+
+namespace app::viewer {
+namespace {
+
+static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
+              && key::escape == GLFW_KEY_ESCAPE && key::of('G') == GLFW_KEY_G
+              && key::keypad_add == GLFW_KEY_KP_ADD && key::slash == GLFW_KEY_SLASH
+              && key::left_bracket == GLFW_KEY_LEFT_BRACKET && key::end == GLFW_KEY_END
+              && key::left_control == GLFW_KEY_LEFT_CONTROL && key::right_alt == GLFW_KEY_RIGHT_ALT
+              && mod::shift == GLFW_MOD_SHIFT && mod::control == GLFW_MOD_CONTROL
+              && mod::alt == GLFW_MOD_ALT);
+
+/// How often files are looked at, and how long the window sleeps at most, seconds.
+constexpr double watch_interval = 0.4;
+constexpr double frame_time = 1.0 / 60.0;
+/// What the view of a block mostly takes: after a step one frame is drawn and not two.
+constexpr double answer_time = 0.015;
+
+struct Glfw {
+    bool is_open = glfwInit() == GLFW_TRUE;
+    ~Glfw() {
+        if (is_open) glfwTerminate();
+    }
+};
+
+/// ImGui with its two backends.
+struct Gui {
+    explicit Gui(GLFWwindow* window) {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.KeyRepeatDelay = 1e9F; // the system does that
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+};
+
+class Window {
+public:
+    Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
+        : job_(job),
+          window_(window),
+          gui_(window),
+          desk_(std::move(renderer)),
+          log_(job.frame_log),
+          worker_([] { glfwPostEmptyEvent(); }),
+          device_([] { glfwPostEmptyEvent(); }) {}
+
+    ViewModel model;
+
+    void run();
+    void press(int code, int modifiers);
+    void type(int code, bool is_down) { keys_.add(code, is_down); }
+    void drop(const std::vector<std::string>& paths);
+    void damage() { frames_ = 3; }
+    void open_job();
+    void do_setup(const SetupRequest& request);
+
+private:
+    void update();
+    void draw();
+    void rebuild_fonts();
+    void save_picture();
+    void work_with_saved();
+    void remember_place();
+    void set_title();
+    double wanted_scale() const;
+
+    WindowJob job_;
+    GLFWwindow* window_;
+    Gui gui_;
+    Desk desk_;
+    Fonts fonts_;
+    std::string title_;
+    std::optional<render::Theme> styled_;
+    FileWatch files_;
+    FrameLog log_;
+    KeyQueue keys_;
+    double last_watch_ = 0.0, last_frame_ = 0.0;
+    bool asked_ = false; // the worker has just been asked for something
+    int frames_ = 3;     // still to draw: ImGui needs some until all is where it belongs
+    SessionWorker worker_;
+    DeviceWorker device_; // last: they end first
+};
+
+double Window::wanted_scale() const {
+    float x = 1.0F, y = 1.0F;
+    glfwGetWindowContentScale(window_, &x, &y);
+    int width = 1, height = 1, pixels = 1, rows = 1;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels, &rows);
+    // Where coordinates are not pixels the system scales by itself.
+    const double scaled = width > 0 ? static_cast<double>(pixels) / width : 1.0;
+    return std::clamp(static_cast<double>(x) / std::max(scaled, 1.0), 0.5, 4.0)
+           * model.settings.scale;
+}
+
+void Window::rebuild_fonts() {
+    const double scale = wanted_scale();
+    if (fonts_.text && fonts_.scale == scale && styled_ == model.settings.theme) return;
+    if (!fonts_.text || fonts_.scale != scale) {
+        fonts_ = load_fonts(scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    apply_style(Look{model.settings.theme}, scale);
+    styled_ = model.settings.theme;
+}
+
+void Window::open_job() {
+    if (!job_.check) return;
+    worker_.set_breakpoints(model.breakpoints);
+    worker_.open(*job_.check);
+    std::vector<std::string> files = files_of_setup(job_.check->setup);
+    files.push_back(job_.check->program);
+    if (!job_.device.file.empty()) files.push_back(job_.device.file);
+    files_.set(std::move(files));
+    model.edits = job_.check->edits;
+    damage();
+}
+
+void Window::do_setup(const SetupRequest& request) {
+    if (!job_.check) return;
+    CheckJob edited = *job_.check;
+    edited.edits = request.edits;
+    damage();
+    if (!request.save_path.empty())
+        return worker_.save_setup({edited, request.save_path, request.may_replace, job_.write});
+    job_.check = edited;
+    open_job();
+    say(model, "The program is checked with the set-up as it stands now", glfwGetTime());
+}
+
+/// The window goes on with the file: what is saved is what is shown.
+void Window::work_with_saved() {
+    const std::string path = model.saved->path;
+    model.saved.reset();
+    if (model.popup == Popup::setup) model.popup = Popup::none;
+    if (!job_.check) return;
+    job_.check->setup = path;
+    job_.check->edits = {};
+    open_job();
+    say(model, "Saved " + path, glfwGetTime());
+}
+
+void Window::drop(const std::vector<std::string>& paths) {
+    damage();
+    const auto check = with_dropped(job_.check.value_or(CheckJob{}), paths, model, glfwGetTime());
+    if (!check) return;
+    job_.check = check;
+    open_job();
+}
+
+void Window::press(int code, int modifiers) {
+    log_.key(code);
+    damage();
+    const auto command = command_of(code, modifiers);
+    if (!command) return;
+    // The wish for text outlives its field by two frames.
+    const bool is_typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
+    const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
+    const bool moves_text = code >= key::enter && code <= key::end;
+    if (is_typing && (is_plain || moves_text)) return;
+    const bool keeps_keys = model.popup != Popup::none && model.popup != Popup::shortcuts;
+    const bool closes = *command == Command::close_popup || *command == Command::what_if
+                        || *command == Command::quit;
+    if (keeps_keys && !closes && (is_plain || moves_text)) return;
+    perform(model, *command, glfwGetTime());
+}
+
+void Window::set_title() {
+    const std::string title = window_title(model);
+    if (title == title_) return;
+    title_ = title;
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::save_picture() {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const std::filesystem::path path = free_picture_name(job_.pictures);
+    const auto written = render::write_png(screen_picture(width, height), path);
+    say(model, written ? "Saved " + path.string() : written.error().message, glfwGetTime());
+    damage();
+}
+
+void Window::update() {
+    const double now = glfwGetTime();
+    SessionUpdate news = worker_.take();
+    if (news.has_news) damage();
+    take_in(model, std::move(news), now);
+    DeviceUpdate answers = device_.take();
+    if (answers.has_news) damage();
+    take_in(model, std::move(answers));
+    if (play(model, std::min(now - last_frame_, 0.2))) damage();
+    last_frame_ = now;
+    if (!model.wanted_path.empty()) drop({std::exchange(model.wanted_path, {})});
+    if (std::exchange(model.wants_reload, false)) open_job();
+    if (now - last_watch_ > watch_interval) {
+        last_watch_ = now;
+        if (files_.has_changed()) {
+            open_job();
+            say(model, "The file has changed and is read again", now);
+        }
+        if (model.missing != files_.missing()) {
+            model.missing = files_.missing();
+            damage();
+        }
+        if (now < model.message_until + watch_interval) damage();
+    }
+    if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
+    if (model.saved && !model.saved->refusal) work_with_saved();
+    if (send_device_orders(model, device_, job_.check)) damage();
+    if (send_requests(model, worker_)) {
+        asked_ = true;
+        damage();
+    }
+    if (std::exchange(model.notes_changed, false))
+        keep_notes(model, job_.notes_file, job_.write, now);
+    if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void Window::draw() {
+    log_.begin_frame();
+    rebuild_fonts();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    if (keys_.feed(ImGui::GetIO())) damage();
+    ImGui::NewFrame();
+    desk_.draw(model, fonts_, glfwGetTime());
+    set_title();
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    const ImVec4 back = Look{model.settings.theme}.vector(render::Role::panel);
+    glClearColor(back.x, back.y, back.z, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    if (model.wants_picture && std::exchange(model.wants_picture, false)) save_picture();
+    glfwSwapBuffers(window_);
+    log_.end_frame(model);
+}
+
+void Window::remember_place() {
+    Settings& settings = model.settings;
+    settings.maximised = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
+    if (settings.maximised) return;
+    glfwGetWindowSize(window_, &settings.width, &settings.height);
+    glfwGetWindowPos(window_, &settings.x, &settings.y);
+}
+
+void Window::run() {
+    open_job();
+    while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
+        update();
+        if (std::exchange(asked_, false) && !model.playback.running) {
+            glfwWaitEventsTimeout(answer_time);
+            update();
+        }
+        if (frames_ > 0) {
+            --frames_;
+            draw();
+        }
+        if (model.playback.running)
+            glfwWaitEventsTimeout(frame_time);
+        else if (frames_ > 0 || model.wanted)
+            glfwPollEvents();
+        else
+            glfwWaitEventsTimeout(watch_interval);
+    }
+    remember_place();
+    write_settings(model.settings, job_.settings_file);
+}
+
+Window& window_of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+/// Whatever has happened, the window is drawn again.
+template <typename... What>
+void damage(GLFWwindow* window, What...) {
+    if (glfwGetWindowUserPointer(window)) window_of(window).damage();
+}
+
+void listen(GLFWwindow* window) {
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+        if (glfwGetWindowUserPointer(w))
+            window_of(w).drop(std::vector<std::string>(paths, paths + count));
+    });
+    glfwSetCursorPosCallback(window, damage<double, double>);
+    glfwSetMouseButtonCallback(window, damage<int, int, int>);
+    glfwSetScrollCallback(window, damage<double, double>);
+    glfwSetCharCallback(window, damage<unsigned>);
+    glfwSetFramebufferSizeCallback(window, damage<int, int>);
+    glfwSetWindowRefreshCallback(window, damage<>);
+    glfwSetWindowFocusCallback(window, damage<int>);
+}
+
+/// In place of the one of ImGui's backend.
+void listen_to_keys(GLFWwindow* window) {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int, int action, int modifiers) {
+        if (!glfwGetWindowUserPointer(w)) return;
+        window_of(w).damage();
+        // The system repeats keys, and takes fast presses for repeats.
+        if (action == GLFW_REPEAT) window_of(w).type(code, false);
+        window_of(w).type(code, action != GLFW_RELEASE);
+        const int known = mod::shift | mod::control | mod::alt;
+        if (action != GLFW_RELEASE) window_of(w).press(code, modifiers & known);
+    });
+}
+
+struct CloseWindow {
+    void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+using OpenWindow = std::unique_ptr<GLFWwindow, CloseWindow>;
+
+OpenWindow make_window(const Settings& settings) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SAMPLES, 0);
+    glfwWindowHint(GLFW_MAXIMIZED, settings.maximised ? GLFW_TRUE : GLFW_FALSE);
+    OpenWindow window(
+        glfwCreateWindow(settings.width, settings.height, "feeler", nullptr, nullptr));
+    if (!window) return window;
+    if (settings.x >= 0 && settings.y >= 0) glfwSetWindowPos(window.get(), settings.x, settings.y);
+    glfwSetWindowSizeLimits(window.get(), 640, 420, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwMakeContextCurrent(window.get());
+    glfwSwapInterval(1);
+    listen(window.get());
+    return window;
+}
+
+} // namespace
+
+core::Result<void> run_window(const WindowJob& job) {
+    const Glfw glfw;
+    if (!glfw.is_open) return core::fail(core::ErrorCode::unsupported, "there is no display");
+    const Settings settings = read_settings(job.settings_file);
+    const OpenWindow window = make_window(settings);
+    if (!window)
+        return core::fail(core::ErrorCode::unsupported, "there is no OpenGL 3.3 for a window here");
+    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+    const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
+    shown->model.settings = settings;
+    shown->model.device.file = job.device.file;
+    shown->model.device.shown = job.device.shown;
+    shown->model.notes = notes_in(read_text(job.notes_file).value_or(""));
+    listen_to_keys(window.get());
+    glfwSetWindowUserPointer(window.get(), shown.get());
+    shown->run();
+    glfwSetWindowUserPointer(window.get(), nullptr);
+    return {};
+}
+
+namespace {
+
+const char* words_of(DeviceAnswer answer) {
+    switch (answer) {
+    case DeviceAnswer::unknown:
+        return "no answer";
+    case DeviceAnswer::nothing:
+        return "nothing to ask";
+    case DeviceAnswer::permitted:
+        return "permitted";
+    case DeviceAnswer::late:
+        return "late";
+    case DeviceAnswer::refused:
+        return "refused";
+    case DeviceAnswer::not_asked:
+        return "not asked";
+    }
+    return "";
+}
+
+std::string device_words(const ViewModel& model) {
+    const DeviceModel& device = model.device;
+    if (!device.shown) return {};
+    if (device.failure) return ", coprocessor: failed";
+    if (!device.study) return device.is_running ? ", coprocessor: running" : ", coprocessor";
+    return std::string(", coprocessor: ")
+           + words_of(answer_of(device.study.get(), model.cursor.block));
+}
+
+} // namespace
+
+std::string window_title(const ViewModel& model) {
+    if (model.failure || (model.is_recorded && !model.has_rows()))
+        return "This could not be opened - feeler";
+    if (!model.program) return "feeler";
+    std::string title = std::filesystem::path(model.program->program).filename().string();
+    if (model.has_rows())
+        title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
+                             model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
+    title += device_words(model);
+    if (!model.missing.empty()) title += ", gone or empty";
+    if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
+    return title + " - feeler";
+}
+
+namespace {
+
+double now() {
+    using namespace std::chrono;
+    return duration<double>(system_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+FrameLog::FrameLog(const std::filesystem::path& path) {
+    if (!path.empty()) file_.open(path);
+}
+
+void FrameLog::key(int code) {
+    if (file_.is_open()) file_ << fmt::format("key {:.4f} {}\n", now(), code) << std::flush;
+}
+
+void FrameLog::begin_frame() { begin_ = now(); }
+
+void FrameLog::end_frame(const ViewModel& model) {
+    if (!file_.is_open()) return;
+    const long shown = model.place ? static_cast<long>(model.place->block) : -1L;
+    const size_t points = model.path ? model.path->points.size() : 0;
+    file_ << fmt::format("frame {:.4f} {:.4f} {} {} {}\n", begin_, now(), model.cursor.block, shown,
+                         points)
+          << std::flush;
+}
+
+void KeyQueue::add(int code, bool is_down) {
+    if (code >= 0 && code < IM_ARRAYSIZE(ImGuiIO::KeysDown)) keys_.emplace_back(code, is_down);
+}
+
+bool KeyQueue::feed(ImGuiIO& io) {
+    std::set<int> changed;
+    bool has_press = false;
+    while (!keys_.empty() && (keys_.front().second || !has_press)
+           && changed.insert(keys_.front().first).second) {
+        has_press = has_press || keys_.front().second;
+        io.KeysDown[keys_.front().first] = keys_.front().second;
+        keys_.pop_front();
+    }
+    io.KeyCtrl = io.KeysDown[key::left_control] || io.KeysDown[key::right_control];
+    io.KeyShift = io.KeysDown[key::left_shift] || io.KeysDown[key::right_shift];
+    io.KeyAlt = io.KeysDown[key::left_alt] || io.KeysDown[key::right_alt];
+    return !keys_.empty();
+}
+
+render::Image screen_picture(int width, int height) {
+    render::Image image{width, height, {}};
+    const size_t row = 4 * static_cast<size_t>(width);
+    std::vector<uint8_t> pixels(row * static_cast<size_t>(height));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    for (size_t y = static_cast<size_t>(height); y-- > 0;)
+        image.rgba.insert(image.rgba.end(), pixels.begin() + static_cast<ptrdiff_t>(y * row),
+                          pixels.begin() + static_cast<ptrdiff_t>((y + 1) * row));
+    for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+std::filesystem::path free_picture_name(const std::filesystem::path& folder) {
+    std::filesystem::path path;
+    for (int number = 1; number < 10000; ++number) {
+        path = folder / fmt::format("feeler-{:04}.png", number);
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) break;
+    }
+    return path;
+}
+
+} // namespace app::viewer

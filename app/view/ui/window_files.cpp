@@ -1,0 +1,56 @@
+#include "app/view/ui/window_files.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "app/view/model/file_watch.h"
+#include "app/view/model/navigation.h"
+
+namespace app::viewer {
+
+core::Result<std::string> read_text(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    if (!file) return core::fail(core::ErrorCode::io, "there is no such file");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
+                                     ViewModel& model, double now) {
+    const std::string before = check.program;
+    bool has_program = false, has_setup = false;
+    for (const std::string& path : paths) {
+        if (is_mesh_file(path)) {
+            say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", now);
+        } else if (is_setup_file(path)) {
+            check.setup = path;
+            has_setup = true;
+        } else {
+            check.program = path;
+            has_program = true;
+        }
+    }
+    if (!has_program && !has_setup) return {};
+    if (check.program.empty()) {
+        say(model, "Drop the program as well", now);
+        return {};
+    }
+    if (has_program && !has_setup) check.setup.clear();
+    if (check.program != before) {
+        model.opens_another = true;
+        model.breakpoints.clear();
+    }
+    check.edits = {};
+    return check;
+}
+
+void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
+                double now) {
+    if (path.empty() || !model.program) return;
+    std::error_code ignored; // the writing tells of it
+    std::filesystem::create_directories(path.parent_path(), ignored);
+    model.notes = merged(notes_in(read_text(path).value_or("")), model.notes, notes_key(model));
+    const auto written = write(path, text_of(model.notes));
+    if (!written) say(model, "The note could not be kept: " + written.error().message, now);
+}
+
+} // namespace app::viewer

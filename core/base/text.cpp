@@ -1,0 +1,30 @@
+#include "core/base/text.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace core {
+
+size_t letters_apart(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = std::exchange(row[0], i + 1);
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+        }
+    }
+    return row.back();
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
+    const auto nearest = std::min_element(names.begin(), names.end(), [&](auto& a, auto& b) {
+        return letters_apart(name, a) < letters_apart(name, b);
+    });
+    return nearest == names.end() ? std::string() : *nearest;
+}
+
+} // namespace core

@@ -1,0 +1,347 @@
+#include "core/motion/kinematics.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/base/units.h"
+
+namespace core {
+namespace {
+
+/// The turn about a line through the origin; exact for the frame's axes and multiples of 90
+/// degrees.
+Mat3 rotation_about(const Vec3& axis, double angle_deg) {
+    const auto [sine, cosine] = sin_cos_deg(angle_deg);
+    const double rest = 1.0 - cosine;
+    Mat3 turn(0.0);
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) {
+            const bool along = row == column && std::abs(axis[row]) == 1.0;
+            turn[column][row] =
+                along ? 1.0 : axis[row] * axis[column] * rest + (row == column ? cosine : 0.0);
+        }
+    const Vec3 s = sine * axis;
+    turn[0][1] += s.z, turn[1][0] -= s.z;
+    turn[1][2] += s.x, turn[2][1] -= s.x;
+    turn[2][0] += s.y, turn[0][2] -= s.y;
+    return turn;
+}
+
+Transform joint(const MachineAxis& axis, bool rotary, double value) {
+    const double way = axis.side == Side::tool ? value : -value;
+    if (!rotary) return translation(way * axis.direction);
+    const Mat3 turn = rotation_about(axis.direction, way);
+    return {turn, axis.point - turn * axis.point};
+}
+
+/// The rotary axes between a link and the base, the one nearest to the base first.
+std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
+    std::vector<size_t> chain;
+    while (link != LinkId::base) {
+        const auto axis = static_cast<size_t>(link);
+        if (is_rotary(axis)) chain.insert(chain.begin(), axis);
+        link = machine.axes[axis].carrier;
+    }
+    return chain;
+}
+
+/// What a direction fixed to the spindle is, seen from the table.
+Vec3 tool_axis_at(const Machine& machine, const AxisValues& values) {
+    const Transform table = machine_from_link(machine, machine.table, values);
+    const Transform spindle = machine_from_link(machine, machine.spindle, values);
+    return glm::transpose(table.rotation) * (spindle.rotation * Vec3(0, 0, 1));
+}
+
+/// An angle as near to `from` as whole turns bring it, within the limits where that can be.
+double nearest_turn(const MachineAxis& axis, double from, double angle_deg) {
+    double best = angle_deg + 360.0 * std::round((from - angle_deg) / 360.0);
+    while (axis.max && best > *axis.max + 1e-9) best -= 360.0;
+    while (axis.min && best < *axis.min - 1e-9) best += 360.0;
+    return best;
+}
+
+bool within_limits(const MachineAxis& axis, double value) {
+    return (!axis.min || value >= *axis.min - 1e-9) && (!axis.max || value <= *axis.max + 1e-9);
+}
+
+/// Rotary axes as they bear on the direction of the tool seen from the work: first the outermost of
+/// the table, last the one nearest to the tool, each turning what comes after it by its angle.
+struct DirectionJoint {
+    size_t axis;
+    Vec3 about;
+};
+
+std::vector<DirectionJoint> direction_joints(const Machine& machine) {
+    std::vector<DirectionJoint> joints;
+    const std::vector<size_t> table = rotary_chain(machine, machine.table);
+    for (auto it = table.rbegin(); it != table.rend(); ++it)
+        joints.push_back({*it, machine.axes[*it].direction});
+    for (const size_t axis : rotary_chain(machine, machine.spindle))
+        joints.push_back({axis, machine.axes[axis].direction});
+    return joints;
+}
+
+/// The angles t with a cos t + b sin t = c, degrees; none when it cannot be.
+std::vector<double> angles_with(double a, double b, double c) {
+    const double size = std::hypot(a, b);
+    if (size < 1e-12 || std::abs(c) > size * (1.0 + 1e-9)) return {};
+    const double middle = angle_of(b, a);
+    const double ratio = std::clamp(c / size, -1.0, 1.0);
+    const double away = angle_of(std::sqrt(std::max(0.0, 1.0 - ratio * ratio)), ratio);
+    return {(middle + away) * degrees_per_radian, (middle - away) * degrees_per_radian};
+}
+
+/// The angle about `axis` from one direction to another, degrees; both must lean alike.
+std::optional<double> angle_between(const Vec3& axis, const Vec3& from, const Vec3& to) {
+    const Vec3 u = from - glm::dot(from, axis) * axis, v = to - glm::dot(to, axis) * axis;
+    if (glm::length(u) < 1e-9 || glm::length(v) < 1e-9) return std::nullopt;
+    return angle_of(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v)) * degrees_per_radian;
+}
+
+/// The turn that takes Z to the wanted direction, about a first axis and then about a second: the
+/// second one's angle is where the lean against the first axis is right.
+void add_two_turns(const Machine& machine, const AxisValues& values, const DirectionJoint& outer,
+                   const DirectionJoint& inner, const Vec3& wanted, std::vector<AxisValues>& ways) {
+    const Vec3 z(0, 0, 1), k = inner.about, w = outer.about;
+    // Z turned about k: z cos t + (k x z) sin t + k (k.z)(1 - cos t); its part along w is wanted.w.
+    const double along = glm::dot(k, z) * glm::dot(k, w);
+    for (const double angle : angles_with(glm::dot(z, w) - along, glm::dot(glm::cross(k, z), w),
+                                          glm::dot(wanted, w) - along)) {
+        const Vec3 leaning = rotation_about(k, angle) * z;
+        AxisValues way = values;
+        way[inner.axis] = nearest_turn(machine.axes[inner.axis], values[inner.axis], angle);
+        // Where the direction is the outer axis itself any angle does: it stays.
+        if (const auto turn = angle_between(w, leaning, wanted))
+            way[outer.axis] = nearest_turn(machine.axes[outer.axis], values[outer.axis], *turn);
+        ways.push_back(way);
+    }
+}
+
+/// Every axis that moves one link against another.
+std::vector<size_t> axes_between(const Machine& machine, LinkId a, LinkId b) {
+    std::vector<size_t> axes;
+    for (LinkId link : {a, b}) {
+        while (link != LinkId::base) {
+            const auto axis = static_cast<size_t>(link);
+            const auto known = std::find(axes.begin(), axes.end(), axis);
+            // What carries both moves neither against the other.
+            if (known != axes.end())
+                axes.erase(known);
+            else
+                axes.push_back(axis);
+            link = machine.axes[axis].carrier;
+        }
+    }
+    return axes;
+}
+
+/// The largest distance of a point from the lines that some axes turn about. Frame: the machine's.
+double reach_from_axes(const Machine& machine, const std::vector<size_t>& axes,
+                       const AxisValues& values, const Vec3& point) {
+    double reach = 0.0;
+    for (const size_t i : axes) {
+        if (!is_rotary(i)) continue;
+        const MachineAxis& axis = machine.axes[i];
+        const Transform pose = machine_from_link(machine, axis.carrier, values);
+        const Vec3 away = point - pose * axis.point;
+        reach = std::max(reach, glm::length(glm::cross(pose.rotation * axis.direction, away)));
+    }
+    return reach;
+}
+
+/// A length that the distance of a point from the rotary axes of a chain never exceeds.
+double chain_reach(const Machine& machine, LinkId link, const Vec3& point) {
+    double reach = 0.0;
+    Vec3 here = point;
+    while (link != LinkId::base) {
+        const auto i = static_cast<size_t>(link);
+        const MachineAxis& axis = machine.axes[i];
+        if (is_rotary(i)) {
+            reach += glm::distance(here, axis.point);
+            here = axis.point;
+        } else if (reach > 0.0 && is_turned_by_axes(machine, axis.carrier)) {
+            reach += std::max(std::abs(axis.min.value_or(0.0)), std::abs(axis.max.value_or(0.0)));
+        }
+        link = axis.carrier;
+    }
+    return reach;
+}
+
+AxisValues half_way(const Leg& leg) {
+    AxisValues values = leg.places[0];
+    for (size_t i = 0; i < axis_count; ++i)
+        if (leg.places[1][i] != values[i]) values[i] = 0.5 * (values[i] + leg.places[1][i]);
+    return values;
+}
+
+/// How far linear axes have moved a link.
+Vec3 shift_of(const Machine& machine, LinkId link, const AxisValues& values) {
+    Vec3 shift(0.0);
+    while (link != LinkId::base) {
+        const auto i = static_cast<size_t>(link);
+        const MachineAxis& axis = machine.axes[i];
+        shift += (axis.side == Side::tool ? values[i] : -values[i]) * axis.direction;
+        link = axis.carrier;
+    }
+    return shift;
+}
+
+/// The pose on a machine that has linear axes only.
+Transform shifted_pose(const Machine& machine, const Mount& target, const Mount& mover,
+                       const AxisValues& values) {
+    const Vec3 shift =
+        shift_of(machine, mover.link, values) - shift_of(machine, target.link, values);
+    const Mat3 back = glm::transpose(target.link_from_body.rotation);
+    return {back * mover.link_from_body.rotation,
+            back * (shift - target.link_from_body.translation + mover.link_from_body.translation)};
+}
+
+/// A leg on which the mover does not turn against the target.
+RelativeLeg without_turning(const Machine& machine, const Mount& target, const Mover& mover,
+                            const Leg& leg) {
+    RelativeLeg relative;
+    relative.error = leg.path_error + mover.form_error;
+    for (const AxisValues& place : leg.places) {
+        const Transform pose = machine.has_rotary()
+                                   ? target_from_mover(machine, target, mover.mount, place)
+                                   : shifted_pose(machine, target, mover.mount, place);
+        relative.orientation = pose.rotation;
+        relative.places.push_back(pose.translation);
+    }
+    relative.travel =
+        glm::distance(relative.places.front(), relative.places.back()) + leg.path_error;
+    return relative;
+}
+
+} // namespace
+
+Transform machine_from_link(const Machine& machine, LinkId link, const AxisValues& values) {
+    Transform pose;
+    while (link != LinkId::base) {
+        const auto i = static_cast<size_t>(link);
+        pose = joint(machine.axes[i], is_rotary(i), values[i]) * pose;
+        link = machine.axes[i].carrier;
+    }
+    return pose;
+}
+
+bool is_turned_by_axes(const Machine& machine, LinkId link) {
+    return !rotary_chain(machine, link).empty();
+}
+
+bool is_on_table_side(const Machine& machine, LinkId link) {
+    return link != LinkId::base && machine.axes[static_cast<size_t>(link)].side == Side::table;
+}
+
+Transform target_from_mover(const Machine& machine, const Mount& target, const Mount& mover,
+                            const AxisValues& values) {
+    const Transform machine_from_target =
+        machine_from_link(machine, target.link, values) * target.link_from_body;
+    const Transform machine_from_mover =
+        machine_from_link(machine, mover.link, values) * mover.link_from_body;
+    return machine_from_target.inverse() * machine_from_mover;
+}
+
+Vec3 tip_place(const Machine& machine, const AxisValues& values, double tool_length) {
+    const Transform table = machine_from_link(machine, machine.table, values);
+    const Transform spindle = machine_from_link(machine, machine.spindle, values);
+    return table.inverse() * (spindle * Vec3(0.0, 0.0, -tool_length));
+}
+
+std::optional<AxisValues> reach_tip(const Machine& machine, const AxisValues& values,
+                                    const Vec3& tip, double tool_length) {
+    AxisValues base = values;
+    base[0] = base[1] = base[2] = 0.0;
+    // With the rotary axes held, the tip is an affine function of X, Y and Z.
+    const Vec3 origin = tip_place(machine, base, tool_length);
+    Mat3 by_axis(0.0);
+    for (int i = 0; i < 3; ++i) {
+        AxisValues unit = base;
+        unit[static_cast<size_t>(i)] = 1.0;
+        by_axis[i] = tip_place(machine, unit, tool_length) - origin;
+    }
+    if (std::abs(glm::determinant(by_axis)) < 1e-9) return std::nullopt;
+    const Vec3 linear = glm::inverse(by_axis) * (tip - origin);
+    for (int i = 0; i < 3; ++i) base[static_cast<size_t>(i)] = linear[i];
+    return base;
+}
+
+double turn_of(const Machine& machine, const AxisValues& from, const AxisValues& to) {
+    double degrees = 0.0;
+    for (size_t i = 3; i < 6; ++i)
+        if (machine.axes[i].present) degrees += std::abs(to[i] - from[i]);
+    return degrees / degrees_per_radian;
+}
+
+double tip_reach(const Machine& machine, const Vec3& tip, double tool_length) {
+    return std::max(chain_reach(machine, machine.table, tip),
+                    chain_reach(machine, machine.spindle, Vec3(0.0, 0.0, -tool_length)));
+}
+
+RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Mover& mover,
+                         const Leg& leg) {
+    if (!machine.has_rotary()) return without_turning(machine, target, mover, leg);
+    const std::vector<size_t> axes = axes_between(machine, target.link, mover.mount.link);
+    double turn = 0.0, travel = 0.0;
+    if (leg.places.size() == 2) {
+        for (const size_t i : axes) {
+            const double by = std::abs(leg.places[1][i] - leg.places[0][i]);
+            (is_rotary(i) ? turn : travel) += is_rotary(i) ? by / degrees_per_radian : by;
+        }
+    }
+    if (turn == 0.0) return without_turning(machine, target, mover, leg);
+
+    const auto pose = [&](const AxisValues& values) {
+        return target_from_mover(machine, target, mover.mount, values);
+    };
+    const AxisValues middle = half_way(leg);
+    RelativeLeg relative{.orientation = pose(middle).rotation, .turns = true};
+    for (const AxisValues& place : leg.places)
+        relative.places.push_back(pose(place) * mover.centre - relative.orientation * mover.centre);
+    const Vec3 centre = machine_from_link(machine, mover.mount.link, middle)
+                        * (mover.mount.link_from_body * mover.centre);
+    const double bound = 1.0 - 0.5 * turn;
+    if (bound < 0.75) {
+        relative.error = relative.travel = infinity;
+        return relative;
+    }
+    const double reach = (reach_from_axes(machine, axes, middle, centre) + 0.5 * travel) / bound;
+    const double curve = 0.25 * turn * (turn * reach + travel);
+    relative.error = leg.path_error + mover.form_error + curve + 0.5 * turn * mover.reach;
+    relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
+    return relative;
+}
+
+std::optional<AxisValues> point_tool(const Machine& machine, const AxisValues& values,
+                                     const Vec3& tool_axis) {
+    const Vec3 wanted = glm::normalize(tool_axis);
+    const std::vector<DirectionJoint> joints = direction_joints(machine);
+    std::vector<AxisValues> ways = {values};
+    for (size_t i = 0; i < joints.size(); ++i) {
+        if (const auto turn = angle_between(joints[i].about, Vec3(0, 0, 1), wanted)) {
+            AxisValues way = values;
+            for (const DirectionJoint& other : joints) way[other.axis] = 0.0;
+            way[joints[i].axis] =
+                nearest_turn(machine.axes[joints[i].axis], values[joints[i].axis], *turn);
+            ways.push_back(way);
+        }
+        for (size_t j = i + 1; j < joints.size(); ++j)
+            add_two_turns(machine, values, joints[i], joints[j], wanted, ways);
+    }
+    std::optional<AxisValues> best;
+    double least = infinity;
+    for (const AxisValues& way : ways) {
+        double turning = 0.0;
+        bool possible = glm::distance(tool_axis_at(machine, way), wanted) < 1e-9;
+        for (const DirectionJoint& moved : joints) {
+            turning += std::abs(way[moved.axis] - values[moved.axis]);
+            possible = possible && within_limits(machine.axes[moved.axis], way[moved.axis]);
+        }
+        if (!possible || turning >= least) continue;
+        least = turning;
+        best = way;
+    }
+    return best;
+}
+
+} // namespace core

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/distance/body_distance.h"
+#include "core/motion/event.h"
+
+namespace core {
+
+/// Which half of the machine an axis moves: what holds the tool, or what holds the work.
+enum class Side : uint8_t { tool, table };
+
+/// A rigid part of the machine: what an axis moves, by the axis's index, or the base on which all
+/// stands.
+enum class LinkId : uint8_t { base = 255 };
+
+constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
+
+/// One axis. `direction` is the way the tool moves relative to the work as the axis grows, or for a
+/// rotary axis the line that it turns about by the right hand; an axis of the table side moves the
+/// work the other way.
+struct MachineAxis {
+    Vec3 direction = Vec3(0.0); // unit length, machine frame with all axes at 0
+    std::optional<double> min = {}, max = {}, home = {};
+    std::optional<double> rapid = {};        // mm/min, degrees/min
+    std::optional<double> acceleration = {}; // mm/s2, degrees/s2
+    bool present = true;
+    Side side = Side::tool;
+    Vec3 point = Vec3(0.0);        // rotary: a point of the line that it turns about
+    LinkId carrier = LinkId::base; // what the axis stands on
+    bool shortest_way = false;     // rotary: goes to an angle by less than half a turn
+};
+
+/// straight: all axes arrive together; dogleg: each axis runs at its own speed.
+enum class RapidStyle : uint8_t { straight, dogleg };
+
+/// A body of the machine itself. Frame: the machine's, all axes at 0.
+struct MachineBody {
+    std::string name;
+    ExactBody body;
+    LinkId link = LinkId::base; // that carries it
+};
+
+/// A machine: linear and rotary axes from the base to the spindle, and from the base to the table.
+///
+/// Frame: with all axes at 0 the gauge line's centre is the origin, and the tool points to -Z.
+struct Machine {
+    std::array<MachineAxis, axis_count> axes = three_axes();
+    RapidStyle rapid = RapidStyle::straight;
+    std::optional<double> corner_tolerance; // mm, where the program states none
+    LinkId spindle = link_of(2);            // what carries the tool
+    LinkId table = LinkId::base;            // what carries the work
+    std::vector<MachineBody> bodies;
+
+    bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }
+
+    /// Where the gauge line stands relative to the work, machine frame, as far as linear axes say.
+    Vec3 place(const AxisValues& values) const {
+        Vec3 p(0.0);
+        for (size_t i = 0; i < axis_count; ++i)
+            if (axes[i].present && !is_rotary(i)) p += values[i] * axes[i].direction;
+        return p;
+    }
+    AxisPosition home() const {
+        AxisPosition position;
+        for (size_t i = 0; i < axis_count; ++i)
+            if (axes[i].present) position[i] = axes[i].home;
+        return position;
+    }
+
+private:
+    /// X, Y and Z along the frame's axes, all of them moving the tool.
+    static std::array<MachineAxis, axis_count> three_axes() {
+        std::array<MachineAxis, axis_count> axes;
+        for (size_t i = 0; i < axis_count; ++i) axes[i].present = i < 3;
+        for (int i = 0; i < 3; ++i) axes[static_cast<size_t>(i)].direction[i] = 1.0;
+        axes[1].carrier = link_of(0);
+        axes[2].carrier = link_of(1);
+        return axes;
+    }
+};
+
+} // namespace core

@@ -1,0 +1,345 @@
+#include "core/motion/path.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/base/units.h"
+#include "core/motion/kinematics.h"
+
+namespace core {
+namespace {
+
+/// The values of a position; empty when an axis of the machine may stand anywhere.
+std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
+    AxisValues values{};
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (!p[i] && machine.axes[i].present) return std::nullopt;
+        values[i] = p[i].value_or(0.0);
+    }
+    return values;
+}
+
+/// The values of a position that is known.
+AxisValues values_of(const AxisPosition& p) {
+    AxisValues values{};
+    for (size_t i = 0; i < axis_count; ++i) values[i] = p[i].value_or(0.0);
+    return values;
+}
+
+double rapid_speed(const MachineAxis& axis, Path& path) {
+    if (!axis.rapid) path.assumed_speed = true;
+    return axis.rapid.value_or(assumed_rapid);
+}
+
+/// Seconds each axis needs on its own.
+AxisValues axis_times(const AxisValues& from, const AxisValues& to, const Machine& machine,
+                      Path& path) {
+    AxisValues times{};
+    for (size_t i = 0; i < axis_count; ++i)
+        if (to[i] != from[i])
+            times[i] =
+                std::abs(to[i] - from[i]) / rapid_speed(machine.axes[i], path) * seconds_per_minute;
+    return times;
+}
+
+double longest_time(const AxisValues& times) {
+    return *std::max_element(times.begin(), times.end());
+}
+
+AxisValues between(const AxisValues& from, const AxisValues& to, double share) {
+    AxisValues values = from;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (to[i] != from[i])
+            values[i] = share == 1.0 ? to[i] : from[i] + share * (to[i] - from[i]);
+    return values;
+}
+
+void add_straight(Path& path, const AxisValues& from, const AxisValues& to, double duration) {
+    path.legs.push_back({{from, to}, path.duration, path.duration + duration, 0.0});
+    path.duration += duration;
+}
+
+double feed_length(const AxisValues& from, const AxisValues& to) {
+    AxisValues by;
+    for (size_t i = 0; i < axis_count; ++i) by[i] = to[i] - from[i];
+    return fed_length(by);
+}
+
+/// Corners of the box of values of X, Y and Z between two places, the others as in the first.
+std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& high) {
+    std::vector<AxisValues> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+        AxisValues corner = low;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (i >> axis & 1U) corner[axis] = high[axis];
+        if (std::find(corners.begin(), corners.end(), corner) == corners.end())
+            corners.push_back(corner);
+    }
+    return corners;
+}
+
+/// Each axis at its own speed: the path bends where an axis arrives.
+size_t moving_axes(const AxisValues& from, const AxisValues& to) {
+    size_t count = 0;
+    for (size_t i = 0; i < axis_count; ++i) count += from[i] != to[i];
+    return count;
+}
+
+void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to) {
+    const AxisValues times = axis_times(from, to, machine, path);
+    const double total = longest_time(times);
+    bool only_linear = true;
+    for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
+    if (path.assumed_speed && only_linear) {
+        path.legs.push_back({.places = box_corners(from, to),
+                             .end = total,
+                             .straight = false,
+                             .certain = {from, to}});
+        path.duration = total;
+        return;
+    }
+    AxisValues bends = times;
+    std::sort(bends.begin(), bends.end());
+    AxisValues here = from;
+    double now = 0.0;
+    for (const double bend : bends) {
+        if (bend <= now) continue;
+        AxisValues next = to;
+        for (size_t i = 0; i < axis_count; ++i)
+            if (bend < times[i]) next[i] = from[i] + (to[i] - from[i]) * (bend / times[i]);
+        add_straight(path, here, next, bend - now);
+        here = next;
+        now = bend;
+    }
+}
+
+/// The place on an arc after a share of its angle, axis values.
+AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues& to,
+                  double share) {
+    const ArcPath& arc = *motion.arc;
+    const auto a = static_cast<size_t>((arc.normal + 1) % 3);
+    const auto b = static_cast<size_t>((arc.normal + 2) % 3);
+    const double centre[2] = {arc.centre[(arc.normal + 1) % 3], arc.centre[(arc.normal + 2) % 3]};
+    const double u = from[a] - centre[0], v = from[b] - centre[1];
+    const double end_radius = std::hypot(to[a] - centre[0], to[b] - centre[1]);
+    const double radius = std::hypot(u, v);
+    // A small difference of the radii is spread evenly over the angle, as controls do.
+    const double scale = radius > 0.0 ? 1.0 + share * (end_radius / radius - 1.0) : 1.0;
+    const double angle = share * arc.angle;
+    AxisValues p = between(from, to, share);
+    p[a] = centre[0] + scale * (u * std::cos(angle) - v * std::sin(angle));
+    p[b] = centre[1] + scale * (u * std::sin(angle) + v * std::cos(angle));
+    return p;
+}
+
+/// The radii at both ends.
+std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
+                                    const AxisValues& to) {
+    const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
+    const auto radius = [&](const AxisValues& place) {
+        return std::hypot(place[static_cast<size_t>(a)] - arc.centre[a],
+                          place[static_cast<size_t>(b)] - arc.centre[b]);
+    };
+    return {radius(from), radius(to)};
+}
+
+/// The bend of an arc or spiral: on a step of the angle it stays within the step's square times
+/// this of a chord that is passed evenly.
+///
+/// That is an eighth of the second derivative by the angle, whose part towards the centre is the
+/// radius, and whose part across is twice what the radius changes by.
+double bend(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
+    const auto [first, last] = arc_radii(arc, from, to);
+    const double drift = arc.angle != 0.0 ? 2.0 * (last - first) / arc.angle : 0.0;
+    return 0.125 * std::hypot(std::max(first, last), drift);
+}
+
+void add_arc(Path& path, const Motion& motion, const AxisValues& from, const AxisValues& to,
+             double max_error) {
+    const ArcPath& arc = *motion.arc;
+    const auto [first_radius, last_radius] = arc_radii(arc, from, to);
+    const double radius = std::max(first_radius, last_radius);
+    const double widest = radius > max_error ? 2.0 * std::acos(1.0 - 0.5 * max_error / radius)
+                                             : std::numbers::pi / 2.0;
+    // Where the radius changes fast, that chord would be too long.
+    const double most = std::sqrt(max_error / std::max(bend(arc, from, to), 1e-12));
+    const double step = std::min({widest, most, std::numbers::pi / 2.0});
+    const int count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.angle) / step)));
+    const auto normal = static_cast<size_t>(arc.normal);
+    const double rise = to[normal] - from[normal];
+    const double length = std::hypot(radius * arc.angle, rise);
+    path.duration = motion.feed > 0.0 ? length / motion.feed * seconds_per_minute : 0.0;
+    const auto whole = std::make_shared<const Motion>(motion);
+    AxisValues here = from;
+    double before = 0.0;
+    for (int i = 1; i <= count; ++i) {
+        const double share = static_cast<double>(i) / count;
+        const AxisValues next = i == count ? to : on_arc(motion, from, to, share);
+        Leg chord{{here, next}, path.duration * (i - 1) / count, path.duration * share, max_error};
+        chord.arc = {whole, before, share};
+        path.legs.push_back(std::move(chord));
+        here = next;
+        before = share;
+    }
+}
+
+/// The path of a tip, as legs on which the axes move evenly.
+///
+/// Between two moments the linear axes are off an even motion by an eighth of their acceleration.
+/// The tip lies at most r from every rotary axis and moves by v against the work while the rotary
+/// axes turn by w in all: the linear axes make up for that, so their acceleration is at most
+/// 2 w (w r + v).
+void add_tip_path(Path& path, const Machine& machine, const Motion& motion, const AxisValues& from,
+                  const AxisValues& to, double max_error) {
+    const TipPath& tip = *motion.tip;
+    const auto at = [&](double share) {
+        const AxisValues rotary = between(from, to, share);
+        return reach_tip(machine, rotary, tip.from + share * (tip.to - tip.from), tip.tool_length)
+            .value_or(rotary);
+    };
+    const double travel = glm::distance(tip.from, tip.to);
+    const double turn = turn_of(machine, from, to);
+    const double farthest = std::max(tip_reach(machine, tip.from, tip.tool_length),
+                                     tip_reach(machine, tip.to, tip.tool_length));
+    const double bend = 2.0 * turn * (turn * farthest + travel);
+    const int count = std::clamp(
+        static_cast<int>(std::ceil(std::max(std::sqrt(bend / (8.0 * max_error)), 2.0 * turn))), 1,
+        1'000'000);
+    path.duration = motion.feed > 0.0 ? (travel > 0.0 ? travel : feed_length(from, to))
+                                            / motion.feed * seconds_per_minute
+                                      : longest_time(axis_times(from, to, machine, path));
+    AxisValues here = from;
+    for (int i = 1; i <= count; ++i) {
+        const double share = static_cast<double>(i) / count;
+        const AxisValues next = i == count ? to : at(share);
+        path.legs.push_back({{here, next},
+                             path.duration * (i - 1) / count,
+                             path.duration * share,
+                             turn > 0.0 ? max_error : 0.0});
+        here = next;
+    }
+}
+
+/// Every straight way to the end from wherever the limits allow the machine to stand.
+void add_from_unknown(Path& path, const Machine& machine, const Motion& motion) {
+    AxisValues starts[2] = {}, ends[2] = {};
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = machine.axes[i];
+        if (!axis.present) continue;
+        const bool is_known = motion.from[i] && motion.to[i];
+        if (!is_known && (i >= 3 || !axis.min || !axis.max)) return;
+        if (i >= 3 && motion.from[i] != motion.to[i]) return;
+        starts[0][i] = motion.from[i].value_or(axis.min.value_or(0.0));
+        starts[1][i] = motion.from[i].value_or(axis.max.value_or(0.0));
+        ends[0][i] = motion.to[i].value_or(axis.min.value_or(0.0));
+        ends[1][i] = motion.to[i].value_or(axis.max.value_or(0.0));
+    }
+    Leg leg{.places = box_corners(starts[0], starts[1]), .straight = false, .start_known = false};
+    if (const auto to = known(motion.to, machine)) {
+        leg.certain = {*to};
+        leg.places.push_back(*to);
+    } else { // an axis nobody commanded stands anywhere all the way
+        for (size_t i = 0; i < 3; ++i) {
+            starts[0][i] = std::min(starts[0][i], ends[0][i]);
+            starts[1][i] = std::max(starts[1][i], ends[1][i]);
+        }
+        leg.places = box_corners(starts[0], starts[1]);
+    }
+    path.legs.push_back(std::move(leg));
+}
+
+void extend(AxisRange& range, const AxisValues& place, double by = 0.0) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        range.min[i] = std::min(range.min[i], place[i] - by);
+        range.max[i] = std::max(range.max[i], place[i] + by);
+    }
+}
+
+} // namespace
+
+double chord_error(double mesh_size) { return std::clamp(mesh_size / 200.0, 1e-4, 0.0025); }
+
+Leg stretch(const Leg& leg, double first, double last) {
+    const auto time = [&](double share) { return leg.begin + share * (leg.end - leg.begin); };
+    return {
+        {between(leg.places[0], leg.places[1], first), between(leg.places[0], leg.places[1], last)},
+        time(first),
+        time(last),
+        leg.path_error};
+}
+
+std::array<Leg, 2> halves(const Leg& leg) {
+    std::array<Leg, 2> parts = {stretch(leg, 0.0, 0.5), stretch(leg, 0.5, 1.0)};
+    if (!leg.arc.motion) return parts;
+    const Motion& motion = *leg.arc.motion;
+    const AxisValues from = values_of(motion.from), to = values_of(motion.to);
+    const double middle = 0.5 * (leg.arc.first + leg.arc.last);
+    const double step = (leg.arc.last - middle) * motion.arc->angle;
+    parts[0].places[1] = parts[1].places[0] = on_arc(motion, from, to, middle);
+    parts[0].arc = {leg.arc.motion, leg.arc.first, middle};
+    parts[1].arc = {leg.arc.motion, middle, leg.arc.last};
+    for (Leg& part : parts)
+        part.path_error = std::min(leg.path_error, bend(*motion.arc, from, to) * step * step);
+    return parts;
+}
+
+Leg still_half_way(const Leg& leg) {
+    const Leg first_half = halves(leg)[0];
+    Leg still = first_half;
+    still.places = {first_half.places[1]};
+    still.begin = first_half.end;
+    if (leg.arc.motion) still.path_error = 0.0;
+    still.arc = {};
+    return still;
+}
+
+Path path_of(const Motion& motion, const Machine& machine, double max_error) {
+    Path path;
+    const auto from = known(motion.from, machine), to = known(motion.to, machine);
+    if (!from || !to) {
+        add_from_unknown(path, machine, motion);
+    } else if (motion.arc) {
+        add_arc(path, motion, *from, *to, max_error);
+    } else if (motion.tip) {
+        add_tip_path(path, machine, motion, *from, *to, max_error);
+    } else if (motion.kind != MotionKind::rapid) {
+        add_straight(path, *from, *to,
+                     motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
+                                       : 0.0);
+    } else if (machine.rapid == RapidStyle::dogleg && moving_axes(*from, *to) > 1) {
+        add_dogleg(path, machine, *from, *to);
+    } else {
+        add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
+    }
+    return path;
+}
+
+AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error) {
+    AxisRange range;
+    range.min.fill(infinity);
+    range.max.fill(-infinity);
+    const AxisValues from = *known(motion.from, machine), to = *known(motion.to, machine);
+    extend(range, from);
+    extend(range, to);
+    if (motion.tip) {
+        const Path path = path_of(motion, machine, max_error);
+        for (const Leg& leg : path.legs)
+            if (&leg != &path.legs.back()) extend(range, leg.places[1], leg.path_error);
+        return range;
+    }
+    if (!motion.arc) return range;
+    const ArcPath& arc = *motion.arc;
+    const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
+    const double start = std::atan2(from[static_cast<size_t>(b)] - arc.centre[b],
+                                    from[static_cast<size_t>(a)] - arc.centre[a]);
+    // The extremes of the two axes lie where the angle is a multiple of a quarter turn.
+    const double quarter = std::numbers::pi / 2.0;
+    const double first = std::min(start, start + arc.angle), last = first + std::abs(arc.angle);
+    for (double k = std::ceil(first / quarter); k * quarter <= last; ++k) {
+        const double share = (k * quarter - start) / arc.angle;
+        extend(range, on_arc(motion, from, to, std::clamp(share, 0.0, 1.0)));
+    }
+    return range;
+}
+
+} // namespace core

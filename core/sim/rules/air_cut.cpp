@@ -1,0 +1,40 @@
+#include "core/sim/rules/air_cut.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace core {
+namespace {
+
+/// The shortest series that is told: ways in and out of a cut are shorter.
+double least_way(double diameter) { return std::max(50.0, 5.0 * diameter); }
+
+} // namespace
+
+void add_air(AirSeries& series, BlockIndex block, double way) {
+    if (!series.begin) series.begin = block;
+    series.blocks += series.last != block;
+    series.last = block;
+    series.way += way;
+}
+
+std::optional<Finding> end_air(AirSeries& series, double diameter) {
+    const AirSeries ended = std::exchange(series, {});
+    if (!ended.begin || ended.way < least_way(diameter)) return std::nullopt;
+    Finding finding;
+    finding.rule = "air-cut";
+    finding.block = ended.begin;
+    finding.message = fmt::format("From here on the tool feeds {:.0f} mm in {} through air, more "
+                                  "than {:g} mm from the stock.",
+                                  ended.way,
+                                  ended.blocks == 1 ? std::string("one block")
+                                                    : fmt::format("{} blocks", ended.blocks),
+                                  air_gap);
+    finding.cure = "Look whether work offset, tool length and stock are those the program was made "
+                   "for; if so, a rapid saves the time.";
+    return finding;
+}
+
+} // namespace core

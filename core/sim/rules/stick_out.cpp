@@ -1,0 +1,198 @@
+#include "core/sim/rules/stick_out.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace core {
+namespace {
+
+constexpr double longest_stick_out = 300.0; // mm that anybody would make a tool longer by
+constexpr double stick_out_step = 0.01;     // mm, to which the answer is worked out
+constexpr size_t enough = 500;              // legs of a tool that are looked at again
+
+/// The tool with everything above the flutes, or above the shank, higher by `by`. What is moved
+/// leaves no gap: its lowest piece becomes longer.
+ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
+    for (ToolPart& part : tool.parts) {
+        if (part.kind < from) continue;
+        for (ProfileElement& element : part.profile.elements) {
+            element.z0 += by;
+            element.z1 += by;
+        }
+    }
+    if (from != PartKind::holder) return tool;
+    for (ToolPart& part : tool.parts)
+        if (part.kind == PartKind::shank && !part.profile.empty()) {
+            ProfileElement& top = part.profile.elements.back();
+            part.profile.elements.push_back({top.z1, top.r1, top.z1 + by, top.r1, top.margin});
+        }
+    return tool;
+}
+
+/// Whether the parts from this one up keep their allowances on the leg, against the stock as it was
+/// left.
+bool keeps_clear(const CutLeg& cut, PartKind from, double by) {
+    const ToolAssembly longer = raised(cut.tool, from, by);
+    CutModel stock = cut.stock;
+    CheckMemory memory;
+    Statistics statistics;
+    std::vector<PairClearance> pairs;
+    LegCheck(cut.setup, longer, FluteUse::cutting, cut.block, cut.fixtures_there, memory,
+             statistics)
+        .run(cut.leg, 0.0, stock, pairs);
+    return std::all_of(pairs.begin(), pairs.end(), [&](const PairClearance& pair) {
+        const bool concerns = from == PartKind::holder ? pair.pair.part == PartKind::holder
+                                                       : pair.pair.part == PartKind::shank;
+        return !concerns || pair.pair.fixture || pair.verdict == Verdict::clear;
+    });
+}
+
+/// The least height, to within `step`, at or above `known` that keeps the leg clear; `most` if none
+/// does.
+double needed(const CutLeg& cut, PartKind from, double known) {
+    if (keeps_clear(cut, from, known)) return known;
+    double low = known, high = std::max(1.0, 2.0 * known);
+    while (high < longest_stick_out && !keeps_clear(cut, from, high)) {
+        low = high;
+        high *= 2.0;
+    }
+    if (high >= longest_stick_out) return longest_stick_out;
+    while (high - low > stick_out_step) {
+        const double middle = 0.5 * (low + high);
+        (keeps_clear(cut, from, middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+/// As long as whoever described the tool says, else as their shape is high: some reach a little
+/// into the neck for the sake of the check.
+double top_of_flutes(const ToolAssembly& tool) {
+    const double stated = tool.description.flute_length;
+    return stated > 0.0 ? stated : bounds(tool.parts[0].profile).max.z;
+}
+
+double stick_out_of(const ToolAssembly& tool) {
+    for (const ToolPart& part : tool.parts)
+        if (part.kind == PartKind::holder) return bounds(part.profile).min.z;
+    return tool.length;
+}
+
+/// A length that is no less, to a tenth.
+double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0; }
+
+std::string in_blocks(const ToolReach& reach) {
+    if (reach.looks > enough) return " in the first of these blocks, the others were not tried";
+    if (reach.blocks == 2) return " in both blocks";
+    return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
+}
+
+Finding about(const char* rule, std::optional<BlockIndex> block) {
+    Finding finding;
+    finding.rule = rule;
+    finding.block = block;
+    return finding;
+}
+
+Finding short_stick_out(const ToolAssembly& tool, const ToolReach& reach) {
+    const int number = value_of(tool.description.number);
+    const double now = stick_out_of(tool);
+    Finding finding = about("stick-out-short", reach.holder_block);
+    finding.pair = {name_of(PartKind::holder), "stock"};
+    finding.shortfall = reach.more_stick_out;
+    finding.message = fmt::format("Tool {} sticks out {:.1f} mm, too little for this depth: its "
+                                  "holder comes too near to the stock.",
+                                  number, now);
+    finding.cure =
+        reach.more_stick_out >= longest_stick_out
+            ? "No stick-out helps: less depth, or a slimmer holder."
+            : fmt::format("A stick-out of {:.1f} mm keeps every allowance{}; or use a slimmer "
+                          "holder.",
+                          tenths_up(now + reach.more_stick_out), in_blocks(reach));
+    return finding;
+}
+
+/// The shank in the way: the flutes are too short for the depth, and so is all that is slim enough.
+void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
+                      std::vector<Finding>& findings) {
+    const int number = value_of(tool.description.number);
+    const double now = top_of_flutes(tool);
+    const bool hopeless = reach.more_flute >= longest_stick_out;
+    Finding deep = about("over-engagement", reach.shank_block);
+    deep.pair = {name_of(PartKind::shank), "stock"};
+    deep.shortfall = reach.more_flute;
+    deep.message =
+        fmt::format("Tool {} cuts deeper than its flutes are long ({:.1f} mm): the shank "
+                    "is pushed into material.",
+                    number, now);
+    deep.cure = hopeless ? "Less depth, or a tool with a slimmer shank."
+                         : fmt::format("Flutes of {:.1f} mm would do{}, or passes of less depth.",
+                                       tenths_up(now + reach.more_flute), in_blocks(reach));
+    Finding reach_short = deep;
+    reach_short.rule = "stick-out-short";
+    reach_short.message = fmt::format("Flutes, shank and depth of tool {} do not fit: its shank "
+                                      "begins {:.1f} mm above the tip and meets the wall.",
+                                      number, now);
+    reach_short.cure =
+        hopeless ? "A tool with a slimmer shank or a neck, or less depth."
+                 : fmt::format("A tool that is slim up to {:.1f} mm above its tip, or less depth.",
+                               tenths_up(now + reach.more_flute));
+    findings.push_back(std::move(deep));
+    findings.push_back(std::move(reach_short));
+}
+
+Finding rubbing(const ToolAssembly& tool, const ToolReach& reach) {
+    Finding finding = about("over-engagement", reach.rub_block);
+    finding.severity = Severity::note;
+    finding.pair = {name_of(PartKind::shank), "stock"};
+    finding.message = fmt::format("Deeper than the flutes of tool {} are long ({:.1f} mm): its "
+                                  "shank rubs along the wall that they have cut.",
+                                  value_of(tool.description.number), top_of_flutes(tool));
+    finding.cure = "A tool with longer flutes or a relieved neck.";
+    return finding;
+}
+
+bool goes_sideways(const Leg& leg) {
+    const AxisValues &from = leg.places.front(), &to = leg.places.back();
+    return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
+}
+
+} // namespace
+
+void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<PairClearance>& pairs) {
+    constexpr double touch = 0.02; // mm
+    for (const PairClearance& pair : pairs) {
+        const bool is_shank = pair.pair.part == PartKind::shank;
+        if (pair.pair.fixture || !(is_shank || pair.pair.part == PartKind::holder)) continue;
+        const bool is_clear = pair.verdict == Verdict::clear;
+        const bool rubs = is_shank && is_clear && pair.upper <= touch && pair.lower <= resolution
+                          && goes_sideways(cut.leg);
+        if (is_clear && !rubs) continue;
+        ToolReach& reach = reaches[cut.tool.description.number];
+        if (rubs) {
+            if (!reach.rub_block) reach.rub_block = cut.block;
+            continue;
+        }
+        reach.blocks += reach.last != cut.block;
+        reach.last = cut.block;
+        auto& first = is_shank ? reach.shank_block : reach.holder_block;
+        if (!first) first = cut.block;
+        double& more = is_shank ? reach.more_flute : reach.more_stick_out;
+        if (reach.looks++ < enough) more = needed(cut, pair.pair.part, more);
+    }
+}
+
+std::vector<Finding> findings_of(const ToolReaches& reaches, const Setup& setup) {
+    std::vector<Finding> findings;
+    for (const auto& [number, reach] : reaches) {
+        const ToolAssembly& tool = setup.tools.at(number);
+        if (reach.holder_block) findings.push_back(short_stick_out(tool, reach));
+        if (reach.shank_block)
+            add_short_flutes(tool, reach, findings);
+        else if (reach.rub_block)
+            findings.push_back(rubbing(tool, reach));
+    }
+    return findings;
+}
+
+} // namespace core

@@ -1,0 +1,220 @@
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/sim/leg/pair_entry.h"
+#include "core/sim/rules/low_retract.h"
+#include "core/sim/rules/singular.h"
+#include "core/sim/run/block_run.h"
+#include "core/sim/verdict.h"
+
+namespace core {
+namespace {
+
+BlockMotion label(const Motion& motion) {
+    switch (motion.kind) {
+    case MotionKind::rapid:
+        return BlockMotion::rapid;
+    case MotionKind::feed:
+        return BlockMotion::feed;
+    default:
+        return BlockMotion::arc;
+    }
+}
+
+} // namespace
+
+void BlockRun::check_limits(const Motion& motion) {
+    for (size_t i = 0; i < axis_count; ++i)
+        if (setup.machine.axes[i].present && (!motion.from[i] || !motion.to[i])) return;
+    const AxisRange range = axis_range(motion, setup.machine, chord_error(setup.mesh_size));
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = setup.machine.axes[i];
+        if (!axis.present) continue;
+        const double below = axis.min.value_or(-infinity) - range.min[i];
+        const double above = range.max[i] - axis.max.value_or(infinity);
+        const double beyond = std::max(below, above);
+        if (beyond <= resolution) continue;
+        find("over-travel",
+             fmt::format("{} goes to {} in machine coordinates, {} {} beyond its limit.",
+                         axis_letters[i],
+                         below > above ? at_least(range.min[i]) : at_most(range.max[i]),
+                         at_most(beyond), is_rotary(i) ? "degrees" : "mm"),
+             i == 2         ? "Move the work, or use another tool length or work offset."
+             : is_rotary(i) ? "Turn the work, or reach the same place from the other side."
+                            : "Move the work, or use another work offset.");
+    }
+}
+
+void BlockRun::round_corners(const Motion& motion) {
+    RoundedCorners& corners = state.corners;
+    if (corners.by == 0.0) return;
+    off_path = std::max(off_path, corners.by);
+    if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool);
+    state.assumptions.insert(
+        fmt::format("feeds may be up to {:g} mm off their programmed way while the control rounds "
+                    "corners (G64): clearances say so",
+                    corners.by));
+}
+
+void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
+    // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
+    if (!block.judgement && !path.legs.empty()) {
+        std::vector<PairClearance> pairs;
+        for (const Leg& leg : path.legs)
+            leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
+        const PairClearance* worst = deciding_pair(pairs);
+        if (!worst || worst->verdict == Verdict::clear) {
+            for (PairClearance& pair : pairs) result.pairs.push_back(pair);
+            return;
+        }
+    }
+    result.checked = false;
+    if (std::exchange(state.told_unknown_start, true)) return;
+    find("first-move",
+         "The machine starts from a place nobody knows, so this motion cannot be judged.",
+         "Say where the axes stand at the first block: `start` under [program] in the set-up, or "
+         "the machine's home.");
+}
+
+void BlockRun::carry_out(const Motion& motion) {
+    result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
+    drills_sideways = drills_sideways
+                      || (tool() && motion.kind != MotionKind::rapid
+                          && turns_to_cut(state.spindle, *tool()) && !cuts_along(*tool(), motion));
+    const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
+    if (path.assumed_speed)
+        state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
+                                 "speed is not stated");
+    for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
+    check_limits(motion);
+    if (motion.from != state.position) forget_bounds();
+    if (motion.kind != MotionKind::rapid && tool()) round_corners(motion);
+    state.memory.off_path = off_path + state.corners.of_cuts;
+    state.position = motion.to;
+    if (!tool()) move_without_tool(motion);
+    if (!tool() && setup.machine.bodies.empty()) {
+        // Nothing moves that could meet anything.
+    } else if (path.legs.empty() || !path.legs[0].start_known) {
+        check_from_unknown(motion, path);
+    } else if (block.judgement) {
+        follow_path(motion, path);
+    } else {
+        check_path(motion, path);
+    }
+    result.duration += path.duration;
+}
+
+void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
+    if (!tool() || tool()->description.cuts_at_centre) return;
+    if (use(motion) != FluteUse::cutting || !leg.straight) {
+        state.centre = {};
+        return;
+    }
+    const Mount tip{setup.machine.spindle, translation({0.0, 0.0, -tool()->length})};
+    const RelativeLeg way = relative_leg(setup.machine, setup.stock_mount, {.mount = tip}, leg);
+    const auto contact = follow(state.centre, tool()->description, way, state.stock);
+    if (!contact) return;
+    PairClearance& flutes = entry(result.pairs, {PartKind::flutes}, setup);
+    if (flutes.verdict == Verdict::collision) return;
+    pushes_centre = true;
+    flutes.lower = flutes.upper = 0.0;
+    flutes.verdict = Verdict::collision;
+    flutes.on_tool = flutes.on_body = contact->place;
+    flutes.time = result.duration + leg.begin + contact->share * (leg.end - leg.begin);
+}
+
+void BlockRun::check_path(const Motion& motion, const Path& path) {
+    const bool rapid = motion.kind == MotionKind::rapid;
+    const bool dog_leg = rapid && (path.legs.size() > 1 || !path.legs[0].straight);
+    const bool links = rapid && tool() && state.watch.has_fed && goes_across(path.legs[0]);
+    std::optional<CutModel> before;
+    if (dog_leg || links) before = state.stock;
+    LegCheck check = leg_check(use(motion));
+    double removed = 0.0;
+    for (const Leg& leg : path.legs) {
+        watch_centre(motion, leg);
+        removed += check.run(leg, result.duration, state.stock, result.pairs);
+        legs.push_back({leg, result.duration});
+        if (use(motion) == FluteUse::cutting && !state.watch.length_in_doubt)
+            note_reach(state.watch.reaches,
+                       {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
+                       result.pairs);
+    }
+    check.settle(result.pairs);
+    note_worst(motion.kind);
+    result.removed += removed;
+    if (before) look_at_rapid(motion, path, *before);
+    if (!rapid) look_at_feed(motion, path, removed);
+}
+
+void BlockRun::follow_path(const Motion& motion, const Path& path) {
+    const bool cuts = use(motion) == FluteUse::cutting;
+    LegCheck check = leg_check(use(motion));
+    for (const Leg& leg : path.legs) {
+        watch_centre(motion, leg);
+        // On a motion that turns nobody knows how far it has come when it meets the stock.
+        if (cuts || (block.judgement->runs_into_stock && !turns))
+            result.removed += check.only_cut(leg, state.stock);
+    }
+    state.watch.has_fed = state.watch.has_fed || motion.kind != MotionKind::rapid;
+}
+
+void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {
+    const bool straight = path.legs.size() == 1 && path.legs[0].straight;
+    if (straight && tool())
+        return tell(
+            low_retract({setup, *tool(), block.block, path.legs[0], state.fixtures_there, before},
+                        result.pairs));
+    const PairClearance* worst = deciding_pair(result.pairs);
+    if (!worst || worst->verdict == Verdict::clear) return;
+    Machine machine = setup.machine;
+    machine.rapid = RapidStyle::straight;
+    CutModel stock = before;
+    CheckMemory memory; // bounds of the run hold along its own path only
+    std::vector<PairClearance> along_the_line;
+    for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
+        leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
+    worst = deciding_pair(along_the_line);
+    only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;
+}
+
+void BlockRun::look_at_feed(const Motion& motion, const Path& path, double removed) {
+    state.watch.has_fed = true;
+    if (!tool() || use(motion) != FluteUse::cutting) return;
+    LegCheck check = leg_check(FluteUse::cutting);
+    bool in_air = removed <= 0.0;
+    for (const Leg& leg : path.legs)
+        in_air = in_air && check.room_of_flutes(leg, state.stock, air_gap) >= air_gap;
+    if (in_air)
+        add_air(state.watch.air, block.block, path.duration * motion.feed / 60.0);
+    else
+        tell(end_air(state.watch.air, tool()->description.diameter));
+    if (in_air) return;
+    auto found = singular_orientation(setup.machine, motion, tool()->length);
+    const bool swings = found && !motion.tip && removed <= 0.0;
+    if (!found || swings || std::exchange(state.watch.told_swing, true)) return;
+    tell(std::move(found));
+}
+
+void BlockRun::move_without_tool(const Motion& motion) {
+    if (!state.tool && (state.tool_known || motion.kind == MotionKind::rapid)) {
+        if (!state.tool_known)
+            state.assumptions.insert("the spindle is empty until the first tool change");
+        return;
+    }
+    result.checked = false;
+    if (std::exchange(state.told_unchecked_tool, true)) return;
+    if (state.tool)
+        find(
+            "undecided",
+            fmt::format("Tool {} moves, but nothing is known about it: none of its motions can be "
+                        "checked.",
+                        value_of(*state.tool)),
+            fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*state.tool)));
+    else
+        find("undecided", "The program feeds before it calls a tool: nobody knows what moves.",
+             "Call the tool (T and M6), or describe a single tool in the set-up.");
+}
+
+} // namespace core

@@ -1,0 +1,108 @@
+#pragma once
+
+#include "core/sim/leg/leg_check.h"
+#include "core/sim/run/finding_text.h"
+#include "core/sim/run/simulator.h"
+
+namespace core {
+
+/// One leg of the block, with when its motion began.
+struct TimedLeg {
+    Leg leg;
+    double start; // seconds after the block's start
+};
+
+/// A pair that does not keep its allowance, and the kind of motion in which it is worst.
+struct WorstMotion {
+    Pair pair;
+    Verdict verdict = Verdict::clear;
+    double upper = infinity;
+    MotionKind kind = MotionKind::rapid;
+};
+
+/// A block while it is carried out.
+struct BlockRun {
+    const Setup& setup;
+    const BlockEvents& block;
+    SimulatorState& state;
+    BlockResult result = {};
+    std::vector<TimedLeg> legs = {};
+    std::vector<WorstMotion> worst_motions = {};
+    Verdict at_change = Verdict::clear; // of the new tool where it was changed in
+    bool turns = false;                 // rotary axes move
+    bool pushes_centre = false;         // down into the stock, where the tool does not cut
+    bool drills_sideways = false;
+    double off_path = 0.0;     // that rounded corners may take its feeds, mm
+    bool only_dog_leg = false; // straight, a rapid of this block would be free
+
+    const ToolAssembly* tool() const {
+        if (!state.tool) return nullptr;
+        const auto found = setup.tools.find(*state.tool);
+        return found == setup.tools.end() ? nullptr : &found->second;
+    }
+
+    void find(const std::string& rule, std::string message, std::string cure) {
+        const Severity severity = severity_of(setup, rule);
+        if (severity == Severity::off) return;
+        result.findings.push_back(
+            {rule, severity, block.block, std::move(message), std::move(cure), {}, 0.0});
+    }
+
+    void add(Finding finding) {
+        finding.block = block.block;
+        if (finding.severity != Severity::off) result.findings.push_back(std::move(finding));
+    }
+
+    /// Adds a finding of a rule that knows its block, with its severity in this set-up.
+    void tell(std::optional<Finding> finding) {
+        if (!finding) return;
+        settle_severity(setup, *finding);
+        if (!finding->block) finding->block = block.block;
+        if (finding->severity != Severity::off) result.findings.push_back(*std::move(finding));
+    }
+
+    /// What checks the legs of a motion, with whatever is in the spindle.
+    LegCheck leg_check(FluteUse use, CheckMemory& memory) {
+        static const ToolAssembly nothing;
+        return {setup,           tool() ? *tool() : nothing, use,
+                block.block,     state.fixtures_there,       memory,
+                state.statistics};
+    }
+    LegCheck leg_check(FluteUse use) { return leg_check(use, state.memory); }
+
+    FluteUse use(const Motion& motion) const {
+        const bool feeds = motion.kind != MotionKind::rapid;
+        const bool cuts =
+            tool() && turns_to_cut(state.spindle, *tool()) && cuts_along(*tool(), motion);
+        return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
+    }
+
+    void carry_out(const Motion& motion);
+    void carry_out(const ToolChange& change);
+    void carry_out(const SpindleChange& change) { state.spindle = change; }
+    void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
+    void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
+    void carry_out(const PathModeChange& change);
+    void carry_out(const FixtureChange& change);
+
+    void check_path(const Motion& motion, const Path& path);
+    /// The same where somebody else judges the block.
+    void follow_path(const Motion& motion, const Path& path);
+    void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
+    void look_at_feed(const Motion& motion, const Path& path, double removed);
+    void move_without_tool(const Motion& motion);
+    void watch_centre(const Motion& motion, const Leg& leg);
+    void note_worst(MotionKind kind);
+    /// The motion that a finding about the pair speaks of.
+    BlockMove move_of(const PairClearance& pair) const;
+    Finding finding_about(const PairClearance& pair) const;
+    void check_tool_change();
+    void forget_bounds();
+    void check_limits(const Motion& motion);
+    void round_corners(const Motion& motion);
+    void check_from_unknown(const Motion& motion, const Path& path);
+    void conclude();
+    void conclude(const Judgement& judgement);
+};
+
+} // namespace core

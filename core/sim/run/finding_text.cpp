@@ -1,0 +1,227 @@
+#include "core/sim/run/finding_text.h"
+
+#include <fmt/format.h>
+
+#include "core/sim/verdict.h"
+
+namespace core {
+namespace {
+
+std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spindle_runs) {
+    if (move.only_dog_leg) return "dog-leg-rapid";
+    if (pair.verdict == Verdict::undecided) return "undecided";
+    const bool rapid = move.motion == BlockMotion::rapid;
+    if (rapid && move.turns) return "rotary-with-tool-down";
+    const bool fixture = pair.pair.fixture.has_value();
+    if (pair.verdict == Verdict::violation)
+        return rapid && fixture ? "rapid-near-clamp" : "near-miss";
+    if (!fixture && rapid) return "rapid-in-stock";
+    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs) return "spindle-off";
+    return pair.pair.part == PartKind::holder || pair.pair.part == PartKind::nose
+               ? "holder-into-wall"
+               : "collision";
+}
+
+/// The way out of a near miss: along the axis that leads away from the body most directly.
+std::string way_out(const PairClearance& pair, double missing) {
+    const Vec3 away = pair.on_tool - pair.on_body;
+    const double length = glm::length(away);
+    if (!(length > 0.0)) return "";
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
+    // Rounded up: what is printed has to do.
+    const std::string along = at_most(missing * length / std::abs(away[axis]));
+    return fmt::format("{} mm more room towards {}{}", along, "XYZ"[axis],
+                       away[axis] > 0.0 ? '+' : '-');
+}
+
+std::string cure_of_rapid(MoveWithin within) {
+    if (within == MoveWithin::way_home)
+        return "Retract along the tool first, as with G91 G28 Z0 or G53 G0 Z0; then the other axes "
+               "go home.";
+    if (within == MoveWithin::cycle)
+        return "Raise the plane from which the cycle feeds and to which it retracts.";
+    return "Raise the retract height, or feed through the material.";
+}
+
+/// What widens the interval of a pair that is not decided, and what would narrow it.
+std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                          const RoundedCorners& corners) {
+    const bool rapid = move.motion == BlockMotion::rapid;
+    const double off = off_way(pair.pair, rapid ? 0.0 : corners.by, corners);
+    // Of an interval that ends at 0 nobody knows how far it would have gone on.
+    if (off > 0.0 && 4.0 * off >= pair.upper - pair.lower)
+        return fmt::format("The control may round corners by {:g} mm (G64): a smaller tolerance, "
+                           "or G61, decides it; if not, give the block more room.",
+                           off);
+    if (move.turns)
+        return "Turn the rotary axes farther away or in shorter blocks, or give the block more "
+               "room.";
+    if (pair.pair.fixture) return "Give the block more room.";
+    const double tolerance = setup.stock.tolerance;
+    if (tolerance <= 0.0)
+        return "A smaller mesh size decides it; if not, give the block more room.";
+    return fmt::format("The raw stock may be {:g} mm larger than stated: measure it and lower "
+                       "`tolerance` of [stock]{}, or give the block more room.",
+                       tolerance, tolerance < setup.mesh_size ? " and the mesh size" : "");
+}
+
+std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body,
+                    MoveWithin within) {
+    const bool fixture = pair.pair.fixture.has_value();
+    if (rule == "rapid-in-stock") return cure_of_rapid(within);
+    if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
+    if (rule == "spindle-off")
+        return "Start the spindle the right way round before the tool feeds into the stock.";
+    if (rule == "dog-leg-rapid")
+        return fmt::format("Straight the way is free: move the axes one after another round {}, or "
+                           "feed fast instead of the rapid.",
+                           body);
+    const double missing = pair.allowance.distance - pair.upper;
+    const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
+    const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
+    if (!room.empty()) return fmt::format("{} would do{}.", room, move);
+    if (pair.pair.part == PartKind::machine)
+        return "Move the work, or use a longer tool: a part of the machine comes too near.";
+    if (pair.pair.part == PartKind::shank && !fixture)
+        return "Longer flutes, a slimmer shank or neck, or less depth.";
+    if (pair.pair.part != PartKind::flutes && !fixture)
+        return "A longer stick-out or a slimmer holder, or less depth.";
+    return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
+}
+
+/// Whose rapid it is.
+const char* words_for_rapid(MoveWithin within) {
+    switch (within) {
+    case MoveWithin::way_home:
+        return "On the way to the reference point (G28, G30), a rapid, the";
+    case MoveWithin::cycle:
+        return "On a rapid of this cycle, the";
+    case MoveWithin::block:
+        return "On a rapid within this block, the";
+    default:
+        return "On a rapid, the";
+    }
+}
+
+std::string rapid_into_stock(const std::string& part, MoveWithin within) {
+    const char* whose = within == MoveWithin::way_home
+                            ? " on the way to the reference point (G28, G30)"
+                        : within == MoveWithin::cycle ? " on a rapid of this cycle"
+                        : within == MoveWithin::block ? " on a rapid within this block"
+                                                      : "";
+    return fmt::format("Rapid into material: the {} runs into the stock{}.", part, whose);
+}
+
+/// When in its block something happens.
+std::string how_far(double at) {
+    if (at < 0.005) return "right at its start";
+    return fmt::format("{:.0f} % of the way", 100.0 * at);
+}
+
+std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
+                       const std::string& part, const std::string& body, double at) {
+    const char* kind = move.only_dog_leg ? "Straight this rapid would be free, but the axes do not "
+                                           "arrive together: the"
+                       : move.turns      ? "While rotary axes turn, the"
+                       : move.motion == BlockMotion::rapid ? words_for_rapid(move.within)
+                                                           : "The";
+    if (rule == "rapid-in-stock") return rapid_into_stock(part, move.within);
+    if (rule == "spindle-off")
+        return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
+    if (pair.verdict == Verdict::collision)
+        return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
+    const double keep = pair.allowance.distance;
+    const int digits = digits_below(pair.upper, keep);
+    if (pair.verdict == Verdict::violation)
+        return fmt::format("{} {} passes {} at {} mm; {} mm must be kept, {} mm are missing.", kind,
+                           part, body, bounds_text(pair.lower, pair.upper, " to ", digits),
+                           at_most(keep),
+                           missing_text(keep - pair.upper, keep - pair.lower, " to ", digits));
+    if (keep <= resolution)
+        return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
+                           kind, part, body);
+    return fmt::format("{} {} may be as near to {} as {} mm; {} mm must be kept.", kind, part, body,
+                       clearance_at_least(pair.lower), at_most(keep));
+}
+
+/// "The flutes run", "the holder runs".
+std::string in_the_plural(std::string message) {
+    for (const auto& [one, many] :
+         {std::pair{"flutes runs", "flutes run"}, std::pair{"flutes passes", "flutes pass"}})
+        if (const size_t at = message.find(one); at != std::string::npos)
+            message.replace(at, std::string(one).size(), many);
+    return message;
+}
+
+/// What a sentence calls a body.
+std::string body_in_words(const Setup& setup, const Pair& pair) {
+    return pair.fixture ? body_name(setup, pair) : "the stock";
+}
+
+/// What a tool that was just changed in does to the body.
+std::string change_message(const PairClearance& pair, ToolNumber tool, const std::string& part,
+                           const std::string& body) {
+    const bool many = pair.pair.part == PartKind::flutes;
+    const int number = value_of(tool);
+    if (pair.verdict == Verdict::collision)
+        return fmt::format("Tool {} is changed in where its {} {} in {}.", number, part,
+                           many ? "stand" : "stands", body);
+    const double keep = pair.allowance.distance;
+    if (pair.verdict == Verdict::violation)
+        return fmt::format(
+            "Tool {} is changed in where its {} {} only {} mm from {}; {} mm must be kept.", number,
+            part, many ? "are" : "is",
+            bounds_text(pair.lower, pair.upper, " to ", digits_below(pair.upper, keep)), body,
+            at_most(keep));
+    return fmt::format("Tool {} is changed in where its {} may be as near to {} as {} mm; {} mm "
+                       "must be kept.",
+                       number, part, body, clearance_at_least(pair.lower), at_most(keep));
+}
+
+/// Whatever it is called, a collision is never passed over.
+Severity severity_about(const Setup& setup, const PairClearance& pair, const std::string& rule) {
+    return pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, rule);
+}
+
+double shortfall_of(const PairClearance& pair) {
+    return pair.allowance.distance - (pair.verdict == Verdict::undecided ? pair.lower : pair.upper);
+}
+
+} // namespace
+
+Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
+                   const SimulatorState& state) {
+    const ToolAssembly* tool = nullptr;
+    if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
+    const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
+    const std::string& part = part_name(setup, pair.pair);
+    const std::string body = body_in_words(setup, pair.pair);
+    const double at = move.duration > 0.0 ? pair.time / move.duration : 0.0;
+    Finding finding;
+    finding.rule = rule_of(pair, move, spindle_runs);
+    finding.severity = severity_about(setup, pair, finding.rule);
+    finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
+    finding.cure = finding.rule == "undecided" ? cure_of_doubt(setup, pair, move, state.corners)
+                                               : cure_of(pair, finding.rule, body, move.within);
+    finding.pair = {part, body_name(setup, pair.pair)};
+    finding.shortfall = shortfall_of(pair);
+    if (!finding.cure.empty())
+        finding.cure[0] =
+            static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
+    return finding;
+}
+
+Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool) {
+    Finding finding;
+    finding.rule = "tool-change-unsafe";
+    finding.severity = severity_about(setup, pair, finding.rule);
+    finding.pair = {part_name(setup, pair.pair), body_name(setup, pair.pair)};
+    finding.message = change_message(pair, tool, finding.pair[0], body_in_words(setup, pair.pair));
+    finding.cure = "Move to a safe place, as with G28 or G53 Z0, before the tool change.";
+    finding.shortfall = shortfall_of(pair);
+    return finding;
+}
+
+} // namespace core

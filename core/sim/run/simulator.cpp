@@ -1,0 +1,69 @@
+#include "core/sim/run/simulator.h"
+
+#include <thread>
+
+#include "core/sim/run/block_run.h"
+
+namespace core {
+
+const char* name_of(BlockMotion motion) {
+    switch (motion) {
+    case BlockMotion::none:
+        return "none";
+    case BlockMotion::rapid:
+        return "rapid";
+    case BlockMotion::feed:
+        return "feed";
+    case BlockMotion::arc:
+        return "arc";
+    default:
+        return "cycle";
+    }
+}
+
+Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
+    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
+    if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
+    SimulatorState state{.stock = std::move(stock)};
+    state.tool = setup.tool_at_start;
+    state.tool_known = setup.tool_at_start.has_value();
+    state.position = position;
+    for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
+    state.pieces = watch_of(state.stock);
+    state.corners = corners_at_start(setup.machine);
+    return state;
+}
+
+BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state) {
+    BlockRun run{setup, block, state};
+    const size_t cuts_before = state.stock.log.size();
+    run.result.time = state.time;
+    run.result.tool = state.tool;
+    for (const Event& event : block.events)
+        std::visit([&](const auto& e) { run.carry_out(e); }, event);
+    if (block.is_cycle && run.result.motion != BlockMotion::none)
+        run.result.motion = BlockMotion::cycle;
+    for (Finding& finding :
+         watch_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
+        run.add(std::move(finding));
+    if (block.judgement)
+        run.conclude(*block.judgement);
+    else
+        run.conclude();
+    state.time += run.result.duration;
+    return std::move(run.result);
+}
+
+std::vector<Finding> end_of_run(const Setup& setup, SimulatorState& state) {
+    std::vector<Finding> findings = findings_of(state.watch.reaches, setup);
+    const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
+    if (tool != setup.tools.end())
+        if (auto air = end_air(state.watch.air, tool->second.description.diameter))
+            findings.push_back(*std::move(air));
+    for (Finding& finding : findings) settle_severity(setup, finding);
+    std::erase_if(findings,
+                  [](const Finding& finding) { return finding.severity == Severity::off; });
+    return findings;
+}
+
+} // namespace core

@@ -1,0 +1,498 @@
+#include "gcode/contour/contour.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/base/units.h"
+#include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
+#include "gcode/language/canonical.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr size_t most_waiting = 1000;
+
+const Position* end_of_feed(const CanonicalCommand& command) {
+    if (const auto* move = std::get_if<StraightFeed>(&command)) return &move->end;
+    if (const auto* move = std::get_if<ArcFeed>(&command)) return &move->end;
+    return nullptr;
+}
+
+core::Error refusal(const CornerWord& word, ErrorCode code, std::string_view why) {
+    return {code, word.where, fmt::format("{}: {}", word.written, why)};
+}
+
+core::Error no_motion(const CornerWord& word, std::string_view what) {
+    return refusal(word, ErrorCode::missing_value,
+                   fmt::format("the next block must be a G1, G2 or G3 in the plane, and {}; the "
+                               "control stops with an alarm (PS0051 on Fanuc)",
+                               what));
+}
+
+/// A feed as the plane sees it; empty where it does not stay in the plane.
+std::optional<CornerSide> side_of(const CanonicalCommand& command, const Position& start,
+                                  Plane plane) {
+    const PlaneAxes axes = axes_of(plane);
+    const Position& end = *end_of_feed(command);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const bool in_plane = axis == axes.first || axis == axes.second;
+        if (in_plane ? !start[axis] || !end[axis] : start[axis] != end[axis]) return std::nullopt;
+    }
+    CornerSide side{.start = {*start[axes.first], *start[axes.second]},
+                    .end = {*end[axes.first], *end[axes.second]}};
+    if (const auto* arc = std::get_if<ArcFeed>(&command)) {
+        if (arc->plane != plane) return std::nullopt;
+        side.arc = FlatArc{{arc->centre[0], arc->centre[1]}, arc->turns};
+    }
+    return side;
+}
+
+Position moved_in_plane(Position place, Plane plane, FlatPoint to) {
+    const PlaneAxes axes = axes_of(plane);
+    place[axes.first] = to.u;
+    place[axes.second] = to.v;
+    return place;
+}
+
+/// The motion of a block that stands behind a corner; empty where the corner goes on waiting.
+core::Result<std::optional<CornerSide>> motion_behind(const Corners& corners,
+                                                      const ExecutedBlock& block) {
+    const CornerWord& word = *corners.word;
+    const ModalState& first = corners.waiting.front().after;
+    for (const CanonicalCommand& command : block.result.commands) {
+        if (std::holds_alternative<Dwell>(command) || std::holds_alternative<Message>(command))
+            continue;
+        if (!is_motion(command))
+            return tl::unexpected(
+                no_motion(word, std::holds_alternative<ProgramEnd>(command)
+                                    ? "the program ends"
+                                    : "only a dwell may stand between the two motions"));
+        if (!end_of_feed(command))
+            return tl::unexpected(no_motion(word, "a motion without feed follows"));
+        const bool same_modes = block.after.plane == first.plane
+                                && block.after.compensation == first.compensation
+                                && block.after.offsets == first.offsets;
+        if (!same_modes)
+            return tl::unexpected(no_motion(
+                word, "the plane, the offsets or cutter radius compensation change before it"));
+        const auto side = side_of(command, block.before.position, first.plane);
+        if (!side || !has_length(*side))
+            return tl::unexpected(no_motion(word, "the motion behind it leaves the plane"));
+        return side;
+    }
+    return std::optional<CornerSide>{};
+}
+
+core::Result<CornerCut> cut_between(const CornerWord& word, const CornerSide& first,
+                                    const CornerSide& second) {
+    CornerCut cut;
+    cut.fit = CornerFit::straight_on;
+    if (!has_length(first))
+        return tl::unexpected(refusal(word, ErrorCode::invalid_value,
+                                      "the motion it is written behind goes nowhere"));
+    if (bend_between(first, second) <= core::radians_per_degree) return cut;
+    cut = cut_corner(first, second, word.kind, word.size);
+    if (cut.fit == CornerFit::none)
+        return tl::unexpected(
+            refusal(word, ErrorCode::invalid_value,
+                    "nothing of this size touches both motions; the control stops with an alarm"));
+    if (cut.fit == CornerFit::too_large)
+        return tl::unexpected(
+            refusal(word, ErrorCode::invalid_value,
+                    "the corner is too large for the motions before and behind it; the control "
+                    "stops with an alarm (PS0055 on Fanuc)"));
+    return cut;
+}
+
+/// Lets the block end in the corner.
+void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& cut) {
+    std::vector<CanonicalCommand>& commands = block.result.commands;
+    const Plane plane = block.after.plane;
+    CanonicalCommand& motion = commands.back();
+    const Position corner = *end_of_feed(motion);
+    const double feed = std::visit(
+        [](const auto& command) {
+            if constexpr (requires { command.feed; })
+                return command.feed;
+            else
+                return 0.0;
+        },
+        motion);
+    const Position from = moved_in_plane(corner, plane, cut.from);
+    const Position to = moved_in_plane(corner, plane, cut.to);
+    if (auto* arc = std::get_if<ArcFeed>(&motion)) arc->end = from;
+    if (auto* line = std::get_if<StraightFeed>(&motion)) line->end = from;
+    // An arc that ends where it begins would be a whole turn.
+    if (cut.takes_first) {
+        commands.pop_back();
+        block.result.columns.pop_back();
+    }
+    if (cut.arc)
+        commands.push_back(
+            ArcFeed{to, plane, {cut.arc->centre.u, cut.arc->centre.v}, cut.arc->turns, feed});
+    else
+        commands.push_back(StraightFeed{to, feed});
+    block.result.columns.push_back(word.where.column);
+}
+
+/// Makes the first motion of the block begin where the corner ends.
+void begin_behind_corner(ExecutedBlock& block, const CornerCut& cut) {
+    block.before.position = moved_in_plane(block.before.position, block.after.plane, cut.to);
+    if (!cut.takes_second) return;
+    for (CanonicalCommand& command : block.result.commands)
+        if (const auto* arc = std::get_if<ArcFeed>(&command)) {
+            command = StraightFeed{arc->end, arc->feed};
+            return;
+        }
+}
+
+/// Lets a block wait for the motion behind its corner.
+core::Result<void> wait_for_motion(Corners& corners, const CornerWord& word, ExecutedBlock block) {
+    Position start = block.before.position;
+    const std::vector<CanonicalCommand>& commands = block.result.commands;
+    for (size_t i = 0; i + 1 < commands.size(); ++i)
+        if (const Position* end = end_of_feed(commands[i])) start = *end;
+    const auto side = side_of(commands.back(), start, block.after.plane);
+    if (!side)
+        return tl::unexpected(refusal(word, ErrorCode::invalid_value,
+                                      "a corner lies in the plane, and the motion before it "
+                                      "leaves the plane or begins at an unknown place"));
+    corners.first = *side;
+    corners.word = word;
+    corners.waiting.push_back(std::move(block));
+    return {};
+}
+
+core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock block) {
+    const std::optional<CornerWord> asked = std::exchange(corners.asked, std::nullopt);
+    std::vector<ExecutedBlock> ready;
+    if (corners.word) {
+        FEELER_TRY(const auto second, motion_behind(corners, block));
+        if (!second) {
+            if (corners.waiting.size() >= most_waiting)
+                return tl::unexpected(no_motion(*corners.word, "none comes for too long"));
+            corners.waiting.push_back(std::move(block));
+            return ready;
+        }
+        FEELER_TRY(const CornerCut cut, cut_between(*corners.word, corners.first, *second));
+        if (cut.fit == CornerFit::fits) {
+            add_corner(corners.waiting.front(), *corners.word, cut);
+            begin_behind_corner(block, cut);
+        }
+        ready = give_up_corners(corners);
+    }
+    if (asked) {
+        if (auto waits = wait_for_motion(corners, *asked, std::move(block)); !waits)
+            return tl::unexpected(waits.error());
+    } else {
+        ready.push_back(std::move(block));
+    }
+    return ready;
+}
+
+} // namespace
+
+bool Corners::operator==(const Corners& other) const {
+    return asked.has_value() == other.asked.has_value()
+           && word.has_value() == other.word.has_value() && first == other.first
+           && waiting.size() == other.waiting.size();
+}
+
+core::Result<std::vector<ExecutedBlock>> take_for_corners(Corners& corners, ExecutedBlock block) {
+    auto ready = take(corners, std::move(block));
+    if (!ready) (void)give_up_corners(corners);
+    return ready;
+}
+
+core::Result<void> end_corners(Corners& corners) {
+    if (!corners.word) return {};
+    const core::Error error = no_motion(*corners.word, "the program ends");
+    (void)give_up_corners(corners);
+    return tl::unexpected(error);
+}
+
+std::vector<ExecutedBlock> give_up_corners(Corners& corners) {
+    std::vector<ExecutedBlock> blocks = std::move(corners.waiting);
+    corners.waiting.clear();
+    corners.word.reset();
+    corners.asked.reset();
+    return blocks;
+}
+
+core::Result<void> ask_for_corner(Execution& execution) {
+    const Word* word = execution.statement.corner;
+    if (!word) return {};
+    const double size = length_of(execution, *word);
+    if (size < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the size of a corner is not negative", written(*word)),
+                          word->span);
+    const auto& commands = execution.result.commands;
+    const bool feeds =
+        !commands.empty() && end_of_feed(commands.back()) != nullptr && !execution.modal().cycle;
+    if (!feeds)
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: a corner is written in the block of a G1, G2 or G3", written(*word)),
+            word->span);
+    if (size == 0.0) return {};
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
+    execution.state.contour.corners.asked =
+        CornerWord{.kind = word->letter == 'r' ? CornerKind::rounding : CornerKind::chamfer,
+                   .size = size,
+                   .where = word->span,
+                   .written = written(*word)};
+    return {};
+}
+
+namespace {
+
+constexpr size_t most_pending = 100000;
+
+/// The end of a motion; null for anything else.
+const Position* end_of(const CanonicalCommand& command) {
+    if (const auto* move = std::get_if<StraightTraverse>(&command)) return &move->end;
+    if (const auto* move = std::get_if<StraightFeed>(&command)) return &move->end;
+    if (const auto* move = std::get_if<ArcFeed>(&command)) return &move->end;
+    return nullptr;
+}
+
+std::optional<FlatPoint> flat(const Position& place, Plane plane) {
+    const PlaneAxes axes = axes_of(plane);
+    if (!place[axes.first] || !place[axes.second]) return std::nullopt;
+    return FlatPoint{*place[axes.first], *place[axes.second]};
+}
+
+Position moved(Position place, Plane plane, FlatPoint to) {
+    const PlaneAxes axes = axes_of(plane);
+    place[axes.first] = to.u;
+    place[axes.second] = to.v;
+    return place;
+}
+
+double feed_of(const CanonicalCommand& command) {
+    if (const auto* move = std::get_if<StraightFeed>(&command)) return move->feed;
+    if (const auto* move = std::get_if<ArcFeed>(&command)) return move->feed;
+    return 0.0;
+}
+
+/// A move of the tool's centre as a command of the point that is controlled, which is `tip` away.
+/// Round a corner the other axes stand still.
+CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand& programmed,
+                            const Position& start, Plane plane, FlatPoint tip) {
+    const Position end =
+        moved(move.rounds_corner ? start : *end_of(programmed), plane, move.end + tip);
+    if (move.rapid) return StraightTraverse{end};
+    if (!move.arc) return StraightFeed{end, feed_of(programmed)};
+    const FlatPoint centre = move.arc->centre + tip;
+    return ArcFeed{end, plane, {centre.u, centre.v}, move.arc->turns, feed_of(programmed)};
+}
+
+/// Identifies a command by its block, counted from the start of the run, and its place there.
+constexpr size_t commands_of_a_block = size_t(1) << 20;
+
+void place_move(Contour& contour, const CompensatedMove& move) {
+    PendingBlock& block = contour.pending[move.id / commands_of_a_block - contour.first_pending];
+    const size_t index = move.id % commands_of_a_block;
+    PendingBlock::Slot& slot = block.slots[index];
+    const FlatPoint tip = contour.path->entered ? contour.tip : FlatPoint{};
+    slot.moves.push_back(
+        command_of(move, block.result.commands[index], slot.start, contour.plane, tip));
+    if (!move.rounds_corner) slot.is_waiting = false;
+    if (move.turned_round)
+        block.result.warnings.push_back(
+            {Severity::warning,
+             {.line = block.result.line, .column = block.result.columns[index]},
+             "the tool does not fit between this move and the one before it: its centre runs "
+             "backwards here and cuts into the contour"});
+}
+
+/// Blocks that wait for nothing more are ready, in order.
+void release(Contour& contour) {
+    while (!contour.pending.empty()) {
+        PendingBlock& block = contour.pending.front();
+        const auto waits = [](const PendingBlock::Slot& slot) { return slot.is_waiting; };
+        if (std::any_of(block.slots.begin(), block.slots.end(), waits)) return;
+        BlockResult result = std::move(block.result);
+        std::vector<CanonicalCommand> commands;
+        std::vector<uint32_t> columns;
+        for (size_t i = 0; i < block.slots.size(); ++i) {
+            if (block.slots[i].moves.empty()) block.slots[i].moves.push_back(result.commands[i]);
+            for (CanonicalCommand& command : block.slots[i].moves) {
+                commands.push_back(std::move(command));
+                columns.push_back(result.columns[i]);
+            }
+        }
+        result.commands = std::move(commands);
+        result.columns = std::move(columns);
+        contour.ready.push_back(std::move(result));
+        contour.pending.pop_front();
+        ++contour.first_pending;
+    }
+}
+
+core::Result<void> end_path(Contour& contour) {
+    if (!contour.path) return {};
+    FEELER_TRY(const CompensatedMoves moves, end_compensation(*contour.path));
+    for (const CompensatedMove& move : moves) place_move(contour, move);
+    contour.path.reset();
+    return {};
+}
+
+/// Fanuc controls look a few blocks ahead. Where too many of them do not move in the plane, the
+/// tool ends beside the end of the move before them, and cuts into an inside corner.
+void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
+    constexpr size_t harmless = 1;
+    const RadiusCompensation& path = *contour.path;
+    const bool stays = !move.arc && move.end == path.programmed;
+    if (!path.extends_corners || path.waiting.empty() || stays) return;
+    const size_t before = path.waiting.front().id / commands_of_a_block;
+    if (number <= before + 1 + harmless) return;
+    contour.pending.back().result.warnings.push_back(
+        {Severity::warning, move.where,
+         fmt::format("{} blocks without a move in the plane stand before this one: a control that "
+                     "looks no farther ahead than that cuts into an inside corner here",
+                     number - before - 1)});
+}
+
+/// One motion of the block that was pushed last.
+core::Result<void> take_motion(Contour& contour, size_t index) {
+    PendingBlock& block = contour.pending.back();
+    const CanonicalCommand& command = block.result.commands[index];
+    const core::SourceSpan where{
+        .line = block.result.line, .column = block.result.columns[index], .length = 1};
+    const auto end = flat(*end_of(command), contour.plane);
+    if (!end)
+        return core::fail(core::ErrorCode::missing_value,
+                          "cutter radius compensation needs a known place in its plane", where);
+    const size_t number = contour.first_pending + contour.pending.size() - 1;
+    ContourMove move{.id = number * commands_of_a_block + index,
+                     .rapid = std::holds_alternative<StraightTraverse>(command),
+                     .end = *end,
+                     .where = where};
+    if (const auto* arc = std::get_if<ArcFeed>(&command))
+        move.arc = FlatArc{{arc->centre[0], arc->centre[1]}, arc->turns};
+    warn_of_blocks_between(contour, number, move);
+    FEELER_TRY(const CompensatedMoves moves, add_move(*contour.path, move));
+    block.slots[index].is_waiting = true;
+    for (const CompensatedMove& done : moves) place_move(contour, done);
+    return {};
+}
+
+/// Where the controlled point of a turning tool lies, seen from the centre of its nose of radius 1:
+/// the crossing of the lines along X and Z that touch the nose on the side the tool points to.
+FlatPoint tip_of(int orientation, Plane plane) {
+    constexpr int along_x[] = {0, -1, -1, 1, 1, 0, -1, 0, 1, 0};
+    constexpr int along_z[] = {0, 1, -1, -1, 1, 1, 0, -1, 0, 0};
+    if (plane != Plane::zx) return {};
+    const double x = along_x[orientation], z = along_z[orientation];
+    return axes_of(plane).first == 0 ? FlatPoint{x, z} : FlatPoint{z, x};
+}
+
+core::Result<void> begin_path(Contour& contour, const ModalState& before, const ModalState& after,
+                              const BlockResult& block) {
+    contour.plane = after.plane;
+    const auto at = flat(before.position, after.plane);
+    if (!at)
+        return core::fail(core::ErrorCode::missing_value,
+                          "cutter radius compensation begins at an unknown place: move there "
+                          "first, or say where the machine starts",
+                          {.line = block.line, .column = 1});
+    const ContourSide side =
+        after.compensation == Side::left ? ContourSide::left : ContourSide::right;
+    contour.path = begin_compensation(side, after.compensation_radius, *at);
+    contour.path->extends_corners = contour.style == ContourStyle::fanuc;
+    contour.tip = contour.path->radius * tip_of(after.turning_orientation, after.plane);
+    return {};
+}
+
+core::Result<void> take_commands(Contour& contour, const BlockResult& block,
+                                 const ModalState& before) {
+    contour.pending.push_back({block, std::vector<PendingBlock::Slot>(block.commands.size())});
+    Position place = before.position;
+    for (size_t i = 0; i < block.commands.size(); ++i) {
+        PendingBlock::Slot& slot = contour.pending.back().slots[i];
+        slot.start = place;
+        if (std::holds_alternative<ProgramEnd>(block.commands[i]))
+            if (auto ended = end_path(contour); !ended) return ended;
+        const Position* end = end_of(block.commands[i]);
+        if (!end) continue;
+        if (contour.path)
+            if (auto taken = take_motion(contour, i); !taken) return taken;
+        place = *end;
+    }
+    return {};
+}
+
+core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
+                                     const ModalState& before, const ModalState& after) {
+    const bool on = after.compensation != Side::none && after.compensation_radius != 0.0;
+    const bool changed = before.compensation != after.compensation
+                         || before.compensation_radius != after.compensation_radius;
+    const bool pauses = std::exchange(contour.pauses, false);
+    if (contour.path && (!on || changed || pauses))
+        if (auto ended = end_path(contour); !ended) return ended;
+    if (on && !contour.path && !pauses)
+        if (auto begun = begin_path(contour, before, after, block); !begun) return begun;
+    if (contour.pending.size() >= most_pending)
+        return core::fail(core::ErrorCode::invalid_value,
+                          "cutter radius compensation waits for a move in its plane for too long: "
+                          "switch it off with G40",
+                          {.line = block.line, .column = 1});
+    if (auto taken = take_commands(contour, block, before); !taken) {
+        contour.pending.pop_back();
+        return taken;
+    }
+    release(contour);
+    return {};
+}
+
+core::Result<void> take_all(Contour& contour, const std::vector<ExecutedBlock>& blocks) {
+    for (const ExecutedBlock& block : blocks)
+        if (auto taken = take_with_corners(contour, block.result, block.before, block.after);
+            !taken)
+            return taken;
+    return {};
+}
+
+} // namespace
+
+bool Contour::operator==(const Contour& other) const {
+    const auto place = [](const Contour& contour) {
+        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
+    };
+    return corners == other.corners && place(*this) == place(other)
+           && pending.size() == other.pending.size() && ready.size() == other.ready.size()
+           && failure.has_value() == other.failure.has_value();
+}
+
+core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
+                              const ModalState& after) {
+    if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
+    FEELER_TRY(const std::vector<ExecutedBlock> ready,
+               take_for_corners(contour.corners, {block, before, after}));
+    return take_all(contour, ready);
+}
+
+core::Result<void> end_contour(Contour& contour) {
+    auto ended = end_corners(contour.corners);
+    give_up(contour);
+    return ended;
+}
+
+void give_up(Contour& contour) {
+    (void)take_all(contour, give_up_corners(contour.corners));
+    if (contour.path) {
+        for (const CompensatedMove& move : contour.path->waiting) place_move(contour, move);
+        contour.path.reset();
+    }
+    release(contour);
+}
+
+} // namespace gcode

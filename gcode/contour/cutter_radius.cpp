@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+// What LinuxCNC refuses between G41 and G40, in tenths; probed with its interpreter.
+constexpr int rs274_g[] = {50,  51,  52,  53,  280, 281, 300, 301, 330, 331, 382, 383,
+                           384, 385, 430, 431, 432, 490, 520, 530, 540, 550, 560, 570,
+                           580, 590, 591, 592, 593, 610, 640, 710, 720, 730, 740, 760,
+                           810, 820, 830, 840, 850, 860, 870, 880, 890, 920, 980};
+constexpr int rs274_m[] = {60, 480, 490, 500, 510, 520, 530, 620, 630, 640, 650, 660, 670, 680};
+
+// What takes a Fanuc tool away from its contour: reference points, machine coordinates, offsets,
+// canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
+constexpr int fanuc_g[] = {270, 280, 290,  300, 520, 530,  540, 541, 550, 560, 570, 580,
+                           590, 730, 740,  760, 810, 820,  830, 840, 850, 860, 870, 880,
+                           890, 920, 1540, 120, 130, 1500, 700, 710, 720, 770};
+constexpr int fanuc_m[] = {60};
+
+bool is_among(std::span<const int> codes, int code) {
+    return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
+bool changes_plane(const Execution& execution, const CodeWord& entry) {
+    constexpr int planes[] = {170, 180, 190, 171, 181, 191};
+    const Contour& contour = execution.state.contour; // of the mode the new plane is there already
+    const Plane plane = contour.path ? contour.plane : execution.modal().plane;
+    return entry.code->group == ModalGroup::plane
+           && planes[static_cast<size_t>(plane)] != entry.code->tenths;
+}
+
+bool breaks_contour(const Execution& execution, const CodeWord& entry) {
+    const int code = entry.code->tenths;
+    const bool rs274 = execution.dialect.contour_codes == ContourCodes::rs274;
+    if (entry.code->letter == 'M') return rs274 ? is_among(rs274_m, code) : is_among(fanuc_m, code);
+    if (code == tenths(10)) {
+        const Word* kind = execution.statement.word('L');
+        return kind && (kind->value == 2.0 || kind->value == 20.0);
+    }
+    return changes_plane(execution, entry)
+           || (rs274 ? is_among(rs274_g, code) : is_among(fanuc_g, code));
+}
+
+/// While the tool runs beside the contour, some codes would take it away from there.
+core::Result<void> check_contour(Execution& execution) {
+    const char* const on = execution.modal().compensation == Side::left ? "G41" : "G42";
+    for (const CodeWord& entry : execution.statement.codes()) {
+        const bool skips = entry.code->letter == 'G' && entry.code->tenths == tenths(31);
+        if (!skips && !breaks_contour(execution, entry)) continue;
+        if (skips || execution.dialect.contour_breaks_are_errors || changes_plane(execution, entry))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{} is not possible between {} and G40: switch cutter "
+                                          "radius compensation off before",
+                                          written(*entry.word), on),
+                              entry.word->span);
+        execution.warn(entry.word->span,
+                       fmt::format("{} stands between {} and G40: the tool leaves the contour for "
+                                   "this block, and the next move in the plane leads it back",
+                                   written(*entry.word), on));
+        execution.state.contour.pauses = true;
+        return {};
+    }
+    return {};
+}
+
+/// The number of the offset: of the D word, else of the one before, else of the tool.
+core::Result<int> radius_number(Execution& execution) {
+    const Word* word = execution.statement.word('D');
+    ModalState& modal = execution.modal();
+    int number = 0;
+    if (word) {
+        FEELER_TRY(number, whole_number(*word));
+    }
+    if (execution.dialect.radius_number_stays) {
+        if (word) modal.radius_number = number;
+        return modal.radius_number;
+    }
+    if (number == 0 && modal.tool) number = value_of(*modal.tool);
+    return number;
+}
+
+/// The way a turning tool points: of the L word with G41.1, else of the tool's entry. 0 is a mill.
+core::Result<int> turning_orientation(Execution& execution, const CodeWord& entry) {
+    const Word* word = execution.statement.word('L');
+    int orientation = 0;
+    if (entry.code->tenths % 10 == 1) {
+        if (word) {
+            FEELER_TRY(orientation, whole_number(*word, 0, 9));
+        }
+    } else {
+        FEELER_TRY(const int number, radius_number(execution));
+        const auto& entries = execution.state.tables->lengths;
+        const auto found = entries.find(core::OffsetNumber(number));
+        if (found != entries.end()) orientation = found->second.orientation;
+    }
+    const bool turns = orientation != 0 && orientation != 9;
+    if (!turns || execution.modal().plane == Plane::zx) return orientation;
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("{}: this is a turning tool (orientation {}), which is "
+                                  "compensated in the plane of G18 only",
+                                  written(*entry.word), orientation),
+                      word ? word->span : entry.word->span);
+}
+
+/// How much G51 scales the contour, which leaves the tool as it is.
+core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord& entry) {
+    const auto& scaling = execution.modal().transforms.scaling;
+    if (!scaling) return 1.0;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    const double first = std::abs(scaling->factors[static_cast<int>(axes.first)]);
+    if (first == std::abs(scaling->factors[static_cast<int>(axes.second)])) return first;
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{}: cutter radius compensation of a contour that G51 scales "
+                                  "unequally is not supported: scale both axes alike",
+                                  written(*entry.word)),
+                      entry.word->span);
+}
+
+} // namespace
+
+core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry) {
+    const Word* word = execution.statement.word('D');
+    if (entry.code->tenths % 10 == 1) {
+        if (!word)
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{} needs the tool's diameter as D", written(*entry.word)),
+                entry.word->span);
+        return length_of(execution, *word);
+    }
+    FEELER_TRY(const int number, radius_number(execution));
+    if (number == 0) {
+        if (execution.dialect.radius_number_stays && !word)
+            execution.warn(entry.word->span,
+                           fmt::format("{}: no D word came before it, so the radius is 0: the tool "
+                                       "runs on the contour itself",
+                                       written(*entry.word)));
+        return 0.0;
+    }
+    // D31 for tool 1 is a habit of many shops: only the number of another tool is a mistake.
+    const ModalState& modal = execution.modal();
+    const bool is_another = modal.tool && number != value_of(*modal.tool)
+                            && execution.environment.tool_diameters.count(core::ToolNumber(number));
+    if (is_another)
+        execution.result.warnings.push_back(
+            {Severity::warning, entry.word->span,
+             fmt::format("{}: D{} is not the offset of the tool in the spindle, T{}",
+                         written(*entry.word), number, value_of(*modal.tool)),
+             "offset-not-tool", fmt::format("Write D{}.", value_of(*modal.tool))});
+    if (const auto diameter = diameter_under(*execution.state.tables, number)) return *diameter;
+    execution.warn(entry.word->span,
+                   fmt::format("{}: nothing is known about the diameter D{}, taken as 0: the tool "
+                               "runs on the contour itself",
+                               written(*entry.word), number));
+    return 0.0;
+}
+
+core::Result<void> set_cutter_radius(Execution& execution) {
+    ModalState& modal = execution.modal();
+    execution.state.contour.pauses = false;
+    execution.state.contour.style = execution.dialect.contour_style;
+    const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
+    const bool ends = entry && entry->code->tenths == tenths(40);
+    if (modal.compensation != Side::none && !ends) {
+        if (entry && execution.dialect.contour_breaks_are_errors)
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{}: cutter radius compensation is on already; switch it "
+                                          "off with G40 before",
+                                          written(*entry->word)),
+                              entry->word->span);
+        if (auto checked = check_contour(execution); !checked) return checked;
+    }
+    if (!entry) return {};
+    if (ends) {
+        modal.leaves_contour |=
+            execution.state.contour.path && execution.state.contour.path->entered;
+        modal.compensation = Side::none;
+        modal.compensation_radius = 0.0;
+        return {};
+    }
+    const bool third =
+        modal.plane == Plane::yz && execution.dialect.contour_codes == ContourCodes::fanuc;
+    if (modal.plane != Plane::xy && modal.plane != Plane::zx && !third)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: cutter radius compensation works in the planes of G17 "
+                                      "and G18",
+                                      written(*entry->word)),
+                          entry->word->span);
+    FEELER_TRY(const int orientation, turning_orientation(execution, *entry));
+    FEELER_TRY(const double diameter, offset_diameter(execution, *entry));
+    const bool left = entry->code->tenths / 10 == 41;
+    modal.compensation = left ? Side::left : Side::right;
+    FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
+    modal.compensation_radius = diameter / 2.0 / stretch;
+    modal.turning_orientation = orientation;
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,339 @@
+#include "gcode/contour/radius_compensation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace gcode {
+namespace {
+
+/// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
+constexpr double slight_bend = 0.05;
+
+/// A move that inside corners leave no more of than this, mm, has no direction.
+constexpr double degenerate = 1e-6;
+
+tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string message) {
+    return core::fail(core::ErrorCode::invalid_value, std::move(message), where);
+}
+
+/// The way from a point of the contour to the tool's centre beside it.
+FlatPoint beside(const RadiusCompensation& compensation, FlatPoint heading) {
+    const FlatPoint left = compensation.radius * left_of(heading);
+    return compensation.side == ContourSide::left ? left : -1.0 * left;
+}
+
+/// Whether the tool runs on the side of the arc's centre.
+bool is_inside(ContourSide side, const FlatArc& arc) {
+    return (side == ContourSide::left) == (arc.turns > 0);
+}
+
+double compensated_radius(const RadiusCompensation& compensation, const FlatArc& arc,
+                          FlatPoint on_contour) {
+    const double radius = length(on_contour - arc.centre);
+    return is_inside(compensation.side, arc) ? radius - compensation.radius
+                                             : radius + compensation.radius;
+}
+
+/// The programmed end of the last move, and how the contour goes on from it.
+struct Corner {
+    FlatPoint at;
+    FlatPoint arriving, leaving;           // directions of the contour
+    FlatPoint tool_arriving, tool_leaving; // the tool's centre beside either
+};
+
+Corner corner_before(const RadiusCompensation& compensation, const ContourMove& move) {
+    const FlatPoint at = compensation.programmed;
+    const FlatPoint to_tool = direction(compensation.tool - at);
+    const FlatPoint turned = left_of(to_tool);
+    const FlatPoint arriving = compensation.side == ContourSide::left ? -1.0 * turned : turned;
+    const FlatPoint leaving = move.arc ? tangent(*move.arc, at) : direction(move.end - at);
+    return {at, arriving, leaving, compensation.tool, at + beside(compensation, leaving)};
+}
+
+enum class Bend { inside, straight_on, outside };
+
+Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
+             const ContourMove& move) {
+    const double to_left =
+        std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
+    const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
+    if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
+        // Between an arc the tool passes outside and what touches the arc there is a wedge. The
+        // reference asks the arc that leaves, and only before a line the one that arrives.
+        const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
+        const bool between = arc && !is_inside(compensation.side, *arc);
+        return between ? Bend::inside : Bend::outside;
+    }
+    if (std::abs(to_tool) <= slight_bend) return Bend::straight_on;
+    return to_tool > 0.0 ? Bend::inside : Bend::outside;
+}
+
+/// Where the tool's centre is when it touches both sides of an inside corner.
+std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, const Corner& corner,
+                                       const ContourMove& move) {
+    const std::optional<FlatArc>& before = compensation.waiting.front().arc;
+    const double radius_before = before ? length(corner.tool_arriving - before->centre) : 0.0;
+    const double radius = move.arc ? compensated_radius(compensation, *move.arc, move.end) : 0.0;
+    if (before && move.arc) {
+        const auto crossings =
+            cross_circles(before->centre, radius_before, move.arc->centre, radius);
+        if (!crossings) return {};
+        const bool reversing = dot(corner.arriving, corner.leaving) < -std::cos(slight_bend);
+        const double side =
+            reversing ? dot(crossings->second - crossings->first, corner.arriving)
+                      : cross(move.arc->centre - before->centre, corner.at - before->centre);
+        return side > 0.0 ? crossings->first : crossings->second;
+    }
+    if (move.arc) {
+        const auto crossings =
+            cross_line_and_circle(corner.tool_arriving, corner.arriving, move.arc->centre, radius);
+        if (!crossings) return {};
+        return is_inside(compensation.side, *move.arc) ? crossings->second : crossings->first;
+    }
+    if (before) {
+        const auto crossings = cross_line_and_circle(corner.tool_leaving, corner.leaving,
+                                                     before->centre, radius_before);
+        if (!crossings) return {};
+        return is_inside(compensation.side, *before) ? crossings->first : crossings->second;
+    }
+    const FlatPoint arriving = corner.tool_arriving - corner.at;
+    const FlatPoint both = arriving + (corner.tool_leaving - corner.at);
+    return corner.at + (dot(arriving, arriving) / dot(arriving, both)) * both;
+}
+
+/// Whether the waiting move would have to go backwards to end at a point.
+bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
+    const std::optional<FlatArc>& arc = compensation.waiting.front().arc;
+    const FlatPoint way = end - compensation.reached;
+    if (length(way) < degenerate) return false;
+    if (!arc) return dot(compensation.waiting_way, way) < 0.0;
+    return turned_angle(*arc, compensation.reached, end)
+           > compensation.waiting_angle + 2.0 * slight_bend;
+}
+
+/// Lets the waiting moves end at a point and returns them; they wait no longer.
+CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
+    if (compensation.waiting.empty()) return {};
+    const bool turned = turns_round(compensation, end);
+    CompensatedMoves moves = std::move(compensation.waiting);
+    compensation.waiting.clear();
+    moves.front().turned_round = turned;
+    for (CompensatedMove& move : moves) move.end = end;
+    compensation.reached = end;
+    return moves;
+}
+
+/// What LinuxCNC checks where the contour bends to the inside, and at G40: that the waiting move
+/// keeps its direction. Of the entry it does not.
+core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
+    if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
+        return {};
+    return refusal(compensation.waiting_where,
+                   fmt::format("the tool, of radius {:g} mm, does not fit beside this move: the "
+                               "inside corners at its ends take more than its whole length; take "
+                               "a smaller tool, or make the move longer{}",
+                               compensation.radius,
+                               compensation.extends_corners
+                                   ? "; the control stops with an alarm (PS0041 on Fanuc)"
+                                   : ""));
+}
+
+/// Puts the move, at its end as far as that is known, in the place of what waited.
+void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPoint tool_end,
+               const std::optional<FlatArc>& arc) {
+    compensation.waiting.push_back(
+        {.id = move.id, .rapid = move.rapid, .end = tool_end, .arc = arc});
+    compensation.waiting_way = move.end - compensation.programmed;
+    compensation.waiting_angle =
+        arc ? turned_angle(*move.arc, compensation.programmed, move.end) : 0.0;
+    compensation.waiting_where = move.where;
+    compensation.programmed = move.end;
+    compensation.tool = tool_end;
+}
+
+/// The circle through the tool's start that meets the end as the programmed arc does.
+std::optional<FlatArc> entry_arc(FlatPoint start, FlatPoint end, const FlatArc& programmed) {
+    const FlatPoint to_centre = direction(programmed.centre - end);
+    const FlatPoint chord = start - end;
+    const double reach = dot(chord, to_centre);
+    if (std::abs(reach) < 1e-6 * length(chord)) return {};
+    return FlatArc{end + (0.5 * dot(chord, chord) / reach) * to_centre, programmed.turns};
+}
+
+core::Result<void> check_fit(const RadiusCompensation& compensation, const ContourMove& move) {
+    if (!move.arc || !is_inside(compensation.side, *move.arc)) return {};
+    const double radius = length(move.end - move.arc->centre);
+    if (radius > compensation.radius) return {};
+    return refusal(move.where,
+                   fmt::format("the tool, of radius {:g} mm, runs inside this arc of radius {:g} "
+                               "mm and does not fit into it; take a smaller tool or a larger arc",
+                               compensation.radius, radius));
+}
+
+/// Fanuc's entry ends beside the start of the move after it, wherever that is.
+core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
+                                              const ContourMove& move) {
+    if (move.arc)
+        return refusal(move.where, "the first move under cutter radius compensation must be a "
+                                   "straight line; the control stops with an alarm (PS0034 on "
+                                   "Fanuc)");
+    const FlatPoint heading = direction(move.end - compensation.programmed);
+    wait_with(compensation, move, move.end + beside(compensation, heading), {});
+    compensation.entered = compensation.entering = true;
+    return CompensatedMoves{};
+}
+
+core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const ContourMove& move) {
+    if (compensation.extends_corners) return enter_straight(compensation, move);
+    const double way = length(move.end - compensation.programmed);
+    if (way <= compensation.radius)
+        return refusal(move.where,
+                       fmt::format("the first move under cutter radius compensation leads the tool "
+                                   "to the contour: it must go farther in the plane than the "
+                                   "tool's radius of {:g} mm, and goes {:g} mm; start from "
+                                   "farther away",
+                                   compensation.radius, way));
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const FlatPoint heading =
+        move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
+    const FlatPoint end = move.end + beside(compensation, heading);
+    std::optional<FlatArc> arc;
+    if (move.arc) {
+        arc = entry_arc(compensation.programmed, end, *move.arc);
+        if (!arc)
+            return refusal(move.where, "no arc from here meets the contour as this one does with "
+                                       "cutter radius compensation; enter by a straight move");
+    }
+    wait_with(compensation, move, end, arc);
+    if (arc) {
+        // A circle that bends the other way passes the end against the programmed direction.
+        const bool against = dot(arc->centre - end, move.arc->centre - end) < 0.0;
+        compensation.waiting_angle = against ? -1.0 : turned_angle(*arc, compensation.reached, end);
+    }
+    compensation.entered = true;
+    compensation.entering = true;
+    return CompensatedMoves{};
+}
+
+void add_straight(CompensatedMoves& moves, const ContourMove& move, FlatPoint end) {
+    moves.push_back(
+        {.id = move.id, .rapid = move.rapid, .rounds_corner = true, .end = end, .arc = {}});
+}
+
+/// Fanuc's way round an outside corner: on along both tangents to where they meet, or, where the
+/// contour comes back by more than a right angle, by the tool's radius and straight across.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, 6.6.3, "Tool movement around the outside of a
+///         corner", linear connection (parameter 19607#2 = 0).
+core::Result<CompensatedMoves> pass_straight(RadiusCompensation& compensation, const Corner& corner,
+                                             const ContourMove& move) {
+    const double cosine = dot(corner.arriving, corner.leaving);
+    const bool sharp = cosine < 0.0;
+    const double beyond = sharp ? compensation.radius
+                                : compensation.radius * std::sqrt((1.0 - cosine) / (1.0 + cosine));
+    const FlatPoint out = corner.tool_arriving + beyond * corner.arriving;
+    const FlatPoint back = corner.tool_leaving - beyond * corner.leaving;
+    const bool after_arc = compensation.waiting.front().arc.has_value();
+    const FlatPoint end = after_arc ? corner.tool_arriving : out;
+    if (auto kept = check_direction(compensation, end); !kept) return tl::unexpected(kept.error());
+    CompensatedMoves moves = end_waiting(compensation, end);
+    if (after_arc) add_straight(moves, move, out);
+    if (sharp) add_straight(moves, move, back);
+    if (move.arc) add_straight(moves, move, corner.tool_leaving);
+    compensation.reached = move.arc ? corner.tool_leaving : sharp ? back : out;
+    return moves;
+}
+
+/// LinuxCNC's way round an outside corner: an arc, or a straight line before a rapid.
+CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corner,
+                            const ContourMove& move) {
+    CompensatedMoves moves = end_waiting(compensation, corner.tool_arriving);
+    add_straight(moves, move, corner.tool_leaving);
+    const int turns = compensation.side == ContourSide::left ? -1 : 1;
+    if (!move.rapid) moves.back().arc = FlatArc{corner.at, turns};
+    compensation.reached = corner.tool_leaving;
+    return moves;
+}
+
+/// Ends what waits where the contour goes on as it came, or bends towards the tool.
+core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, const Corner& corner,
+                                           Bend bend, const ContourMove& move) {
+    FlatPoint met = corner.tool_arriving;
+    if (bend == Bend::inside) {
+        const auto both = touching_both(compensation, corner, move);
+        if (!both)
+            return refusal(move.where,
+                           fmt::format("the tool, of radius {:g} mm, does not fit into the inside "
+                                       "corner at the start of this move; take a smaller tool, or "
+                                       "round the corner",
+                                       compensation.radius));
+        met = *both;
+    }
+    if (bend == Bend::inside || compensation.extends_corners)
+        if (auto kept = check_direction(compensation, met); !kept)
+            return tl::unexpected(kept.error());
+    return end_waiting(compensation, met);
+}
+
+/// Ends what waits, and leads the tool to where the next move begins.
+core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corner& corner,
+                                    const ContourMove& move) {
+    if (compensation.extends_corners && compensation.entering) {
+        CompensatedMoves moves = end_waiting(compensation, corner.tool_leaving);
+        moves.front().turned_round = false; // an entry may lead anywhere
+        return moves;
+    }
+    const Bend bend = bend_of(compensation, corner, move);
+    if (bend != Bend::outside) return stay_inside(compensation, corner, bend, move);
+    if (compensation.extends_corners) return pass_straight(compensation, corner, move);
+    if (!move.arc)
+        if (auto kept = check_direction(compensation, corner.tool_arriving); !kept)
+            return tl::unexpected(kept.error());
+    return pass_round(compensation, corner, move);
+}
+
+core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const ContourMove& move) {
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const Corner corner = corner_before(compensation, move);
+    FEELER_TRY(const CompensatedMoves moves, join(compensation, corner, move));
+    const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : corner.leaving;
+    wait_with(compensation, move, move.end + beside(compensation, heading), move.arc);
+    compensation.entering = false;
+    return moves;
+}
+
+} // namespace
+
+RadiusCompensation begin_compensation(ContourSide side, double radius, FlatPoint at) {
+    if (radius < 0.0) side = side == ContourSide::left ? ContourSide::right : ContourSide::left;
+    return {.side = side, .radius = std::abs(radius), .programmed = at, .tool = at, .reached = at};
+}
+
+core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const ContourMove& move) {
+    RadiusCompensation next = compensation;
+    core::Result<CompensatedMoves> moves;
+    const bool goes_nowhere = !move.arc && move.end == compensation.programmed;
+    if (!compensation.entered && goes_nowhere && compensation.extends_corners) {
+        moves = CompensatedMoves{
+            {.id = move.id, .rapid = move.rapid, .end = compensation.tool, .arc = {}}};
+    } else if (!compensation.entered) {
+        moves = enter(next, move);
+    } else if (goes_nowhere) {
+        next.waiting.push_back({.id = move.id, .rapid = move.rapid, .end = next.tool, .arc = {}});
+    } else {
+        moves = go_on(next, move);
+    }
+    if (moves) compensation = std::move(next);
+    return moves;
+}
+
+core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation) {
+    if (auto kept = check_direction(compensation, compensation.tool); !kept)
+        return tl::unexpected(kept.error());
+    return end_waiting(compensation, compensation.tool);
+}
+
+} // namespace gcode

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include "gcode/cycles/cycles.h"
+
+namespace gcode {
+namespace {
+
+using core::SpindleDirection;
+
+bool shifts_by_words(const CannedCycle& cycle) {
+    return cycle.shift[0] != 0.0 || cycle.shift[1] != 0.0 || cycle.shift[2] != 0.0;
+}
+
+/// How far the tool leaves the middle: I, J and K of the plane, else Q along its first axis.
+std::array<double, 2> shift_of(const Drilling& hole) {
+    const CannedCycle& cycle = hole.cycle;
+    if (!shifts_by_words(cycle)) return {cycle.peck.value_or(0.0), 0.0};
+    return {cycle.shift[hole.first], cycle.shift[hole.second]};
+}
+
+void warn_of_direction(Drilling& hole) {
+    if (shifts_by_words(hole.cycle) || !hole.cycle.peck) return;
+    hole.execution.warn(moving_word(hole.execution).span,
+                        fmt::format("G{}: a setting of the control says to which side Q shifts; "
+                                    "taken as +{}",
+                                    hole.cycle.code / 10, axis_letters[hole.first]),
+                        Severity::note);
+}
+
+/// Away from the middle, or with -1 back to it.
+void shift(Drilling& hole, double sign) {
+    const std::array<double, 2> by = shift_of(hole);
+    Position end = hole.execution.modal().position;
+    if (end[hole.first]) *end[hole.first] += sign * by[0];
+    if (end[hole.second]) *end[hole.second] += sign * by[1];
+    hole.execution.traverse(end);
+}
+
+void bore_finely(Drilling& hole) {
+    const SpindleDirection direction = hole.execution.modal().spindle;
+    warn_of_direction(hole);
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.turn(SpindleDirection::stopped);
+    shift(hole, +1.0);
+    hole.traverse(hole.clear);
+    shift(hole, -1.0);
+    hole.turn(direction);
+}
+
+void bore_from_the_back(Drilling& hole) {
+    const SpindleDirection direction = hole.execution.modal().spindle;
+    warn_of_direction(hole);
+    hole.turn(SpindleDirection::stopped);
+    shift(hole, +1.0);
+    hole.traverse(hole.r);
+    shift(hole, -1.0);
+    hole.turn(direction);
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.turn(SpindleDirection::stopped);
+    shift(hole, +1.0);
+    hole.traverse(hole.cycle.initial_level);
+    shift(hole, -1.0);
+    hole.turn(direction);
+}
+
+void bore_and_retract_by_hand(Drilling& hole) {
+    const SpindleDirection direction = hole.execution.modal().spindle;
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.turn(SpindleDirection::stopped);
+    hole.execution.emit(ProgramStop{});
+    hole.traverse(hole.clear);
+    hole.turn(direction);
+}
+
+} // namespace
+
+bool works_from_the_back(const Dialect& dialect, int code) {
+    return code == tenths(77) || (code == tenths(87) && dialect.g87_is_back_boring);
+}
+
+void bore(Drilling& hole) {
+    if (works_from_the_back(hole.execution.dialect, hole.cycle.code))
+        bore_from_the_back(hole);
+    else if (hole.cycle.code == tenths(76))
+        bore_finely(hole);
+    else
+        bore_and_retract_by_hand(hole);
+}
+
+namespace {
+
+using core::SpindleDirection;
+
+/// Down to a level and out to R, the spindle reversed at the level.
+void thread_to(Drilling& hole, double level, SpindleDirection in, SpindleDirection out) {
+    hole.feed(level);
+    if (level == hole.bottom) hole.dwell();
+    hole.turn(out);
+    hole.feed(hole.r);
+    hole.turn(in);
+}
+
+} // namespace
+
+void tap(Drilling& hole) {
+    const bool left = hole.cycle.code == tenths(74);
+    const SpindleDirection in =
+        left ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
+    const SpindleDirection out =
+        left ? SpindleDirection::clockwise : SpindleDirection::counterclockwise;
+    const SpindleDirection before = hole.execution.modal().spindle;
+    if (before != in) hole.turn(in);
+    if (const std::optional<double> step = hole.cycle.peck)
+        for (double level = hole.r - *step; level > hole.bottom; level -= *step)
+            thread_to(hole, level, in, out);
+    thread_to(hole, hole.bottom, in, out);
+    if (before != in) hole.turn(before);
+    if (hole.clear != hole.r) hole.traverse(hole.clear);
+}
+
+} // namespace gcode

@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include "gcode/cycles/turning_cycle.h"
+#include "gcode/exec/flow.h"
+#include "gcode/exec/motion.h"
+#include "gcode/read/parser.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// A and C of a block are the size of its corner; while it is traced these axes are unknown.
+constexpr size_t fillet_axis = 3, chamfer_axis = 5;
+
+TurningPoint point_of(const Position& position) { return {*position[0], *position[2]}; }
+
+core::Result<void> check_turning(const Execution& execution) {
+    const Word& mover = moving_word(execution);
+    // Mach3 and others say their units with these codes.
+    const std::string_view instead = execution.statement.word('Q') ? ""
+                                     : mover.value == 70.0 ? "; where it means inches, write G20"
+                                     : mover.value == 71.0
+                                         ? "; where it means millimetres, write G21"
+                                         : "";
+    const auto refuse = [&](std::string_view why) {
+        return core::fail(ErrorCode::syntax, fmt::format("{}: {}{}", written(mover), why, instead),
+                          mover.span);
+    };
+    const ModalState& modal = execution.modal();
+    if (modal.plane != Plane::zx)
+        return refuse("turning cycles work in the ZX plane: say G18 before");
+    if (modal.compensation != Side::none)
+        return refuse("no turning cycle while cutter radius compensation is on: write G40 before");
+    if (modal.distance == DistanceMode::incremental)
+        return refuse("under G91 the control loses the contour's place: say G90 before");
+    if (!execution.statement.word('Q'))
+        return refuse("Q is missing, the number of the subprogram with the contour");
+    return {};
+}
+
+/// The subprogram's blocks, carried out on a copy of the state.
+struct Tracing {
+    Execution& execution;
+    InterpreterState state;
+    TurningContour contour{};
+
+    core::Result<void> enter();
+    core::Result<void> follow();
+    core::Result<void> take(const BlockResult& block, const Position& before);
+};
+
+core::Result<void> Tracing::enter() {
+    const Word& label = *execution.statement.word('Q');
+    FEELER_TRY(const int number, whole_number(label));
+    Block call;
+    if (auto parsed = parse_line(fmt::format("o{} call", number), execution.block.line,
+                                 execution.dialect, call);
+        !parsed)
+        return parsed;
+    call.flow.span = label.span;
+    BlockResult unused;
+    state.modal.motion.reset();
+    state.modal.cycle.reset();
+    return run_flow(
+        {execution.library, execution.environment, execution.dialect, call, state, unused});
+}
+
+/// A block of the contour: its one motion, and the corner behind it.
+core::Result<void> Tracing::take(const BlockResult& block, const Position& before) {
+    for (size_t i = 0; i < block.commands.size(); ++i) {
+        const auto* arc = std::get_if<ArcFeed>(&block.commands[i]);
+        const auto* feed = std::get_if<StraightFeed>(&block.commands[i]);
+        if (!arc && !feed && !std::holds_alternative<StraightTraverse>(block.commands[i])) continue;
+        const core::SourceSpan where{.line = block.line, .column = block.columns[i], .length = 1};
+        const Position& now = state.modal.position;
+        if (block.is_cycle || (arc && arc->plane != Plane::zx))
+            return core::fail(ErrorCode::syntax,
+                              "a contour that is turned has lines and arcs of the ZX plane only",
+                              where);
+        if (now[fillet_axis] && now[chamfer_axis])
+            return core::fail(ErrorCode::syntax,
+                              "a corner has a fillet (A) or a chamfer (C), not both", where);
+        if (contour.size() == greatest_contour)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("a contour that is turned has at most {} moves", greatest_contour),
+                where);
+        TurningSegment segment{point_of(now)};
+        if (arc) segment.arc = TurningArc{{arc->centre[1], arc->centre[0]}, arc->turns > 0};
+        if (now[fillet_axis]) segment.corner = CornerShape::fillet;
+        if (now[chamfer_axis]) segment.corner = CornerShape::chamfer;
+        segment.corner_size =
+            to_mm(now[fillet_axis].value_or(now[chamfer_axis].value_or(0.0)), state.modal.unit);
+        if (segment.end != point_of(before) || arc) contour.push_back(segment);
+    }
+    return {};
+}
+
+core::Result<void> Tracing::follow() {
+    Interpreter interpreter(execution.library, execution.environment);
+    const size_t level = execution.state.frames.size();
+    while (state.frames.size() > level && state.ending == Ending::running) {
+        Position& place = state.modal.position;
+        place[fillet_axis].reset();
+        place[chamfer_axis].reset();
+        const Position before = place;
+        FEELER_TRY(const BlockResult* const block, interpreter.next(state));
+        if (!block) break;
+        for (const Warning& warning : block->warnings) execution.result.warnings.push_back(warning);
+        if (auto taken = take(*block, before); !taken) return taken;
+    }
+    return {};
+}
+
+std::optional<double> length_word(const Execution& execution, char letter) {
+    const Word* word = execution.statement.word(letter);
+    return word ? std::optional(length_of(execution, *word)) : std::nullopt;
+}
+
+core::Result<TurningMoves> moves_along(const Execution& execution, int code, TurningPoint start,
+                                       const TurningContour& contour) {
+    const double mm_per_unit = to_mm(1.0, execution.modal().unit);
+    if (code == tenths(70)) {
+        FinishingWords words;
+        words.first_distance = length_word(execution, 'D').value_or(0.0);
+        words.last_distance = length_word(execution, 'E').value_or(0.0);
+        if (const Word* word = execution.statement.word('P')) words.passes = word->value;
+        return finishing_moves(start, contour, words, mm_per_unit);
+    }
+    RoughingWords words;
+    words.facing = code >= tenths(72);
+    words.pockets = static_cast<PocketCutting>(code % 10);
+    words.allowance = length_word(execution, 'D').value_or(0.0);
+    words.depth = length_word(execution, 'I');
+    words.retract = length_word(execution, 'R');
+    words.shift_x = length_word(execution, 'U').value_or(0.0);
+    words.shift_z = length_word(execution, 'W').value_or(0.0);
+    return roughing_moves(start, contour, words, mm_per_unit);
+}
+
+core::Result<void> emit_move(Execution& execution, const TurningMove& move) {
+    ModalState& modal = execution.modal();
+    Position end = modal.position;
+    end[0] = move.end.x, end[2] = move.end.z;
+    if (move.rapid) {
+        modal.motion = tenths(0);
+        execution.traverse(end);
+        return {};
+    }
+    FEELER_TRY(const double rate, feed_rate(execution, way_between(modal.position, end)));
+    modal.motion = tenths(1);
+    if (!move.arc) {
+        execution.feed(end, rate);
+        return {};
+    }
+    modal.motion = tenths(move.arc->counterclockwise ? 3 : 2);
+    execution.emit(ArcFeed{end,
+                           Plane::zx,
+                           {move.arc->centre.z, move.arc->centre.x},
+                           move.arc->counterclockwise ? 1 : -1,
+                           rate});
+    modal.position = end;
+    modal.leaves_contour = false;
+    return {};
+}
+
+} // namespace
+
+core::Result<void> turn_contour(Execution& execution) {
+    if (auto checked = check_turning(execution); !checked) return checked;
+    const Word& mover = moving_word(execution);
+    FEELER_TRY(const Position start, target_of(execution));
+    if (!start[0] || !start[2])
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} begins at an unknown place: give it X and Z, or say where "
+                        "the machine starts",
+                        written(mover)),
+            mover.span);
+    execution.result.is_cycle = true;
+    execution.traverse(start);
+    execution.modal().motion = tenths(0);
+    Tracing tracing{execution, execution.state};
+    if (auto entered = tracing.enter(); !entered) return entered;
+    if (auto followed = tracing.follow(); !followed) return followed;
+    FEELER_TRY(
+        const TurningMoves moves,
+        placed(moves_along(execution, execution.statement.of(ModalGroup::motion)->code->tenths,
+                           point_of(start), tracing.contour),
+               mover.span));
+    for (const TurningMove& move : moves)
+        if (auto emitted = emit_move(execution, move); !emitted) return emitted;
+    execution.state.parameters = tracing.state.parameters;
+    return {};
+}
+
+} // namespace gcode

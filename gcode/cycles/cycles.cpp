@@ -1,0 +1,417 @@
+#include "gcode/cycles/cycles.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/cycles/rs274_cycles.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr size_t most_commands = 200000; // of one block
+
+bool pecks(int code) { return code == tenths(73) || code == tenths(83); }
+
+/// Haas: I is the first peck, each after it is smaller by J, and none smaller than K.
+///
+/// Source: Haas mill operator's manual 96-8000, G73 and G83.
+bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.shift[0] > 0.0; }
+
+bool taps(int code) { return code == tenths(74) || code == tenths(84); }
+
+/// How often Fanuc's scaling stretches the drilling axis; Q and what G73 and G83 draw back are not.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Scaling", invalid scaling.
+double stretch_along(const Execution& execution, size_t normal) {
+    const auto& scaling = execution.modal().transforms.scaling;
+    return scaling ? std::abs(scaling->factors[static_cast<int>(normal)]) : 1.0;
+}
+
+tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycle& cycle,
+                                    char letter) {
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("G{} needs {} word", cycle.code / 10,
+                                  letter == 'R' ? "an R" : fmt::format("a {}", letter)),
+                      moving_word(execution).span);
+}
+
+/// I, J or K of a cycle that shifts the tool; K may be how often the cycle is repeated.
+const Word* shift_word(const Execution& execution, int code, size_t axis) {
+    if (hole_pattern(execution)) return nullptr;
+    const bool bores_back = execution.dialect.cycles_are_rs274 && code == tenths(87);
+    if (pecks(code) && execution.dialect.pecks_may_shrink)
+        return execution.statement.word("IJK"[axis]);
+    const bool shifts =
+        code == tenths(76) || bores_back || works_from_the_back(execution.dialect, code);
+    if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
+    return execution.statement.word("IJK"[axis]);
+}
+
+/// R and the bottom. Those said under G90 are places also for holes of G91, except where a control
+/// has them follow the mode.
+void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) {
+    const bool incremental = execution.modal().distance == DistanceMode::incremental;
+    if (const Word* word = execution.statement.word(axis_letters[normal])) {
+        cycle.bottom = length_of(execution, *word);
+        cycle.bottom_is_way = incremental;
+    }
+    if (const Word* word = execution.statement.word('R')) {
+        cycle.r = length_of(execution, *word);
+        cycle.r_is_way = incremental;
+    }
+    if (execution.dialect.cycle_levels_follow_g91)
+        cycle.r_is_way = cycle.bottom_is_way = incremental;
+}
+
+/// The modal cycle with the words of this block taken in.
+core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
+    CannedCycle cycle = *execution.modal().cycle;
+    const Statement& statement = execution.statement;
+    take_levels(execution, normal, cycle);
+    if (const Word* word = statement.word('Q')) {
+        const double depth = length_of(execution, *word);
+        cycle.peck = execution.dialect.peck_sign_is_ignored ? std::abs(depth) : depth;
+        if (taps(cycle.code) && depth == 0.0)
+            cycle.peck.reset();
+        else if (*cycle.peck <= 0.0)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: a peck goes deeper than 0", written(*word)),
+                              word->span);
+    }
+    if (const Word* word = statement.word('P')) {
+        if (word->value < 0.0)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: a time is not negative", written(*word)),
+                              word->span);
+        const bool milliseconds =
+            execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
+        cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
+    }
+    for (size_t i = 0; i < 3; ++i)
+        if (const Word* word = shift_word(execution, cycle.code, i))
+            cycle.shift[i] = length_of(execution, *word);
+    if (!cycle.bottom) return missing(execution, cycle, axis_letters[normal]);
+    if (!cycle.r) return missing(execution, cycle, 'R');
+    if (pecks(cycle.code) && !pecks_shrink(cycle) && !cycle.peck)
+        return missing(execution, cycle, 'Q');
+    if (pecks_shrink(cycle) && cycle.shift[2] <= 0.0) return missing(execution, cycle, 'K');
+    if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
+    if (execution.dialect.cycles_are_rs274)
+        if (auto checked = check_rs274_cycle(execution, cycle); !checked)
+            return tl::unexpected(std::move(checked).error());
+    return cycle;
+}
+
+/// Whether the cycle can be carried out between its levels, and ends.
+core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
+                                double bottom) {
+    const core::SourceSpan where = moving_word(execution).span;
+    const bool upwards = works_from_the_back(execution.dialect, cycle.code);
+    if (upwards && r > bottom)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{} works upwards from R to {}, and R is at {:.4f} mm, above "
+                        "{:.4f} mm",
+                        cycle.code / 10, axis_letters[axes_of(execution.modal().plane).normal], r,
+                        bottom),
+            where);
+    if (upwards && execution.modal().retract == RetractMode::r_level)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{} comes out at the initial level: G99 would leave the tool "
+                        "below the work; write G98",
+                        cycle.code / 10),
+            where);
+    if (!upwards && r < bottom)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
+                                      "{:.4f} mm",
+                                      cycle.code / 10, r, bottom),
+                          where);
+    const double least_peck =
+        pecks_shrink(cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
+    if (least_peck > 0.0 && (r - bottom) / least_peck > most_commands / 4)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
+            where);
+    if (execution.modal().feed_mode == FeedMode::inverse_time)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
+            where);
+    return {};
+}
+
+/// A tap that is driven with the spindle needs no spindle that turns already.
+core::Result<double> cycle_rate(const Execution& execution, const CannedCycle& cycle) {
+    const ModalState& modal = execution.modal();
+    const bool with_spindle =
+        modal.feed_mode == FeedMode::per_turn && modal.feed && modal.speed > 0;
+    if (taps(cycle.code) && with_spindle && *modal.feed > 0.0) return *modal.feed * modal.speed;
+    return feed_rate(execution, std::nullopt);
+}
+
+core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
+    const ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const core::SourceSpan where = moving_word(execution).span;
+    if (cycle.r_is_way && !cycle.initial_level)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("G{} under G91 counts from a level that is unknown along {}",
+                                      cycle.code / 10, axis_letters[axes.normal]),
+                          where);
+    const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
+    const double bottom = cycle.bottom_is_way ? r + *cycle.bottom : *cycle.bottom;
+    if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
+        return tl::unexpected(std::move(checked).error());
+    std::optional<double> clear = cycle.initial_level;
+    const bool too_low = execution.dialect.cycle_stays_above_r && clear && *clear < r;
+    if (modal.retract == RetractMode::r_level || too_low) clear = r;
+    FEELER_TRY(const double rate, cycle_rate(execution, cycle));
+    return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
+}
+
+/// G83: out of the hole after each peck; G73: only a little back.
+void peck(Drilling& hole, bool out_of_the_hole) {
+    const double stretch = stretch_along(hole.execution, hole.normal);
+    const double back = hole.execution.dialect.peck_clearance / stretch;
+    const std::array<double, 3>& shrinking = hole.cycle.shift;
+    double step = (shrinking[0] > 0.0 ? shrinking[0] : *hole.cycle.peck) / stretch;
+    const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
+    for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
+        hole.feed(depth);
+        if (out_of_the_hole) hole.traverse(hole.r);
+        hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
+        if (shrinking[0] > 0.0)
+            step = std::max(step - shrinking[1] / stretch, shrinking[2] / stretch);
+    }
+    hole.feed(hole.bottom);
+}
+
+void bore_with_stop(Drilling& hole) {
+    const ModalState& modal = hole.execution.modal();
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.execution.emit(Spindle{core::SpindleDirection::stopped, 0.0});
+    hole.traverse(hole.clear);
+    hole.execution.emit(Spindle{modal.spindle, modal.speed});
+}
+
+/// G85 and G89 come out as they went in; on some controls up to R only.
+void feed_out(Drilling& hole) {
+    const bool only_bores = hole.cycle.code == tenths(85);
+    const Dialect& rules = hole.execution.dialect;
+    if (rules.boring_feeds_to_r || (rules.cycles_are_rs274 && only_bores)) {
+        hole.feed(hole.r);
+        if (hole.clear != hole.r) hole.traverse(hole.clear);
+    } else {
+        hole.feed(hole.clear);
+    }
+}
+
+void drill(Drilling& hole) {
+    const bool rs274 = hole.execution.dialect.cycles_are_rs274;
+    switch (hole.cycle.code) {
+    case tenths(73):
+    case tenths(83):
+        peck(hole, hole.cycle.code == tenths(83));
+        hole.dwell();
+        hole.traverse(hole.clear);
+        return;
+    case tenths(82):
+        hole.feed(hole.bottom);
+        hole.dwell();
+        hole.traverse(hole.clear);
+        return;
+    case tenths(85):
+    case tenths(89):
+        hole.feed(hole.bottom);
+        if (hole.cycle.code == tenths(89)) hole.dwell();
+        feed_out(hole);
+        return;
+    case tenths(86):
+        bore_with_stop(hole);
+        return;
+    case tenths(74):
+    case tenths(84):
+        rs274 ? tap_with_reversal(hole) : tap(hole);
+        return;
+    case tenths(76):
+    case tenths(77):
+        bore(hole);
+        return;
+    case tenths(87):
+        rs274 ? bore_back_to_middle(hole) : bore(hole);
+        return;
+    case tenths(88):
+        rs274 ? bore_and_stop(hole) : bore(hole);
+        return;
+    default: // G81
+        hole.feed(hole.bottom);
+        hole.traverse(hole.clear);
+        return;
+    }
+}
+
+core::Result<int> repeats_of(const Execution& execution) {
+    if (hole_pattern(execution)) return 1;
+    const Word* word = execution.statement.word('L');
+    if (!word && execution.dialect.repeats_with_k) word = execution.statement.word('K');
+    if (!word) return 1;
+    return whole_number(*word, execution.dialect.cycles_are_rs274 ? 1 : 0, 10000);
+}
+
+/// To the next hole, and down to R.
+void approach(Drilling& hole, const Position& target) {
+    Execution& execution = hole.execution;
+    const bool climbs = execution.dialect.g98_cycle_starts_high
+                        && execution.modal().retract == RetractMode::initial_level;
+    Position over = execution.modal().position;
+    over[hole.first] = target[hole.first];
+    over[hole.second] = target[hole.second];
+    const bool only_climbs = execution.dialect.cycles_are_rs274 && over[hole.normal];
+    const double lowest = only_climbs ? std::max(*over[hole.normal], hole.r) : 0.0;
+    if (climbs && hole.clear) over[hole.normal] = hole.clear;
+    if (only_climbs) over[hole.normal] = std::max(*over[hole.normal], lowest);
+    execution.traverse(over);
+    const bool upwards = works_from_the_back(execution.dialect, hole.cycle.code);
+    if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
+}
+
+/// The same step again, for the holes of L under G91; of polar words, about the origin.
+core::Result<Position> next_hole(const Execution& execution, Position target,
+                                 const Position& step) {
+    if (execution.statement.polar_radius || execution.statement.polar_angle)
+        return target_of(execution);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (target[axis] && step[axis]) *target[axis] += *step[axis];
+    return target;
+}
+
+Position step_between(const Position& from, const Position& to) {
+    Position step;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (from[axis] && to[axis]) step[axis] = *to[axis] - *from[axis];
+    return step;
+}
+
+} // namespace
+
+core::Result<void> run_canned_cycle(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const size_t normal = axes_of(modal.plane).normal;
+    FEELER_TRY(Position target, target_of(execution));
+    FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, normal));
+    FEELER_TRY(const int repeats, repeats_of(execution));
+    modal.cycle = cycle;
+    modal.cycle_dwell = cycle.dwell.value_or(modal.cycle_dwell);
+    execution.result.is_cycle = true;
+    if (repeats == 0) return {};
+    FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
+
+    // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R. Elsewhere the way to the
+    // hole is made at the level the axis has.
+    const bool rs274 = execution.dialect.cycles_are_rs274;
+    const std::optional<double> level = rs274 ? cycle.initial_level : modal.position[normal];
+    const bool is_low = level && *level < hole.r;
+    if (is_low && execution.dialect.cycle_stays_above_r) hole.traverse(hole.r);
+    if (rs274) begin_exact_path(execution);
+    if (const CodeWord* pattern = hole_pattern(execution)) {
+        FEELER_TRY(const std::vector<Position> holes,
+                   holes_of_pattern(execution, *pattern, target));
+        for (const Position& place : holes) {
+            approach(hole, place);
+            drill(hole);
+        }
+        return {};
+    }
+    const Position step = modal.distance == DistanceMode::incremental
+                              ? step_between(modal.position, target)
+                              : zero_position;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        approach(hole, target);
+        drill(hole);
+        if (repeat + 1 < repeats) {
+            FEELER_TRY(target, next_hole(execution, target, step));
+        }
+        if (execution.result.commands.size() > most_commands)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("G{}: this block makes more than {} moves",
+                                          cycle.code / 10, most_commands),
+                              moving_word(execution).span);
+    }
+    if (rs274) end_exact_path(execution);
+    return {};
+}
+
+namespace {
+
+using core::ErrorCode;
+
+core::Result<double> needed(const Execution& execution, const CodeWord& entry, char letter,
+                            bool is_length) {
+    if (const Word* word = execution.statement.word(letter))
+        return is_length ? length_of(execution, *word) : word->value;
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} needs {} word", written(*entry.word),
+                                  letter == 'I' || letter == 'L' ? fmt::format("an {}", letter)
+                                                                 : fmt::format("a {}", letter)),
+                      entry.word->span);
+}
+
+/// From a place in a direction.
+Position placed(const Position& from, const PlaneAxes& axes, double distance, double degrees) {
+    const core::Mat3 turn = turned_about(2, degrees);
+    Position place = from;
+    if (place[axes.first]) *place[axes.first] += distance * turn[0][0];
+    if (place[axes.second]) *place[axes.second] += distance * turn[0][1];
+    return place;
+}
+
+} // namespace
+
+const CodeWord* hole_pattern(const Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    const bool is_pattern =
+        entry && entry->code->tenths >= tenths(70) && entry->code->tenths <= tenths(72);
+    return is_pattern ? entry : nullptr;
+}
+
+core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
+                                                     const CodeWord& entry, const Position& start) {
+    FEELER_TRY(const double length, needed(execution, entry, 'I', true));
+    if (auto said = needed(execution, entry, 'L', false); !said)
+        return tl::unexpected(std::move(said).error());
+    FEELER_TRY(const int count, whole_number(*execution.statement.word('L'), 1, 1000));
+    const Word* angle = execution.statement.word('J');
+    const double first = angle ? angle->value : 0.0;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    double step = 360.0 / count;
+    if (entry.code->tenths == tenths(71)) {
+        FEELER_TRY(step, needed(execution, entry, 'K', false));
+    }
+    std::vector<Position> holes;
+    for (int i = 0; i < count; ++i)
+        holes.push_back(entry.code->tenths == tenths(72)
+                            ? placed(start, axes, i * length, first)
+                            : placed(start, axes, length, first + i * step));
+    return holes;
+}
+
+core::Result<void> run_hole_pattern(Execution& execution) {
+    const CodeWord& entry = *hole_pattern(execution);
+    if (execution.statement.of(ModalGroup::cycle)) return {}; // drilled where the cycle is run
+    if (!execution.modal().cycle)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} has no cycle to drill its holes with: write one such as "
+                                      "G81 with L0 before it",
+                                      written(*entry.word)),
+                          entry.word->span);
+    return run_canned_cycle(execution);
+}
+
+} // namespace gcode

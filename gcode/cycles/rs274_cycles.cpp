@@ -1,0 +1,217 @@
+#include "gcode/cycles/rs274_cycles.h"
+
+#include <fmt/format.h>
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using core::SpindleDirection;
+
+std::string_view name_of_start(SpindleDirection direction) {
+    return direction == SpindleDirection::counterclockwise ? "M4" : "M3";
+}
+
+core::Result<void> check_axes(const Execution& execution, int code) {
+    const PlaneAxes plane = axes_of(execution.modal().plane);
+    if (!execution.statement.has_axis_word())
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("G{} has no axis word, so no place to work at: write where the "
+                        "hole is",
+                        code / 10),
+            moving_word(execution).span);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word || axis == plane.first || axis == plane.second || axis == plane.normal) continue;
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: a cycle moves {}, {} and {} only: move {} in a block "
+                                      "before it",
+                                      written(*word), axis_letters[plane.first],
+                                      axis_letters[plane.second], axis_letters[plane.normal],
+                                      word->letter),
+                          word->span);
+    }
+    return {};
+}
+
+core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cycle) {
+    const bool waits = cycle.code == tenths(82) || cycle.code == tenths(86)
+                       || cycle.code == tenths(88) || cycle.code == tenths(89);
+    if (waits && !cycle.dwell)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("G{} needs a P word, the seconds it waits at the bottom", cycle.code / 10),
+            moving_word(execution).span);
+    return {};
+}
+
+/// G87 says all three words once; they are kept for the blocks that follow.
+core::Result<void> check_shift(const Execution& execution, const CannedCycle& cycle) {
+    const bool is_first = !execution.modal().cycle->bottom;
+    if (cycle.code != tenths(87) || !is_first) return {};
+    for (const char letter : {'I', 'J', 'K'})
+        if (!execution.statement.word(letter))
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("G87 has no {}: it needs I, J and K, how far the tool "
+                                          "leaves the middle and where the boring ends",
+                                          letter),
+                              moving_word(execution).span);
+    return {};
+}
+
+core::Result<void> check_spindle(const Execution& execution, int code) {
+    const bool taps = code == tenths(74) || code == tenths(84);
+    const bool bores = code == tenths(86) || code == tenths(87) || code == tenths(88);
+    const SpindleDirection direction = execution.modal().spindle;
+    if (taps && axes_of(execution.modal().plane).normal > 2)
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("G{}: taps along X, Y and Z only, the control has none in this "
+                        "plane: say G17",
+                        code / 10),
+            moving_word(execution).span);
+    const core::SourceSpan where = moving_word(execution).span;
+    if ((taps || bores) && direction == SpindleDirection::stopped)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("G{} works with a turning spindle, and it stands still: start "
+                        "it with {} before",
+                        code / 10, code == tenths(74) ? "M4" : "M3"),
+            where);
+    const SpindleDirection needed =
+        code == tenths(74) ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
+    if (taps && direction != needed)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G{} cuts a {} thread, and the spindle turns the other way: start it with "
+                        "{} before",
+                        code / 10, code == tenths(74) ? "left-hand" : "right-hand",
+                        name_of_start(needed)),
+            where);
+    return {};
+}
+
+/// A shift of the tool off the middle: I, J and K are those of the plane's axes.
+void shift_off_middle(Drilling& hole, double sign) {
+    Position end = hole.execution.modal().position;
+    for (const size_t axis : {hole.first, hole.second})
+        if (end[axis]) *end[axis] += sign * hole.cycle.shift[axis % 3];
+    hole.execution.traverse(end);
+}
+
+/// A feed of a tap. LinuxCNC 2.9 takes the axes of G18 for those of G19 and the other way round, so
+/// that the tool leaves its hole; it goes on as if it had not.
+void feed_tapping(Drilling& hole, std::optional<double> level) {
+    Position& position = hole.execution.modal().position;
+    position[hole.normal] = level;
+    Position end = position;
+    if (hole.execution.modal().plane == Plane::zx) {
+        end[0] = level, end[1] = position[hole.first], end[2] = position[hole.second];
+    } else if (hole.execution.modal().plane == Plane::yz) {
+        end[0] = position[hole.second], end[1] = level, end[2] = position[hole.first];
+    }
+    hole.execution.emit(StraightFeed{end, hole.rate});
+}
+
+void warn_of_plane(Drilling& hole) {
+    if (hole.execution.modal().plane == Plane::xy) return;
+    hole.execution.warn(moving_word(hole.execution).span,
+                        fmt::format("G{} outside of G17 leads off the hole: LinuxCNC 2.9 mixes up "
+                                    "the axes of its feeds; tap in G17 or with G33.1",
+                                    hole.cycle.code / 10));
+}
+
+void enable_overrides(Execution& execution, bool enabled) {
+    // They are taken away after M49, too: G76 leaves that of the feed on.
+    if (!enabled || execution.modal().feed_override)
+        execution.emit(EnableOverride{OverrideKind::feed, enabled});
+    if (!enabled || execution.modal().speed_override)
+        execution.emit(EnableOverride{OverrideKind::speed, enabled});
+}
+
+} // namespace
+
+core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle) {
+    if (execution.modal().compensation != Side::none)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("G{}: no cycle while cutter radius compensation is on: write "
+                                      "G40 before",
+                                      cycle.code / 10),
+                          moving_word(execution).span);
+    if (auto checked = check_axes(execution, cycle.code); !checked) return checked;
+    if (auto checked = check_dwell(execution, cycle); !checked) return checked;
+    if (auto checked = check_shift(execution, cycle); !checked) return checked;
+    return check_spindle(execution, cycle.code);
+}
+
+void begin_exact_path(Execution& execution) {
+    if (execution.modal().path != PathMode::exact_path)
+        execution.emit(SetPathMode{PathMode::exact_path, 0.0, 0.0});
+}
+
+void end_exact_path(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.path != PathMode::exact_path)
+        execution.emit(SetPathMode{modal.path, modal.path_tolerance, modal.naive_tolerance});
+}
+
+void tap_with_reversal(Drilling& hole) {
+    Execution& execution = hole.execution;
+    const SpindleDirection in = execution.modal().spindle;
+    const SpindleDirection out = in == SpindleDirection::clockwise
+                                     ? SpindleDirection::counterclockwise
+                                     : SpindleDirection::clockwise;
+    warn_of_plane(hole);
+    enable_overrides(execution, false);
+    feed_tapping(hole, hole.bottom);
+    hole.turn(SpindleDirection::stopped);
+    hole.turn(out);
+    execution.emit(Dwell{hole.cycle.dwell.value_or(execution.modal().cycle_dwell)});
+    feed_tapping(hole, hole.clear);
+    hole.turn(SpindleDirection::stopped);
+    hole.turn(in);
+    enable_overrides(execution, true);
+}
+
+void bore_back_to_middle(Drilling& hole) {
+    const SpindleDirection direction = hole.execution.modal().spindle;
+    const double word = hole.cycle.shift[hole.normal % 3];
+    const bool incremental = hole.execution.modal().distance == DistanceMode::incremental;
+    shift_off_middle(hole, +1.0);
+    hole.turn(SpindleDirection::stopped);
+    hole.traverse(hole.bottom);
+    shift_off_middle(hole, -1.0);
+    hole.turn(direction);
+    hole.feed(incremental ? hole.bottom + word : word);
+    hole.feed(hole.bottom);
+    hole.turn(SpindleDirection::stopped);
+    shift_off_middle(hole, +1.0);
+    hole.traverse(hole.clear);
+    shift_off_middle(hole, -1.0);
+    hole.turn(direction);
+}
+
+void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
+    const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
+    for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})
+        if (*word) again(**word);
+    for (double& word : cycle.shift) again(word);
+}
+
+void bore_and_stop(Drilling& hole) {
+    Execution& execution = hole.execution;
+    const SpindleDirection direction = execution.modal().spindle;
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.turn(SpindleDirection::stopped);
+    execution.emit(ProgramStop{});
+    hole.turn(direction);
+    execution.warn(
+        moving_word(execution).span,
+        "G88 leaves the tool at the bottom of the hole: unless the operator draws it out "
+        "during the stop, the next move begins there");
+    execution.modal().position[hole.normal] = hole.clear;
+}
+
+} // namespace gcode

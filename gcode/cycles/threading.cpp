@@ -1,0 +1,118 @@
+#include "gcode/cycles/threading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// A thread seen from its drive line: heights count from there towards the material.
+struct ThreadPath {
+    TurningPoint start, end;
+    double inward;       // +1 for an internal thread, -1 for an external one: X of a height
+    double along;        // +1 or -1: the direction of cutting on Z
+    double crest, depth; // heights of the crest, and of the root above that
+    double pitch, ramp;  // per revolution, along the thread and along a taper
+    double slope;        // of the flank that the passes follow, Z per height
+    double entry, exit;  // lengths of the tapers
+};
+
+core::Result<void> check(const ThreadingWords& words) {
+    const auto wrong = [](ErrorCode code, std::string message) {
+        return core::fail(code, std::move(message));
+    };
+    if (!words.pitch) return wrong(ErrorCode::missing_value, "G76 needs the thread's pitch P");
+    if (!words.i || !words.j || !words.k)
+        return wrong(
+            ErrorCode::missing_value,
+            fmt::format("G76 has no {}: it needs I to the crest, J for the first depth and "
+                        "K for the full depth",
+                        !words.i   ? 'I'
+                        : !words.j ? 'J'
+                                   : 'K'));
+    if (*words.i == 0.0)
+        return wrong(ErrorCode::invalid_value,
+                     "G76: I must not be 0, its sign says on which side the thread is");
+    if (!(*words.j > 0.0))
+        return wrong(ErrorCode::invalid_value, "G76: J, the first depth, must be positive");
+    if (!(*words.k > *words.j))
+        return wrong(ErrorCode::invalid_value,
+                     "G76: K, the full depth, must be greater than J, the first");
+    if (words.spring_passes < -1 || words.tapered_ends < 0)
+        return wrong(ErrorCode::invalid_value, fmt::format("G76: {} must not be negative",
+                                                           words.tapered_ends < 0 ? 'L' : 'H'));
+    if (std::abs(std::cos(words.compound_angle)) < 1e-9)
+        return wrong(ErrorCode::invalid_value,
+                     "G76: a compound angle Q of 90 degrees leads along the thread for ever");
+    return {};
+}
+
+ThreadPath thread_from_words(TurningPoint start, TurningPoint end, const ThreadingWords& words) {
+    ThreadPath thread{};
+    thread.start = start;
+    thread.end = end;
+    thread.inward = *words.i > 0.0 ? 1.0 : -1.0;
+    thread.along = end.z > start.z ? 1.0 : -1.0;
+    thread.crest = std::abs(*words.i);
+    thread.depth = *words.k;
+    thread.pitch = *words.pitch;
+    thread.ramp = *words.pitch;
+    thread.slope = std::tan(words.compound_angle);
+    if (words.taper_length > 0.0) {
+        if (words.tapered_ends & 1) thread.entry = words.taper_length;
+        if (words.tapered_ends & 2) thread.exit = words.taper_length;
+        // While Z runs along the taper, it must advance by the pitch with each turn.
+        thread.ramp *= std::hypot(words.taper_length, thread.depth) / words.taper_length;
+    }
+    return thread;
+}
+
+void add_pass(std::vector<ThreadingMove>& moves, const ThreadPath& thread, double depth) {
+    const auto x = [&](double height) { return thread.start.x + thread.inward * height; };
+    const double clear = depth - thread.depth;
+    const double root = thread.crest + depth;
+    const double surface = root - thread.depth;
+    const double from = thread.start.z + thread.along * depth * thread.slope;
+    const double to = thread.end.z - thread.along * (thread.depth - depth) * thread.slope;
+    moves.push_back({{x(clear), from}, {}});
+    if (thread.entry > 0.0) {
+        moves.push_back({{x(surface), from}, thread.ramp});
+        moves.push_back({{x(root), from + thread.along * thread.entry}, thread.ramp});
+    } else {
+        moves.push_back({{x(root), from}, {}});
+    }
+    moves.push_back({{x(root), to - thread.along * thread.exit}, thread.pitch});
+    if (thread.exit > 0.0) moves.push_back({{x(surface), to}, thread.ramp});
+    moves.push_back({{x(clear), to}, {}});
+}
+
+} // namespace
+
+core::Result<std::vector<ThreadingMove>> threading_moves(TurningPoint start, TurningPoint end,
+                                                         const ThreadingWords& words) {
+    if (const auto checked = check(words); !checked) return tl::unexpected(checked.error());
+    const ThreadPath thread = thread_from_words(start, end, words);
+    const double power = 1.0 / std::max(words.degression, 1.0);
+    std::vector<ThreadingMove> moves;
+    int passes = 1;
+    for (double depth = *words.j; depth < thread.depth;
+         depth = *words.j * std::pow(++passes, power)) {
+        if (passes > greatest_thread_passes) break;
+        add_pass(moves, thread, depth);
+    }
+    if (passes > greatest_thread_passes || words.spring_passes > greatest_thread_passes)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("G76: these words ask for more than {} passes: a greater J, a "
+                        "smaller R or a smaller H makes them fewer",
+                        greatest_thread_passes));
+    for (int i = 0; i <= words.spring_passes; ++i) add_pass(moves, thread, thread.depth);
+    moves.push_back({end, {}});
+    return moves;
+}
+
+} // namespace gcode

@@ -1,0 +1,273 @@
+#include "gcode/exec/arcs.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
+#include "gcode/language/error_rules.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// An arc seen along its normal: coordinates along the plane's first and second axis.
+struct SeenArc {
+    core::SourceSpan where;
+    std::string code; // G2 or G3, for messages
+    bool clockwise;
+    double start[2], end[2];
+};
+
+/// How far an R word may fall short of reaching the end (LinuxCNC: RADIUS_TOLERANCE).
+constexpr double reach_tolerance = 0.00127;
+
+core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const double* centre) {
+    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    if (to_start < reach_tolerance || to_end < reach_tolerance)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the arc has no radius, its centre is on its {}",
+                                      arc.code, to_start < reach_tolerance ? "start" : "end"),
+                          arc.where);
+    const ArcTolerance& allowed = execution.dialect.arc;
+    const double absolute = execution.modal().unit == LengthUnit::inch
+                                ? to_mm(allowed.absolute_inch, LengthUnit::inch)
+                                : allowed.absolute_mm;
+    const double difference = std::abs(to_start - to_end);
+    const bool relative = difference <= absolute * allowed.limit
+                          && difference <= allowed.relative * std::max(to_start, to_end);
+    if (difference <= absolute || relative) return {};
+    const std::string message =
+        fmt::format("{}: the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end",
+                    arc.code, to_start, to_end);
+    if (difference > allowed.warned_mm)
+        return core::fail(ErrorCode::invalid_value, message, arc.where);
+    execution.warn(arc.where, message);
+    return {};
+}
+
+/// The offset words of the plane's axes, I for X, J for Y, K for Z.
+struct CentreWords {
+    const Word* first;
+    const Word* second;
+};
+
+bool fits_as_coordinates(const Execution& execution, const SeenArc& arc, const CentreWords& words) {
+    if (!words.first || !words.second) return false;
+    const double centre[2] = {length_of(execution, *words.first),
+                              length_of(execution, *words.second)};
+    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    return to_start > reach_tolerance && std::abs(to_start - to_end) < reach_tolerance;
+}
+
+core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
+                                       const CentreWords& words, double* centre) {
+    const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
+    const auto origin = [&](const Word* word, double start) {
+        const bool own = word && word->addressing != Addressing::modal;
+        return (own ? word->addressing == Addressing::absolute : absolute) ? 0.0 : start;
+    };
+    if (absolute && !(words.first && words.second))
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{}: under G90.1 an arc needs both words of its centre", arc.code),
+            arc.where);
+    centre[0] = origin(words.first, arc.start[0])
+                + (words.first ? length_of(execution, *words.first) : 0.0);
+    centre[1] = origin(words.second, arc.start[1])
+                + (words.second ? length_of(execution, *words.second) : 0.0);
+    auto checked = check_radii(execution, arc, centre);
+    if (!checked && !absolute && fits_as_coordinates(execution, arc, words))
+        checked.error().message += "; it would fit if the centre's words were coordinates, as "
+                                   "under G90.1, rather than distances from the start";
+    return checked;
+}
+
+/// The centre lies on the line that halves the chord, on the side that R's sign and the turn say.
+core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, double radius,
+                                      double* centre) {
+    const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
+    const double half = 0.5 * std::hypot(chord[0], chord[1]);
+    if (half == 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: an arc with R cannot end where it starts; give its "
+                                      "centre with I, J, K",
+                                      written(word)),
+                          word.span);
+    if (half - std::abs(radius) > reach_tolerance)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the radius {:.4f} mm does not reach the end, half of "
+                                      "the way is {:.4f} mm",
+                                      written(word), std::abs(radius), half),
+                          word.span);
+    const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
+    const bool right_of_chord = arc.clockwise == (radius > 0.0);
+    const double side = (right_of_chord ? -height : height) / (2.0 * half);
+    centre[0] = 0.5 * (arc.start[0] + arc.end[0]) - side * chord[1];
+    centre[1] = 0.5 * (arc.start[1] + arc.end[1]) + side * chord[0];
+    return {};
+}
+
+core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
+                                   double* centre) {
+    constexpr char offset_letters[] = {'I', 'J', 'K', 0, 0, 0, 'I', 'J', 'K'};
+    const Statement& statement = execution.statement;
+    const CentreWords words = {statement.word(offset_letters[axes.first]),
+                               statement.word(offset_letters[axes.second])};
+    const Word* other = statement.word(offset_letters[axes.normal]);
+    const Word* radius = statement.word('R');
+    const Word* surplus = other    ? other
+                          : radius ? (words.first ? words.first : words.second)
+                                   : nullptr;
+    if (surplus) {
+        const std::string message =
+            fmt::format("{}: {} has no use for it here", written(*surplus), arc.code);
+        if (execution.dialect.unused_words_are_errors)
+            return core::fail(ErrorCode::syntax, message, surplus->span);
+        if (surplus->value != 0.0) execution.warn(surplus->span, message);
+    }
+    if (radius) return centre_from_radius(arc, *radius, length_of(execution, *radius), centre);
+    if (words.first || words.second) return centre_from_offsets(execution, arc, words, centre);
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} has no centre: it needs {}, {} or {}", arc.code,
+                                  offset_letters[axes.first], offset_letters[axes.second],
+                                  execution.dialect.radius_word),
+                      arc.where);
+}
+
+/// The centre, with the check that the arc ends where it should.
+core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
+                               double* centre) {
+    auto found = centre_of_words(execution, arc, axes, centre);
+    if (!found) found.error().code = wrong_arc;
+    return found;
+}
+
+core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
+                               const Position& end) {
+    const bool clockwise = execution.modal().motion == tenths(2);
+    SeenArc arc{.where = moving_word(execution).span,
+                .code = clockwise ? "G2" : "G3",
+                .clockwise = clockwise,
+                .start = {},
+                .end = {}};
+    const Position& start = execution.modal().position;
+    for (int i = 0; i < 2; ++i) {
+        const size_t axis = i == 0 ? axes.first : axes.second;
+        if (!start[axis] || !end[axis])
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{}: where the arc starts is unknown along {}; move there "
+                            "first, or say where the machine starts",
+                            arc.code, axis_letters[axis]),
+                arc.where);
+        arc.start[i] = *start[axis];
+        arc.end[i] = *end[axis];
+    }
+    return arc;
+}
+
+core::Result<int> turns_of(const Execution& execution, bool clockwise) {
+    const Word* word = execution.statement.word('P');
+    if (!word) return clockwise ? -1 : 1;
+    FEELER_TRY(const int turns, whole_number(*word, 1, 1000000));
+    return clockwise ? -turns : turns;
+}
+
+constexpr double chord_tolerance = 0.001; // mm
+
+double& along(Position& place, size_t axis) { return *place[axis]; }
+
+/// An arc with R whose axes G51 scales unequally: on the machine it is an arc with the larger of
+/// the scales, between the scaled ends. Here it is written as chords, since the frame makes
+/// ellipses of arcs.
+///
+/// Source: Fanuc 0i and 30i user's manuals, "Scaling of circular interpolation".
+core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& axes,
+                                         const Word& radius) {
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(SeenArc arc, flat_arc(execution, axes, end));
+    const core::Vec3& factors = execution.modal().transforms.scaling->factors;
+    const double scale[2] = {factors[static_cast<int>(axes.first)],
+                             factors[static_cast<int>(axes.second)]};
+    for (int i = 0; i < 2; ++i) {
+        arc.start[i] *= scale[i];
+        arc.end[i] *= scale[i];
+    }
+    if (scale[0] * scale[1] < 0.0) arc.clockwise = !arc.clockwise;
+    const double larger = std::max(std::abs(scale[0]), std::abs(scale[1]));
+    const double size = larger * length_of(execution, radius);
+    double centre[2];
+    if (auto found = centre_from_radius(arc, radius, size, centre); !found) {
+        found.error().code = wrong_arc;
+        return found;
+    }
+    const double angle = arc_angle(arc.start, arc.end, centre, arc.clockwise ? -1 : 1);
+    FEELER_TRY(const double rate, feed_rate(execution, std::abs(size * angle)));
+    execution.warn(arc.where, fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}; the "
+                                          "control makes an arc of radius {:.6g} mm of it",
+                                          arc.code, axis_letters[axes.first], scale[0],
+                                          axis_letters[axes.second], scale[1], std::abs(size)));
+    const double step = 2.0 * std::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
+    const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(angle) / step)));
+    const double from = std::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
+    const Position start = execution.modal().position;
+    for (int chord = 1; chord < chords; ++chord) {
+        const double share = double(chord) / chords, at = from + share * angle;
+        Position place = end;
+        along(place, axes.first) = (centre[0] + std::abs(size) * std::cos(at)) / scale[0];
+        along(place, axes.second) = (centre[1] + std::abs(size) * std::sin(at)) / scale[1];
+        if (const size_t axis = axes.normal; start[axis] && end[axis])
+            along(place, axis) = *start[axis] + share * (*end[axis] - *start[axis]);
+        execution.feed(place, rate);
+    }
+    execution.feed(end, rate);
+    return {};
+}
+
+} // namespace
+
+core::Result<void> move_along_arc(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    if (is_secondary(axes.first))
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: there are no arcs in the planes of G17.1, G18.1 and "
+                                      "G19.1: say G17, G18 or G19 before",
+                                      written(moving_word(execution))),
+                          moving_word(execution).span);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) {
+        const Word* radius = execution.statement.word('R');
+        return radius ? move_along_scaled_arc(execution, axes, *radius) : checked;
+    }
+    if (modal.leaves_contour && execution.dialect.arc_after_contour_is_error)
+        return core::fail(ErrorCode::syntax,
+                          "the first move behind G40 must be straight: an arc would not start "
+                          "where the tool is",
+                          moving_word(execution).span);
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(const SeenArc arc, flat_arc(execution, axes, end));
+    ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
+    if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
+    FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));
+    const size_t normal = axes.normal;
+    std::optional<double> rise;
+    if (modal.position[normal] && end[normal]) rise = *end[normal] - *modal.position[normal];
+    if (modal.position[normal] == end[normal]) rise = 0.0;
+    const double radius =
+        std::hypot(arc.start[0] - command.centre[0], arc.start[1] - command.centre[1]);
+    const double angle = arc_angle(arc.start, arc.end, command.centre, command.turns);
+    std::optional<double> path;
+    if (rise) path = std::hypot(radius * angle, *rise);
+    FEELER_TRY(command.feed, feed_rate(execution, path));
+    modal.position = end;
+    execution.emit(command);
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,195 @@
+#include "gcode/exec/assignments.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/fanuc_parameters.h"
+
+namespace gcode {
+namespace {
+
+core::Result<Value> value_of(const Assigning& assigning, Expression expression) {
+    return evaluate(assigning.block.pool, expression, assigning.block.line, assigning.parameters,
+                    assigning.dialect.arithmetic);
+}
+
+bool calls_macro(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return word.letter == 'G' && word.value >= 65.0 && word.value < 67.0;
+    });
+}
+
+/// The value of a word. In lengths and angles, but not in arguments of macros, ROUND may be to the
+/// smallest step of the control.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, "Arithmetic and logic operation", ROUND; Haas mill
+///         operator's manual 96-8000, "Notes on functions".
+core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) {
+    Arithmetic arithmetic = assigning.dialect.arithmetic;
+    const bool is_length =
+        std::string_view("XYZABCUVWIJKRQrc").find(word.letter) != std::string_view::npos;
+    if (arithmetic.rounds_lengths_to_steps && is_length && !calls_macro(assigning.block)) {
+        const bool angle = word.letter >= 'A' && word.letter <= 'C';
+        arithmetic.steps_in_one = assigning.inch && !angle ? 10000.0 : 1000.0;
+    }
+    return evaluate(assigning.block.pool, word.expression, assigning.block.line,
+                    assigning.parameters, arithmetic);
+}
+
+/// Words that turn out to be nothing are taken out: Fanuc's vacant variables.
+core::Result<void> work_out_words(const Assigning& assigning) {
+    std::vector<Word>& words = assigning.block.words;
+    size_t kept = 0;
+    for (size_t i = 0; i < words.size(); ++i) {
+        Word& word = words[i];
+        if (word.expression) {
+            FEELER_TRY(const Value value, value_of_word(assigning, word));
+            if (!value) continue;
+            word.value = *value;
+        }
+        if (kept != i) words[kept] = word;
+        ++kept;
+    }
+    words.resize(kept);
+    return {};
+}
+
+core::Result<Value> right_side(const Assigning& assigning, const Assignment& entry) {
+    if (!entry.value) return Value(entry.plain);
+    return value_of(assigning, entry.value);
+}
+
+core::Result<double> number_of(const Assigning& assigning, const Assignment& entry) {
+    if (entry.is_named) return 0.0;
+    FEELER_TRY(const Value number, value_of(assigning, entry.number));
+    return number.value_or(0.0);
+}
+
+core::Result<void> set(const Assigning& assigning, const Assignment& entry, double number,
+                       Value value) {
+    ProgramParameters& parameters = assigning.parameters;
+    if (entry.is_named) {
+        const std::string& name = assigning.block.pool.names[entry.name];
+        const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
+                                                 : core::Result<Value>(Value{});
+        if (auto done = parameters.set_named(name, value, entry.span); !done) return done;
+        assigning.undos.push_back({true, 0.0, name, *old});
+        return {};
+    }
+    const Value old = parameters.kept(number);
+    if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
+    assigning.undos.push_back({false, number, {}, old});
+    return heed_alarm(assigning.block, assigning.dialect, number, value, entry.span,
+                      assigning.result);
+}
+
+/// All right-hand sides are worked out before the first parameter is set.
+core::Result<void> assign(const Assigning& assigning) {
+    std::vector<Value>& values = assigning.values;
+    values.clear();
+    std::vector<double> numbers;
+    for (const Assignment& entry : assigning.block.assignments) {
+        FEELER_TRY(const Value value, right_side(assigning, entry));
+        values.push_back(value);
+        FEELER_TRY(const double number, number_of(assigning, entry));
+        numbers.push_back(number);
+    }
+    for (size_t i = 0; i < numbers.size(); ++i)
+        if (auto done = set(assigning, assigning.block.assignments[i], numbers[i], values[i]);
+            !done)
+            return done;
+    return {};
+}
+
+core::Result<void> work_out_in_order(const Assigning& assigning) {
+    auto word = assigning.block.words.begin();
+    const auto words_up_to = [&](uint32_t column) -> core::Result<void> {
+        for (; word != assigning.block.words.end() && word->span.column < column; ++word) {
+            if (!word->expression) continue;
+            FEELER_TRY(const Value value, value_of(assigning, word->expression));
+            word->value = value.value_or(0.0);
+        }
+        return {};
+    };
+    for (const Assignment& entry : assigning.block.assignments) {
+        if (auto done = words_up_to(entry.span.column); !done) return done;
+        FEELER_TRY(const Value value, right_side(assigning, entry));
+        FEELER_TRY(const double number, number_of(assigning, entry));
+        if (auto done = set(assigning, entry, number, value); !done) return done;
+    }
+    return words_up_to(UINT32_MAX);
+}
+
+} // namespace
+
+core::Result<void> work_out_block(const Assigning& assigning) {
+    if (assigning.dialect.assigns_in_order) return work_out_in_order(assigning);
+    if (auto done = work_out_words(assigning); !done) return done;
+    return assign(assigning);
+}
+
+void take_back_assignments(const std::vector<AssignmentUndo>& undos,
+                           ProgramParameters& parameters) {
+    for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
+        if (undo->is_named)
+            parameters.restore_named(undo->name, undo->value);
+        else
+            parameters.restore_numbered(undo->number, undo->value);
+    }
+}
+
+core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
+                              Value value, core::SourceSpan where, BlockResult& result) {
+    constexpr double alarm = 3000.0, message_stop = 3006.0;
+    if (!remembers_words(dialect.system_parameters)) return {};
+    const std::string text =
+        block.comments.empty() ? std::string() : std::string(block.comments.back().text);
+    if (number == alarm)
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("the program raises alarm {:.12g} here{}{}; the control goes "
+                                      "no further",
+                                      dialect.first_alarm + value.value_or(0.0),
+                                      text.empty() ? "" : ": ", text),
+                          where);
+    if (number != message_stop) return {};
+    if (!text.empty()) {
+        result.commands.emplace_back(Message{text});
+        result.columns.push_back(where.column);
+    }
+    result.commands.emplace_back(ProgramStop{});
+    result.columns.push_back(where.column);
+    return {};
+}
+
+void note_clock(const Block& block, InterpreterState& state, BlockResult& result) {
+    const auto& steps = block.pool.instructions;
+    for (size_t i = 0; !state.said_time && i + 1 < steps.size(); ++i) {
+        const bool reads = steps[i].operation == Operation::number
+                           && steps[i + 1].operation == Operation::numbered
+                           && is_of_clock(static_cast<int>(steps[i].number));
+        if (!reads) continue;
+        state.said_time = true;
+        result.warnings.push_back(
+            {Severity::warning,
+             {.line = block.line, .column = steps[i].column},
+             fmt::format("#{:.0f}: there is no clock here: it is noon of 1 January 2020, and "
+                         "timers go on by a second a block",
+                         steps[i].number)});
+    }
+}
+
+void announce_offsets(const Offsets& before, const ModalState& modal, BlockResult& result) {
+    if (before == modal.offsets) return;
+    if (before.tool != modal.offsets.tool) {
+        result.commands.emplace_back(UseToolLengthOffset{modal.length_number, modal.offsets.tool,
+                                                         modal.offsets.follows_tip});
+        result.columns.push_back(1);
+    }
+    if (before.work != modal.offsets.work) {
+        result.commands.emplace_back(SetOffset{modal.offsets});
+        result.columns.push_back(1);
+    }
+}
+
+} // namespace gcode

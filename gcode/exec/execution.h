@@ -1,0 +1,146 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/exec/statement.h"
+
+namespace gcode {
+
+/// One block on its way: what it says, the state it changes and what comes of it. The functions
+/// below are the steps of a block; each does what its words ask for, or nothing.
+struct Execution {
+    ProgramLibrary& library;
+    const Environment& environment;
+    const Dialect& dialect;
+    const Block& block;
+    const Statement& statement;
+    InterpreterState& state;
+    BlockResult& result;
+    uint32_t column = 1; // of the word that is being carried out
+
+    ModalState& modal() { return state.modal; }
+    const ModalState& modal() const { return state.modal; }
+    void emit(CanonicalCommand command) {
+        result.commands.push_back(std::move(command));
+        result.columns.push_back(column);
+    }
+    void warn(core::SourceSpan where, std::string message, Severity severity = Severity::warning) {
+        result.warnings.push_back({severity, where, std::move(message)});
+    }
+
+    /// Emits a rapid or a feed and moves there.
+    void traverse(const Position& end);
+    void feed(const Position& end, double rate);
+};
+
+/// The word that makes this block move: its motion or cycle code, else its first axis word.
+const Word& moving_word(const Execution& execution);
+
+/// The length a word gives, in mm.
+double length_of(const Execution& execution, const Word& word);
+
+/// Whether the block's H word stands without G43 and changes the length offset that is on.
+bool changes_length_alone(const Execution& execution);
+
+/// What an axis word says: mm, degrees of a rotary axis, half of it for X under G7.
+double axis_value(const Execution& execution, size_t axis, const Word& word);
+
+/// Where the axis words lead, axis by axis, in program coordinates.
+core::Result<Position> target_of(const Execution& execution);
+
+/// Lets a straight move whose direction `,A` gives, degrees from the plane's first axis, end on its
+/// line.
+///
+/// Errors: missing_value, invalid_value, syntax or unsupported where no single end follows.
+core::Result<void> place_by_angle(const Execution& execution, Position& target);
+
+/// The length of a straight way as feed rates count it: of X, Y and Z; of U, V and W where these
+/// stand; else of the rotary axes, in degrees. Empty where an end is not known.
+std::optional<double> way_between(const Position& from, const Position& to);
+
+/// The feed rate along a path in mm/min.
+///
+/// Errors: missing_value without F (in this block under G93), without a turning spindle under G95,
+///         without a known path length under G93; invalid_value for F0.
+core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length);
+
+/// Lets a change of offsets leave the machine where it is: program coordinates move instead.
+void change_offsets(Execution& execution, const Offsets& offsets);
+void change_offsets(ModalState& modal, const Offsets& offsets);
+
+/// Carries out a block of codes and words, each kind in its turn.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+core::Result<void> take_steps(Execution& execution);
+
+core::Result<void> check_words(Execution& execution); // words nobody uses
+core::Result<void> note_assumed_units(Execution& execution);
+core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95
+core::Result<void> set_feed(Execution& execution);              // F
+core::Result<void> set_speed(Execution& execution);             // S
+core::Result<void> select_tool(Execution& execution);           // T
+core::Result<void> change_tool(Execution& execution);           // M6
+core::Result<void> turn_spindle(Execution& execution);          // M3 M4 M5 M19
+core::Result<void> say_message(Execution& execution);           // (MSG, ...)
+core::Result<void> set_spindle_mode(Execution& execution);      // G96 G97
+core::Result<void> switch_machine(Execution& execution);        // M62 to M68
+core::Result<void> save_or_restore_modes(Execution& execution); // M70 to M73
+core::Result<void> set_coolant(Execution& execution);           // M7 M8 M9
+core::Result<void> set_overrides(Execution& execution);         // M48 to M53
+core::Result<void> dwell(Execution& execution);                 // G4
+core::Result<void> select_plane(Execution& execution);          // G17 G18 G19
+core::Result<void> set_units(Execution& execution);             // G20 G21
+core::Result<void> set_diameter_mode(Execution& execution);     // G7 G8
+core::Result<void> set_cutter_radius(Execution& execution);     // G40 G41 G42
+core::Result<void> set_path_mode(Execution& execution);         // G61 G61.1 G64
+core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44 G49, H
+core::Result<void> select_offset(Execution& execution);         // G54 to G59.3
+core::Result<void> set_distance_mode(Execution& execution);     // G90 G91 G90.1 G91.1
+core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
+core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
+core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
+core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
+core::Result<void> ask_for_corner(Execution& execution);        // ,R ,C
+core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
+core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
+
+core::Result<void> write_offset(Execution& execution);               // G10
+core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
+core::Result<void> name_tool(Execution& execution);                  // M61
+core::Result<void> go_home(Execution& execution);                    // G28 G30
+core::Result<void> check_home(Execution& execution);                 // G27
+core::Result<void> return_from_home(Execution& execution);           // G29
+core::Result<void> skip_move(Execution& execution);                  // G31
+core::Result<void> store_home(Execution& execution);                 // G28.1 G30.1
+core::Result<void> set_local_offset(Execution& execution);           // G52
+core::Result<void> set_axis_offset(Execution& execution);            // G92 to G92.3
+core::Result<void> move_along_arc(Execution& execution);             // G2 G3
+core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
+core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
+core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
+core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
+core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
+
+/// The diameter in the control's table that a block's D word means, mm; 0 with a warning where
+/// nothing is known of it.
+core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
+
+/// G12, G13: the tool goes down in the middle, out by a half circle, round, and back to the middle,
+/// where it stays. With K and Q more circles follow, each Q larger. Where on the circle the control
+/// begins is not published and changes nothing of what is cut.
+///
+/// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
+core::Result<void> mill_circular_pocket(Execution& execution);
+
+/// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
+/// work offset; L3, L50, L52: warned of and passed over.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Entering compensation values from a program", and
+///         B-63944EN, 7.2.2.
+core::Result<void> write_fanuc_entry(Execution& execution, int kind);
+core::Result<void> write_external_offset(Execution& execution);
+void pass_over_data(Execution& execution, const Word& kind);
+
+} // namespace gcode

@@ -1,0 +1,290 @@
+#include "gcode/exec/fanuc_parameters.h"
+
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/modes.h"
+
+namespace gcode {
+namespace {
+
+using core::OffsetNumber;
+
+constexpr int milliseconds_timer = 3001, hours_timer = 3002, date = 3011, time_of_day = 3012;
+constexpr int tool_of_8000s = 8550;
+constexpr double seconds_of_block = 1.0;
+
+/// A stretch of variables that mean the same thing of one axis, offset or tool after another.
+struct Range {
+    int first, last;
+    Value (*read)(const InterpreterState& state, int index);
+    void (*write)(InterpreterState& state, int index, double value); // null: only shown
+};
+
+double shown(const InterpreterState& state, size_t axis, double value) {
+    return is_rotary(axis) ? value : from_mm(value, state.modal.unit);
+}
+
+double taken(const InterpreterState& state, size_t axis, double value) {
+    return is_rotary(axis) ? value : to_mm(value, state.modal.unit);
+}
+
+Value shown(const InterpreterState& state, size_t axis, std::optional<double> value) {
+    return value ? Value(shown(state, axis, *value)) : Value{};
+}
+
+// --- places ---
+
+Value block_end(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    return shown(state, axis, state.modal.position[axis]);
+}
+
+Value machine_place(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    return shown(state, axis,
+                 machine_from_program(state.modal.offsets, state.modal.position)[axis]);
+}
+
+/// The place of the gauge line: tool compensation is in it.
+Value work_place(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    std::optional<double> place = state.modal.position[axis];
+    if (place) *place += state.modal.offsets.tool[axis];
+    return shown(state, axis, place);
+}
+
+Value tool_compensation(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    return shown(state, axis, state.modal.offsets.tool[axis]);
+}
+
+// --- work offsets ---
+
+/// Puts the table's values into effect; the machine stays.
+void use_work_offset(InterpreterState& state) {
+    Offsets offsets = state.modal.offsets;
+    offsets.work = work_offset(*state.tables, offsets.active);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        offsets.work.origin[axis] += state.tables->external[axis];
+    change_offsets(state.modal, offsets);
+}
+
+constexpr int stride = 20; // from one offset to the next
+
+Value external_offset(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    return shown(state, axis, state.tables->external[axis]);
+}
+
+void set_external_offset(InterpreterState& state, int index, double value) {
+    const auto axis = static_cast<size_t>(index);
+    state.tables.write().external[axis] = taken(state, axis, value);
+    use_work_offset(state);
+}
+
+Value offset_at(const InterpreterState& state, size_t from, int index) {
+    const auto axis = static_cast<size_t>(index % stride);
+    if (axis >= axis_count) return {};
+    const auto which = from + static_cast<size_t>(index / stride);
+    return shown(state, axis, work_offset(*state.tables, which).origin[axis]);
+}
+
+void set_offset_at(InterpreterState& state, size_t from, int index, double value) {
+    const auto axis = static_cast<size_t>(index % stride);
+    if (axis >= axis_count) return;
+    const auto which = from + static_cast<size_t>(index / stride);
+    writable_work_offset(state.tables.write(), which).origin[axis] = taken(state, axis, value);
+    use_work_offset(state);
+}
+
+Value plain_offset(const InterpreterState& state, int index) { return offset_at(state, 0, index); }
+void set_plain_offset(InterpreterState& state, int index, double value) {
+    set_offset_at(state, 0, index, value);
+}
+Value extended_offset(const InterpreterState& state, int index) {
+    return offset_at(state, plain_offset_count, index);
+}
+void set_extended_offset(InterpreterState& state, int index, double value) {
+    set_offset_at(state, plain_offset_count, index, value);
+}
+
+// --- tool offsets ---
+
+enum class Part : uint8_t { length, length_wear, diameter, radius, radius_wear, diameter_wear };
+
+LengthOffset entry_of(const InterpreterState& state, int number) {
+    const auto& lengths = state.tables->lengths;
+    if (const auto entry = lengths.find(OffsetNumber(number)); entry != lengths.end())
+        return entry->second;
+    return {.length = length_under(*state.tables, number).value_or(0.0)};
+}
+
+template <Part part>
+Value tool_part(const InterpreterState& state, int index) {
+    const LengthOffset entry = entry_of(state, index + 1);
+    double value = entry.length;
+    if (part == Part::length_wear) value = entry.wear;
+    if (part == Part::diameter) value = entry.diameter;
+    if (part == Part::radius) value = entry.diameter / 2.0;
+    if (part == Part::radius_wear) value = entry.radius_wear;
+    if (part == Part::diameter_wear) value = entry.radius_wear * 2.0;
+    return from_mm(value, state.modal.unit);
+}
+
+template <Part part>
+void set_tool_part(InterpreterState& state, int index, double value) {
+    LengthOffset entry = entry_of(state, index + 1);
+    const double length = to_mm(value, state.modal.unit);
+    if (part == Part::length) entry.length = length;
+    if (part == Part::length_wear) entry.wear = length;
+    if (part == Part::diameter) entry.diameter = length;
+    if (part == Part::radius) entry.diameter = length * 2.0;
+    if (part == Part::radius_wear) entry.radius_wear = length;
+    if (part == Part::diameter_wear) entry.radius_wear = length / 2.0;
+    const auto number = OffsetNumber(index + 1);
+    state.tables.write().lengths[number] = entry;
+    const ModalState& modal = state.modal;
+    if (modal.length_sign == 0.0 || modal.length_number != number) return;
+    Offsets offsets = modal.offsets;
+    offsets.tool[2] = modal.length_sign * (entry.length + entry.wear);
+    change_offsets(state.modal, offsets);
+}
+
+/// Haas: what #8550 names the tool of.
+template <Part part>
+Value named_tool_part(const InterpreterState& state, int) {
+    const double tool = state.parameters->numbered(tool_of_8000s).value_or(0.0);
+    if (!(tool >= 1.0 && tool <= 200.0)) return {};
+    return tool_part<part>(state, static_cast<int>(std::lround(tool)) - 1);
+}
+
+// --- the control ---
+
+Value modal_group(const InterpreterState& state, int index) { return fanuc_mode(state, index + 1); }
+
+Value said_word(const InterpreterState& state, int index) {
+    return state.said[static_cast<size_t>(index) + 1];
+}
+
+Value number_of_extended_offset(const InterpreterState& state, int) {
+    const size_t active = state.modal.offsets.active;
+    return active < plain_offset_count ? 0.0 : static_cast<double>(active - plain_offset_count + 1);
+}
+
+Value tool_in_spindle(const InterpreterState& state, int) {
+    return state.modal.tool ? Value(core::value_of(*state.modal.tool)) : Value{};
+}
+
+Value spindle_speed(const InterpreterState& state, int) {
+    return state.modal.spindle == core::SpindleDirection::stopped ? 0.0 : state.modal.speed;
+}
+
+// No program has a clock while it is only read: it is always noon of the first day of 2020.
+Value day(const InterpreterState&, int) { return 20200101.0; }
+Value noon(const InterpreterState&, int) { return 120000.0; }
+
+using enum Part;
+
+constexpr Range common_ranges[] = {
+    {date, date, day, nullptr},
+    {time_of_day, time_of_day, noon, nullptr},
+    {4001, 4022, modal_group, nullptr},
+    {4101, 4126, said_word, nullptr},
+    {4130, 4130, number_of_extended_offset, nullptr},
+    {5001, 5009, block_end, nullptr},
+    {5021, 5029, machine_place, nullptr},
+    {5081, 5089, tool_compensation, nullptr},
+    {5201, 5209, external_offset, set_external_offset},
+    {5221, 5329, plain_offset, set_plain_offset},
+    {7001, 7400, extended_offset, set_extended_offset},
+};
+
+constexpr Range fanuc_ranges[] = {
+    {2001, 2200, tool_part<length_wear>, set_tool_part<length_wear>},
+    {2201, 2400, tool_part<length>, set_tool_part<length>},
+    {5041, 5049, work_place, nullptr},
+    {7401, 7960, [](const InterpreterState& s, int i) { return extended_offset(s, i + 400); },
+     [](InterpreterState& s, int i, double v) { set_extended_offset(s, i + 400, v); }},
+    {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>},
+    {11001, 11999, tool_part<length>, set_tool_part<length>},
+    {12001, 12999, tool_part<radius_wear>, set_tool_part<radius_wear>},
+    {13001, 13999, tool_part<radius>, set_tool_part<radius>},
+    {14001, 19980, extended_offset, set_extended_offset},
+};
+
+constexpr Range haas_ranges[] = {
+    {2001, 2200, tool_part<length>, set_tool_part<length>},
+    {2201, 2400, tool_part<length_wear>, set_tool_part<length_wear>},
+    {2401, 2600, tool_part<diameter>, set_tool_part<diameter>},
+    {2601, 2800, tool_part<diameter_wear>, set_tool_part<diameter_wear>},
+    {3026, 3026, tool_in_spindle, nullptr},
+    {3027, 3027, spindle_speed, nullptr},
+    {5041, 5049, block_end, nullptr}, // the tip: tool compensation is taken off
+    {8553, 8553, named_tool_part<length>, nullptr},
+    {8554, 8554, named_tool_part<length_wear>, nullptr},
+    {8555, 8555, named_tool_part<diameter>, nullptr},
+    {8556, 8556, named_tool_part<diameter_wear>, nullptr},
+    {14001, 15980, extended_offset, set_extended_offset},
+};
+
+const Range* range_of(std::span<const Range> ranges, int number) {
+    for (const Range& range : ranges)
+        if (number >= range.first && number <= range.last) return &range;
+    return nullptr;
+}
+
+const Range* range_of(const Environment& environment, int number) {
+    if (number < 2001) return nullptr;
+    if (const Range* common = range_of(common_ranges, number)) return common;
+    const bool haas = dialect(environment.dialect).system_parameters == SystemParameters::haas;
+    return haas ? range_of(haas_ranges, number) : range_of(fanuc_ranges, number);
+}
+
+/// Kept as the program sets them, and 0 before: inputs and outputs, timers, switches, counters.
+bool is_zero_at_first(int number) {
+    return (number >= 1000 && number <= 1135) || (number >= 3001 && number <= 3010)
+           || number == 3901 || number == 3902;
+}
+
+} // namespace
+
+std::optional<Value> fanuc_parameter(const InterpreterState& state, const Environment& environment,
+                                     int number) {
+    if (number < 1000) return std::nullopt;
+    if (const Range* range = range_of(environment, number))
+        return range->read(state, number - range->first);
+    if (is_zero_at_first(number)) return Value(state.parameters->numbered(number).value_or(0.0));
+    // Where the last G31 met something; without one, where the machine is.
+    if (number >= 5061 && number <= 5069 && !state.parameters->numbered(number))
+        return work_place(state, number - 5061);
+    return std::nullopt;
+}
+
+core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environment& environment,
+                                       int number, Value value, core::SourceSpan where) {
+    const Range* range = range_of(environment, number);
+    if (!range) return false;
+    if (!range->write)
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("#{} is the control's own and cannot be set", number), where);
+    range->write(state, number - range->first, value.value_or(0.0));
+    return true;
+}
+
+bool is_of_clock(int number) {
+    return number == milliseconds_timer || number == hours_timer || number == date
+           || number == time_of_day;
+}
+
+void advance_timers(InterpreterState& state) {
+    for (const auto& [timer, units] :
+         {std::pair{milliseconds_timer, 1000.0}, {hours_timer, 1.0 / 3600.0}})
+        if (const Value value = state.parameters->numbered(timer))
+            state.parameters.write().set_numbered(timer, *value + units * seconds_of_block);
+}
+
+} // namespace gcode

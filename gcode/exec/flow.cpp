@@ -1,0 +1,453 @@
+#include "gcode/exec/flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/modes.h"
+#include "gcode/klartext/klartext.h"
+#include "gcode/read/flow_index.h"
+#include "gcode/read/parser.h"
+#include "gcode/siemens/siemens_flow.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using enum FlowKind;
+
+/// One flow statement, with what it needs of the program around it.
+class Flowing {
+public:
+    explicit Flowing(const FlowStep& step)
+        : step_(step),
+          parameters_(step.state, step.environment),
+          source_(step.state.next.source),
+          line_(step.block.line),
+          index_(step.library.index(source_)),
+          scope_(index_.scope_of(line_)) {}
+
+    core::Result<void> run();
+
+private:
+    tl::unexpected<core::Error> refuse(std::string message) const {
+        return core::fail(ErrorCode::syntax, std::move(message), step_.block.flow.span);
+    }
+    tl::unexpected<core::Error> refuse_in_repeat(std::string_view word) const {
+        return refuse(fmt::format("the control refuses '{}' in a 'repeat' loop: make it a 'while' "
+                                  "or 'do' loop",
+                                  word));
+    }
+    void set_line(uint32_t line) { step_.state.next = {source_, line}; }
+    void go_behind(uint32_t line) { set_line(line + 1); }
+    Frame& frame() { return step_.state.frames.back(); }
+    const std::string& name() const { return name_; }
+
+    core::Result<void> find_name();
+    core::Result<const FlowMark*> partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                          std::string_view wanted) const;
+    core::Result<bool> holds(const Block& block) const {
+        return condition_holds(block, parameters_, step_.dialect);
+    }
+
+    core::Result<void> check_skipped(uint32_t up_to) const;
+    core::Result<Block> read_line(uint32_t line) const;
+    void warn_of_second_use() const;
+    core::Result<void> end_if_statement();
+    core::Result<void> skip_sub();
+    core::Result<void> call_sub();
+    core::Result<void> give_back();
+    core::Result<void> take_branch();
+    core::Result<void> while_statement();
+    core::Result<void> repeat_statement();
+    core::Result<void> end_repeat_statement();
+    core::Result<void> leave_loop();
+    core::Result<void> continue_loop_early();
+    core::Result<void> jump();
+    core::Result<void> go_behind_partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                         std::string_view wanted);
+
+    const FlowStep& step_;
+    ProgramParameters parameters_;
+    const uint32_t source_, line_;
+    const FlowIndex& index_;
+    const uint32_t scope_;
+    std::string name_;
+};
+
+core::Result<void> Flowing::find_name() {
+    const Flow& flow = step_.block.flow;
+    if (flow.has_label) name_ = step_.block.pool.names[flow.label_name];
+    if (!flow.label) return {};
+    FEELER_TRY(const Value value, evaluate(step_.block.pool, flow.label, line_, parameters_,
+                                           step_.dialect.arithmetic));
+    name_ = label_of(std::round(value.value_or(0.0)));
+    return {};
+}
+
+/// The nearest statement of the same name that this one belongs to.
+core::Result<const FlowMark*> Flowing::partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                               std::string_view wanted) const {
+    const FlowMark* found = ahead ? index_.next(line_, scope_, name_, kinds)
+                                  : index_.previous(line_, scope_, name_, kinds);
+    if (ahead)
+        if (auto read = check_skipped(found ? found->line : UINT32_MAX); !read)
+            return tl::unexpected(std::move(read).error());
+    if (found) return found;
+    return refuse(
+        fmt::format("'{}' of {} is missing {} it", wanted, name_, ahead ? "behind" : "before"));
+}
+
+core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                              std::string_view wanted) {
+    FEELER_TRY(const FlowMark* const mark, partner(kinds, ahead, wanted));
+    go_behind(mark->line);
+    return {};
+}
+
+/// The lines of a subprogram are run when it is called, not when they are come across.
+core::Result<void> Flowing::skip_sub() {
+    const FlowMark* first = index_.first(sub, name_);
+    if (first->line != line_)
+        return refuse(fmt::format("there are two subprograms {}, the other one begins in line {}: "
+                                  "the control stops here",
+                                  name_, first->line));
+    const FlowMark* end = index_.next(line_, 0, name_, {end_sub});
+    if (!end)
+        if (auto read = check_skipped(UINT32_MAX); !read) return read;
+    for (const FlowMark& mark : index_.marks) {
+        const bool inside = mark.line > line_ && (!end || mark.line < end->line);
+        if (inside && (mark.kind == sub || mark.kind == program_number))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("a subprogram begins here inside of {}, which begins in "
+                                          "line {}: end that one with endsub before",
+                                          name_, line_),
+                              {.line = mark.line, .column = 1});
+    }
+    if (!end) return refuse(fmt::format("the subprogram {} has no endsub", name_));
+    if (auto read = check_skipped(end->line); !read) return read;
+    go_behind(end->line);
+    return {};
+}
+
+/// O words are read in what is skipped as well: the first that cannot be is refused.
+core::Result<void> Flowing::check_skipped(uint32_t up_to) const {
+    for (const FlowMark& mark : index_.marks) {
+        if (mark.line <= line_ || mark.kind != none) continue;
+        if (mark.line >= up_to) return {};
+        if (auto read = read_line(mark.line); !read) return tl::unexpected(std::move(read).error());
+    }
+    return {};
+}
+
+core::Result<Block> Flowing::read_line(uint32_t line) const {
+    Block block;
+    const std::string_view text = step_.library.program(source_).line(line);
+    if (auto parsed = parse_line(text, line, step_.dialect, block); !parsed)
+        return tl::unexpected(std::move(parsed).error());
+    return block;
+}
+
+/// A label may be used by one statement of a program or subprogram.
+void Flowing::warn_of_second_use() const {
+    const FlowMark* other =
+        index_.previous(line_, scope_, name_, {if_branch, while_loop, do_loop, repeat});
+    if (!other || other->closes_do_loop) return;
+    step_.result.warnings.push_back(
+        {Severity::warning, step_.block.flow.span,
+         fmt::format("the label {} is that of line {} already: the control stops here if that "
+                     "line was run; use another one",
+                     name_, other->line)});
+}
+
+core::Result<void> Flowing::call_sub() {
+    uint32_t source = source_;
+    const FlowMark* mark = index_.first(sub, name_);
+    if (!mark && source_ != 0) {
+        source = 0;
+        mark = step_.library.index(0).first(sub, name_);
+    }
+    if (!mark) {
+        FEELER_TRY(const auto file, step_.library.find({name_ + ".ngc", name_ + ".NGC"}));
+        if (file) {
+            source = *file;
+            mark = step_.library.index(source).first(sub, name_);
+        }
+    }
+    if (!mark)
+        return refuse(fmt::format("there is no subprogram {} in this program, and no file {}.ngc "
+                                  "with it in the search path",
+                                  name_, name_));
+    Frame next{.called_from = {source_, line_}, .begin = {source, mark->line + 1}, .name = name_};
+    for (size_t i = 1; i <= static_cast<size_t>(step_.dialect.local_count); ++i)
+        next.locals[i] = 0.0;
+    for (size_t i = 0; i < step_.block.flow.arguments.size(); ++i) {
+        FEELER_TRY(next.locals[i + 1], evaluate(step_.block.pool, step_.block.flow.arguments[i],
+                                                line_, parameters_, step_.dialect.arithmetic));
+    }
+    return enter(step_.state, step_.environment, std::move(next), step_.block.flow.span);
+}
+
+/// `return` and `endsub`, with or without a value.
+core::Result<void> Flowing::give_back() {
+    const bool inside = step_.state.frames.size() > 1;
+    if (!inside) return refuse("there is no subprogram to return from here");
+    Value value;
+    if (step_.block.flow.has_condition) {
+        FEELER_TRY(value, evaluate(step_.block.pool, step_.block.flow.condition, line_, parameters_,
+                                   step_.dialect.arithmetic));
+    }
+    Parameters& parameters = step_.state.parameters.write();
+    parameters.set_named("_value", value.value_or(0.0));
+    parameters.set_named("_value_returned", value ? 1.0 : 0.0);
+    const ModalState before = step_.state.modal;
+    if (frame().restores && *frame().saved)
+        for (const std::string& loss : losses_of_restoring(before, **frame().saved))
+            step_.result.warnings.push_back(
+                {Severity::warning, step_.block.flow.span, "M73: " + loss});
+    leave(step_.state);
+    announce_modes(step_.result, step_.block.flow.span.column, before, step_.state.modal);
+    return {};
+}
+
+/// From `if` to the branch whose condition holds.
+core::Result<void> Flowing::take_branch() {
+    FEELER_TRY(bool taken, holds(step_.block));
+    if (taken) return {};
+    uint32_t line = line_;
+    while (true) {
+        const FlowMark* mark = index_.next(line, scope_, name_, {else_if, otherwise, end_if});
+        if (auto read = check_skipped(mark ? mark->line : UINT32_MAX); !read) return read;
+        if (!mark) return refuse(fmt::format("'endif' of {} is missing behind it", name_));
+        line = mark->line;
+        if (mark->kind == else_if) {
+            FEELER_TRY(const Block block, read_line(line));
+            FEELER_TRY(taken, holds(block));
+            if (!taken) continue;
+        }
+        go_behind(line);
+        return {};
+    }
+}
+
+/// `endif`, and `elseif` and `else` behind a branch that was run.
+core::Result<void> Flowing::end_if_statement() {
+    if (!index_.previous(line_, scope_, name_, {if_branch}))
+        return refuse(fmt::format("there is no 'if' of {} before", name_));
+    if (step_.block.flow.kind == end_if) return {};
+    // The control works the condition out even when it does not need it.
+    if (step_.block.flow.kind == else_if) {
+        FEELER_TRY(const bool unused, holds(step_.block));
+        (void)unused;
+    }
+    return go_behind_partner({end_if}, true, "endif");
+}
+
+/// The head of a loop, or the end of a do loop.
+core::Result<void> Flowing::while_statement() {
+    FEELER_TRY(const bool goes_on, holds(step_.block));
+    const FlowMark* self = index_.at(line_);
+    if (self && self->closes_do_loop)
+        return goes_on ? go_behind_partner({do_loop}, false, "do") : core::Result<void>{};
+    return goes_on ? core::Result<void>{} : go_behind_partner({end_while}, true, "endwhile");
+}
+
+core::Result<void> Flowing::repeat_statement() {
+    FEELER_TRY(const Value count, evaluate(step_.block.pool, step_.block.flow.condition, line_,
+                                           parameters_, step_.dialect.arithmetic));
+    const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
+    if (rounds < 1) return go_behind_partner({end_repeat}, true, "endrepeat");
+    frame().repeats[line_] = rounds;
+    return {};
+}
+
+core::Result<void> Flowing::end_repeat_statement() {
+    FEELER_TRY(const FlowMark* const head, partner({repeat}, false, "repeat"));
+    const auto left = frame().repeats.find(head->line);
+    if (left == frame().repeats.end()) return {};
+    if (--left->second > 0)
+        go_behind(head->line);
+    else
+        frame().repeats.erase(left);
+    return {};
+}
+
+core::Result<void> Flowing::leave_loop() {
+    FEELER_TRY(const FlowMark* const end,
+               partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
+    if (end->kind == end_repeat) return refuse_in_repeat("break");
+    go_behind(end->line);
+    return {};
+}
+
+core::Result<void> Flowing::continue_loop_early() {
+    FEELER_TRY(const FlowMark* const end,
+               partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
+    if (end->kind == end_repeat) return refuse_in_repeat("continue");
+    set_line(end->line);
+    return {};
+}
+
+/// GOTO: the block number is looked for from here to the end, then from the beginning.
+core::Result<void> Flowing::jump() {
+    if (step_.block.flow.kind == if_go_to) {
+        FEELER_TRY(const bool taken, holds(step_.block));
+        if (!taken) return {};
+    }
+    const auto line = line_of_block(step_.library, source_, std::stod(name_), line_);
+    if (!line) return refuse(fmt::format("there is no block N{} to go to", name_));
+    const auto other = line_of_block(step_.library, source_, std::stod(name_), *line);
+    if (other && *other != *line)
+        step_.result.warnings.push_back(
+            {Severity::warning, step_.block.flow.span,
+             fmt::format("N{} stands in lines {} and {}: the control takes the first one behind "
+                         "the jump, else the first of the program",
+                         name_, std::min(*line, *other), std::max(*line, *other))});
+    set_line(*line);
+    return {};
+}
+
+core::Result<void> Flowing::run() {
+    if (auto named = find_name(); !named) return named;
+    switch (step_.block.flow.kind) {
+    case sub:
+        return skip_sub();
+    case call:
+        return Flowing::call_sub();
+    case return_value:
+    case end_sub:
+        return give_back();
+    case if_branch:
+        warn_of_second_use();
+        return take_branch();
+    case else_if:
+    case otherwise:
+    case end_if:
+        return end_if_statement();
+    case while_loop:
+        return while_statement();
+    case end_while: {
+        FEELER_TRY(const FlowMark* const head, partner({while_loop}, false, "while"));
+        set_line(head->line);
+        return {};
+    }
+    case repeat:
+        return repeat_statement();
+    case end_repeat:
+        return end_repeat_statement();
+    case break_loop:
+        return leave_loop();
+    case continue_loop:
+        return continue_loop_early();
+    case go_to:
+    case if_go_to:
+        return jump();
+    case while_do: {
+        if (!step_.block.flow.has_condition) return {};
+        FEELER_TRY(const bool goes_on, holds(step_.block));
+        return goes_on ? core::Result<void>{} : go_behind_partner({end_do}, true, "END");
+    }
+    case end_do: {
+        FEELER_TRY(const FlowMark* const head, partner({while_do}, false, "DO"));
+        set_line(head->line);
+        return {};
+    }
+    default:
+        return {}; // statements that only mark a place
+    }
+}
+
+} // namespace
+
+core::Result<void> run_flow(const FlowStep& step) {
+    if (step.dialect.language == Language::klartext) return run_klartext_flow(step);
+    if (step.dialect.language == Language::siemens) return run_siemens_flow(step);
+    switch (step.block.flow.kind) {
+    case do_loop:
+    case program_number:
+        return {}; // says where something is; not worth an index of all lines
+    default:
+        return Flowing(step).run();
+    }
+}
+
+core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
+                                   const Dialect& dialect) {
+    FEELER_TRY(const Value value, evaluate(block.pool, block.flow.condition, block.line, parameters,
+                                           dialect.arithmetic));
+    return value.value_or(0.0) != 0.0;
+}
+
+std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
+                                      uint32_t from) {
+    const FlowIndex& index = library.index(source);
+    uint32_t begin = 1, end = UINT32_MAX;
+    for (const FlowMark& mark : index.marks) {
+        if (mark.kind != program_number) continue;
+        if (mark.line <= from) begin = mark.line;
+        if (mark.line > from && end == UINT32_MAX) end = mark.line;
+    }
+    if (const auto ahead = index.line_of_number(number, from + 1, end)) return ahead;
+    return index.line_of_number(number, begin, from + 1);
+}
+
+using core::ErrorCode;
+
+core::Result<void> enter(InterpreterState& state, const Environment& environment, Frame frame,
+                         core::SourceSpan where) {
+    const size_t own = dialect(environment.dialect).deepest_calls;
+    const size_t deepest = environment.limits.calls ? environment.limits.calls : own;
+    if (state.frames.size() > deepest)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("calls go deeper than the {} levels this control has: does "
+                                      "a subprogram call itself without end?",
+                                      deepest),
+                          where);
+    state.next = frame.begin;
+    state.frames.push_back(std::move(frame));
+    return {};
+}
+
+void leave(InterpreterState& state) {
+    Frame& frame = state.frames.back();
+    if (frame.rounds_left > 0) {
+        --frame.rounds_left;
+        frame.repeats.clear();
+        if (frame.again) frame.locals = *frame.again;
+        state.next = frame.begin;
+        return;
+    }
+    leave_to(state, frame.called_from.line + 1);
+}
+
+void leave_to(InterpreterState& state, uint32_t line) {
+    Frame& frame = state.frames.back();
+    if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
+    // Fanuc B-64304, modal call: the local variables are not set anew for each call.
+    if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
+        state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
+    state.next = {frame.called_from.source, line};
+    state.frames.pop_back();
+}
+
+using core::ErrorCode;
+
+core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
+    constexpr uint64_t interval = 16; // jumps between two looks
+    const bool back = state.next.source != from.source || state.next.line <= from.line;
+    LoopWatch& watch = state.watch;
+    if (!back || ++watch.jumps % interval != 0) return {};
+    const uint64_t now = digest_of(state);
+    if (now == watch.noted && watch.next_note > 1)
+        return core::fail(ErrorCode::invalid_value,
+                          "the program never ends: it comes back here in exactly the same state, "
+                          "so it will do so again",
+                          {.line = from.line, .column = 1});
+    if (watch.jumps / interval < watch.next_note) return {};
+    watch.noted = now;
+    watch.next_note *= 2;
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gcode/language/block.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/modal_state.h"
+#include "gcode/language/parameters.h"
+#include "gcode/read/flow_index.h"
+#include "gcode/text/shared.h"
+#include "gcode/text/source.h"
+
+namespace gcode {
+
+/// A line of one of the programs that are read; source 0 is the main program.
+struct Place {
+    uint32_t source = 0;
+    uint32_t line = 1;
+
+    auto operator<=>(const Place&) const = default;
+};
+
+/// A macro call that is made again after every motion (G66) or for every block (G66.1).
+struct ModalMacro {
+    std::string name;
+    Place begin;                 // its first line
+    LocalParameters arguments{}; // as the last call left them
+    int64_t rounds = 1;
+    bool each_block = false; // G66.1: every block is its arguments
+
+    bool operator==(const ModalMacro&) const = default;
+};
+
+/// One level of calls; the first is the main program.
+struct Frame {
+    Place called_from;  // the line of the call
+    Place begin;        // the first line of what was called
+    std::string name{}; // of the subprogram; empty for the main program
+    LocalParameters locals{};
+    bool shares_locals = false; // M98: #1 to #33 are those of the caller
+    NamedValues named{};
+    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names that are no REAL
+    std::map<uint32_t, int64_t> repeats{};                   // line of `repeat`: rounds still to go
+    int64_t rounds_left = 0;                                 // of M98 L
+    std::optional<LocalParameters> again{};    // the locals that another round begins with
+    Shared<std::optional<ModalState>> saved{}; // M70, M73
+    bool restores = false;                     // M73: at the return
+    size_t modal_macro = 0;                    // which one of G66 called it, from 1; 0 for none
+
+    bool operator==(const Frame&) const = default;
+};
+
+/// The programs of a run: the main one, and the subprograms that were looked for so far. Files are
+/// read from the folders of the search path and from nowhere else.
+class ProgramLibrary {
+public:
+    /// The main program must stay where it is. Without a search path, the main program's own folder
+    /// is searched.
+    ProgramLibrary(const Program& main, const Dialect& dialect,
+                   std::vector<std::string> search_path = {});
+
+    const Program& program(uint32_t source) const { return *sources_[source].program; }
+    const Dialect& dialect() const { return *dialect_; }
+    const std::vector<std::string>& search_path() const { return search_path_; }
+
+    /// The labels and flow statements of a program.
+    ///
+    /// Cost: reads all of its lines the first time.
+    const FlowIndex& index(uint32_t source);
+
+    /// The program in the first file of the search path that has one of these names; empty when
+    /// there is none.
+    ///
+    /// Errors: io and syntax as read_program, and when names leave the search path.
+    core::Result<std::optional<uint32_t>> find(const std::vector<std::string>& file_names);
+
+    /// Likewise, whatever the case of the letters is; the names are in capitals.
+    core::Result<std::optional<uint32_t>>
+    find_in_any_case(const std::vector<std::string>& file_names);
+
+private:
+    struct Source {
+        std::shared_ptr<const Program> program;
+        std::unique_ptr<FlowIndex> index;
+    };
+
+    std::vector<Source> sources_;
+    std::map<std::string, uint32_t> by_path_;
+    const Dialect* dialect_;
+    std::vector<std::string> search_path_;
+};
+
+} // namespace gcode

@@ -1,0 +1,372 @@
+#include "gcode/exec/frame_codes.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/modes.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// A centre: its word, else where the machine is.
+core::Result<double> centre_along(const Execution& execution, const CodeWord& entry, size_t axis) {
+    if (const Word* word = execution.statement.word(axis_letters[axis]))
+        return axis_value(execution, axis, *word);
+    if (const auto& place = execution.modal().position[axis]) return *place;
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} has no {} word for its centre, and where the machine is "
+                                  "along {} is unknown: write the word",
+                                  written(*entry.word), axis_letters[axis], axis_letters[axis]),
+                      entry.word->span);
+}
+
+core::Result<double> factor_of(Execution& execution, const Word& word) {
+    const bool thousandths =
+        execution.dialect.scale_without_point_is_thousandths && !word.has_point;
+    const double factor = thousandths ? word.value / 1000.0 : word.value;
+    if (factor == 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a scale is not 0", written(word)), word.span);
+    if (thousandths && std::abs(factor) < 0.05)
+        execution.warn(word.span, fmt::format("{}: without a decimal point this control counts "
+                                              "thousandths, so the scale is {:.4g}",
+                                              written(word), factor));
+    return factor;
+}
+
+/// G51. A direction whose factor is 1 needs no centre.
+core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
+    const Statement& statement = execution.statement;
+    const Word* all = statement.word('P');
+    Scaling scaling;
+    bool said = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Word* word = all ? all : statement.word("IJK"[axis]);
+        if (!word) continue;
+        said = true;
+        FEELER_TRY(scaling.factors[axis], factor_of(execution, *word));
+    }
+    if (!said)
+        return core::fail(ErrorCode::missing_value,
+                          "G51 does not say how much to scale: write P, or I, J and K; a scale "
+                          "kept in the control's parameters is not known here",
+                          entry.word->span);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (scaling.factors[axis] == 1.0) continue;
+        FEELER_TRY(scaling.centre[axis], centre_along(execution, entry, static_cast<size_t>(axis)));
+    }
+    execution.modal().transforms.scaling = scaling;
+    return {};
+}
+
+/// G51.1, and Haas's G101: the axes that are named are reflected as well.
+void set_mirror(Execution& execution) {
+    MirrorImage& mirror = execution.modal().transforms.mirror;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        mirror.axes[axis] = true;
+        mirror.place[static_cast<int>(axis)] = axis_value(execution, axis, *word);
+    }
+}
+
+/// G50.1, G100: for the axes that are named, or all.
+void cancel_mirror(Execution& execution) {
+    MirrorImage& mirror = execution.modal().transforms.mirror;
+    const bool all = !execution.statement.has_axis_word();
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (all || execution.statement.word(axis_letters[axis])) {
+            mirror.axes[axis] = false;
+            mirror.place[static_cast<int>(axis)] = 0.0;
+        }
+}
+
+/// The angle of G68; under G91 it may be counted from the one before.
+core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry) {
+    const Word* word = execution.statement.word('R');
+    if (!word)
+        return core::fail(ErrorCode::missing_value,
+                          "G68 does not say how far to turn: write R; an angle kept in the "
+                          "control's parameters is not known here",
+                          entry.word->span);
+    const auto& before = execution.modal().transforms.rotation;
+    if (execution.modal().distance == DistanceMode::absolute || !before) return word->value;
+    execution.warn(word->span, fmt::format("{}: counted from the angle before, as under G91 a "
+                                           "setting of the control says; G90 leaves no doubt",
+                                           written(*word)));
+    return before->degrees + word->value;
+}
+
+/// G68: both words of the centre are absolute, also under G91.
+core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
+    ModalState& modal = execution.modal();
+    for (const char letter : {'I', 'J', 'K'})
+        if (const Word* word = execution.statement.word(letter))
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{}: G68 with I, J or K turns about any direction, which "
+                                          "is not supported yet: use G68.2",
+                                          written(*word)),
+                              word->span);
+    const PlaneAxes axes = axes_of(modal.plane);
+    FEELER_TRY(const double degrees, rotation_angle(execution, entry));
+    core::Vec3 centre(0.0);
+    // The words are coordinates as they would be without the rotation.
+    ProgramTransforms without = modal.transforms;
+    if (without.rotation) {
+        without.rotation.reset();
+        use_transforms(execution, without);
+    }
+    for (const size_t axis : {axes.first, axes.second}) {
+        FEELER_TRY(centre[static_cast<int>(axis)], centre_along(execution, entry, axis));
+    }
+    const std::array<bool, 3>& mirrored = modal.transforms.mirror.axes;
+    modal.transforms.before_rotation = modal.position;
+    modal.transforms.rotation =
+        PlaneRotation{.normal = static_cast<int>(axes.normal),
+                      .centre = scaled_place(modal.transforms, centre),
+                      .degrees = degrees,
+                      .is_reversed = mirrored[axes.first] != mirrored[axes.second]};
+    return {};
+}
+
+/// A contour that is moved aside cannot change its shape on the way.
+core::Result<void> check_contour_is_off(const Execution& execution, const CodeWord& entry) {
+    const ModalState& modal = execution.modal();
+    const int code = entry.code->tenths;
+    const bool is_on = modal.offsets.has_frame;
+    const bool cancels = code == tenths(50) || code == tenths(50, 1) || code == tenths(69);
+    if (modal.compensation == Side::none || entry.code->group == ModalGroup::polar
+        || (cancels && !is_on))
+        return {};
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{} between G41 or G42 and G40 is not supported yet: switch "
+                                  "cutter radius compensation off before",
+                                  written(*entry.word)),
+                      entry.word->span);
+}
+
+core::Result<void> change_transforms(Execution& execution, const CodeWord& entry) {
+    ProgramTransforms& transforms = execution.modal().transforms;
+    switch (entry.code->tenths) {
+    case tenths(50):
+        transforms.scaling.reset();
+        return {};
+    case tenths(51):
+        return set_scaling(execution, entry);
+    case tenths(50, 1):
+    case tenths(100):
+        cancel_mirror(execution);
+        return {};
+    case tenths(51, 1):
+    case tenths(101):
+        set_mirror(execution);
+        return {};
+    case tenths(68):
+        return set_rotation(execution, entry);
+    case tenths(68, 2):
+        return set_tilted_plane(execution);
+    case tenths(69):
+        transforms.rotation.reset();
+        transforms.tilt.reset();
+        transforms.before_rotation.reset();
+        return {};
+    case tenths(15):
+        transforms.polar.reset();
+        return {};
+    default: // G16
+        if (!transforms.polar) transforms.polar = PolarPositions{};
+        return {};
+    }
+}
+
+} // namespace
+
+void use_transforms(Execution& execution, const ProgramTransforms& transforms) {
+    ModalState& modal = execution.modal();
+    modal.transforms = transforms;
+    Offsets offsets = modal.offsets;
+    offsets.frame = frame_of(transforms);
+    offsets.has_frame = offsets.frame != ProgramFrame{};
+    offsets.tilted_plane = transforms.tilt.has_value();
+    if (offsets == modal.offsets) return;
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+}
+
+core::Result<void> set_frame(Execution& execution) {
+    using enum ModalGroup;
+    for (const ModalGroup group : {mirror, scaling, rotation, polar}) {
+        const CodeWord* entry = execution.statement.of(group);
+        if (!entry) continue;
+        if (auto checked = check_contour_is_off(execution, *entry); !checked) return checked;
+        if (auto changed = change_transforms(execution, *entry); !changed) return changed;
+        use_transforms(execution, execution.modal().transforms);
+    }
+    return turn_tool_to_plane(execution);
+}
+
+core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxes& axes) {
+    const auto& scaling = execution.modal().transforms.scaling;
+    if (!scaling) return {};
+    const double first = scaling->factors[static_cast<int>(axes.first)];
+    const double second = scaling->factors[static_cast<int>(axes.second)];
+    if (std::abs(first) == std::abs(second)) return {};
+    const Word& mover = moving_word(execution);
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}, and the scaled "
+                                  "centre is not that of an arc between the scaled ends: scale "
+                                  "both alike, or write the arc with R",
+                                  written(mover), axis_letters[axes.first], first,
+                                  axis_letters[axes.second], second),
+                      mover.span);
+}
+
+namespace {
+
+using core::ErrorCode;
+
+/// The angles of I, J and K, degrees; 0 where a word is not there.
+core::Vec3 angles_of(const Execution& execution) {
+    core::Vec3 angles(0.0);
+    for (int i = 0; i < 3; ++i)
+        if (const Word* word = execution.statement.word("IJK"[i])) angles[i] = word->value;
+    return angles;
+}
+
+/// I about X, J about Y and K about Z of the work coordinates, in the order that Q's digits say.
+core::Result<core::Mat3> by_roll_pitch_yaw(const Execution& execution) {
+    const core::Vec3 angles = angles_of(execution);
+    int order = 123;
+    if (const Word* word = execution.statement.word('Q')) {
+        FEELER_TRY(order, whole_number(*word, 111, 333));
+        const int digits[] = {order / 100, order / 10 % 10, order % 10};
+        int found = 0;
+        for (const int digit : digits)
+            if (digit >= 1 && digit <= 3) found |= 1 << digit;
+        if (found != 0b1110)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: the order of the rotations is 1, 2 and 3, each once",
+                                          written(*word)),
+                              word->span);
+    }
+    core::Mat3 axes(1.0);
+    for (const int digit : {order / 100, order / 10 % 10, order % 10})
+        axes = turned_about(digit - 1, angles[digit - 1]) * axes;
+    return axes;
+}
+
+core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
+    const Word* word = execution.statement.word('P');
+    int form = 0;
+    if (word) {
+        FEELER_TRY(form, whole_number(*word, 0, 4));
+    }
+    const core::Vec3 angles = angles_of(execution);
+    if (form == 1) return by_roll_pitch_yaw(execution);
+    if (form != 0)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: planes by points, vectors or projected angles are not "
+                                      "supported yet: give Euler angles, G68.2 X Y Z I J K",
+                                      written(*word)),
+                          word->span);
+    // About Z, then about the new X, then about the new Z.
+    return turned_about(2, angles[0]) * turned_about(0, angles[1]) * turned_about(2, angles[2]);
+}
+
+/// What a rotary axis of the machine counts more than that of the program.
+double rotary_offset(const Offsets& offsets, size_t axis) {
+    return offsets.work.origin[axis] + offsets.local[axis] + offsets.axis[axis].value_or(0.0)
+           + offsets.tool[axis];
+}
+
+/// The values of the machine's axes with the tool along a direction of the program's coordinates.
+core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
+                                 const core::Vec3& direction) {
+    const Offsets& offsets = execution.modal().offsets;
+    const Position place = machine_from_program(offsets, execution.modal().position);
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (is_rotary(axis) && offsets.machine->axes[axis].present && !place[axis])
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{}: turns the tool, and where axis {} stands is not known: say it "
+                            "under [program] start, or the machine's home",
+                            written(word), axis_letters[axis]),
+                word.span);
+        values[axis] = place[axis].value_or(0.0);
+    }
+    const core::Vec3 in_work =
+        turned_about(2, offsets.work.rotation_deg) * (offsets.frame.linear * direction);
+    const core::Vec3 in_table =
+        table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
+    if (const auto found = core::point_tool(*offsets.machine, values, in_table)) return *found;
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("{}: no rotary axes of this machine turn the tool that way "
+                                  "within their limits",
+                                  written(word)),
+                      word.span);
+}
+
+core::Result<void> turn_rotary_axes(Execution& execution, const Word& word) {
+    const Offsets& offsets = execution.modal().offsets;
+    FEELER_TRY(const AxisValues values, pointed(execution, word, core::Vec3(0.0, 0.0, 1.0)));
+    Position machine = machine_from_program(offsets, execution.modal().position);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis) && offsets.machine->axes[axis].present) machine[axis] = values[axis];
+    execution.traverse(program_from_machine(offsets, machine));
+    return {};
+}
+
+} // namespace
+
+core::Result<void> set_tilted_plane(Execution& execution) {
+    TiltedPlane plane;
+    for (int axis = 0; axis < 3; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[static_cast<size_t>(axis)]))
+            plane.origin[axis] = length_of(execution, *word);
+    FEELER_TRY(plane.axes, axes_of_plane(execution));
+    execution.modal().transforms.tilt = plane;
+    return {};
+}
+
+core::Result<void> turn_tool_to_plane(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->letter != 'G' || entry.code->tenths != tenths(53, 1)) continue;
+        if (!execution.modal().transforms.tilt)
+            return core::fail(ErrorCode::invalid_value,
+                              "G53.1 turns the tool to a tilted plane, and none is set: write "
+                              "G68.2 before it",
+                              entry.word->span);
+        if (execution.modal().offsets.machine) return turn_rotary_axes(execution, *entry.word);
+        if (execution.modal().offsets.frame.tilts_tool)
+            execution.warn(entry.word->span,
+                           "G53.1 turns rotary axes as the machine's build says: where they go is "
+                           "not followed");
+    }
+    return {};
+}
+
+core::Result<void> point_by_vector(const Execution& execution, Position& target) {
+    const ModalState& modal = execution.modal();
+    if (!modal.transforms.follows_vectors || !modal.offsets.machine) return {};
+    const core::Vec3 direction = angles_of(execution);
+    const Word* word = nullptr;
+    for (const char letter : {'I', 'J', 'K'})
+        if (const Word* found = execution.statement.word(letter)) word = found;
+    if (!word) return {};
+    if (!(glm::length(direction) > 0.0))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: I, J and K give the tool no direction", written(*word)),
+                          word->span);
+    FEELER_TRY(const AxisValues values, pointed(execution, *word, direction));
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis) && modal.offsets.machine->axes[axis].present)
+            target[axis] = values[axis] - rotary_offset(modal.offsets, axis);
+    return {};
+}
+
+} // namespace gcode

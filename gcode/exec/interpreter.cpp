@@ -1,0 +1,537 @@
+#include "gcode/exec/interpreter.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/assignments.h"
+#include "gcode/exec/execution.h"
+#include "gcode/exec/fanuc_parameters.h"
+#include "gcode/exec/flow.h"
+#include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/exec/program_parameters.h"
+#include "gcode/exec/quick_move.h"
+#include "gcode/exec/statement.h"
+#include "gcode/exec/subprogram.h"
+#include "gcode/klartext/klartext.h"
+#include "gcode/klartext/klartext_parser.h"
+#include "gcode/read/parser.h"
+#include "gcode/read/plain_words.h"
+#include "gcode/siemens/siemens.h"
+
+namespace gcode {
+
+/// What a block may change, kept until it has succeeded.
+struct BeforeBlock {
+    ModalState modal;
+    Place next;
+    uint32_t next_block;
+    bool tape_open, said_unit, said_home;
+    Ending ending;
+    bool said_time;
+    DecimalPoints points;
+    RuleWatch rules;
+    Shared<Tables> tables;
+    Shared<KlartextState> klartext;
+    Shared<SplineState> spline;
+    Shared<SiemensState> siemens;
+    // Only of blocks that call or return.
+    bool has_calls = false;
+    std::vector<Frame> frames;
+    std::vector<ModalMacro> modal_macros;
+};
+
+void keep(const InterpreterState& state, BeforeBlock& before);
+void restore(InterpreterState& state, const BeforeBlock& before);
+
+/// The levels of calls are large, so they are kept apart from the rest and only for few blocks.
+void keep_calls(const InterpreterState& state, BeforeBlock& before);
+void restore_calls(InterpreterState& state, const BeforeBlock& before); // if they were kept
+
+/// Warns once of a program that writes some lengths with a decimal point and some without one: on
+/// controls that count their smallest steps the latter are a thousandth of what they look like.
+void note_points(const Block& block, InterpreterState& state, BlockResult& result);
+
+/// Makes lengths and angles without a decimal point what a control that counts its smallest steps
+/// reads: 0.001 mm, 0.0001 inch, 0.001 degrees. F, P and counts are left as they are.
+void count_smallest_steps(Block& block, const ModalState& modal);
+
+namespace {
+
+using core::ErrorCode;
+
+/// Whether a flow statement goes to another level of calls.
+bool changes_level(FlowKind kind) {
+    return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
+           || kind == FlowKind::call_program || kind >= FlowKind::for_loop;
+}
+
+/// Whether a line is skipped without a look at its words: they may be of another machine.
+bool is_deleted(std::string_view line) {
+    const size_t first = line.find_first_not_of(" \t");
+    return first != std::string_view::npos && line[first] == '/';
+}
+
+} // namespace
+
+struct Interpreter::Scratch {
+    ProgramLibrary& library;
+    const Environment& environment;
+    const Dialect& dialect;
+    Block block{};
+    Statement statement{};
+    BlockResult result{};
+    std::string line_text{};
+    BeforeBlock before{};
+    std::vector<AssignmentUndo> undos{};
+    std::vector<Value> values{};
+    std::unique_ptr<Environment> iso_environment{}; // Siemens, behind G291
+    std::unique_ptr<Scratch> iso{};
+
+    Scratch& speaking(const InterpreterState& state);
+    core::Result<bool> read_line(InterpreterState& state);
+    core::Result<bool> end_of_text(InterpreterState& state);
+    bool begins_another_program(const InterpreterState& state) const;
+    void remember_words(InterpreterState& state) const;
+    core::Result<void> run_block(InterpreterState& state);
+    void take_back(InterpreterState& state);
+    void begin_result(const InterpreterState& state, Place place);
+    core::Result<bool> try_next(InterpreterState& state);
+    bool try_quick_move(InterpreterState& state);
+    bool asks_for_stop(const InterpreterState& state) const {
+        return state.next_block % 1024 == 0 && environment.limits.is_stopped;
+    }
+    core::SourceSpan place_of(core::SourceSpan where) const;
+    void place_in_lines();
+};
+
+/// Who reads the program's language where it stands: a control may have two.
+Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
+    if (dialect.language != Language::siemens || !state.siemens->is_iso) return *this;
+    if (!iso) {
+        iso_environment = std::make_unique<Environment>(environment);
+        iso_environment->dialect = DialectId::siemens_iso;
+        iso.reset(new Scratch{library, *iso_environment, gcode::dialect(DialectId::siemens_iso)});
+    }
+    return *iso;
+}
+
+/// Reads the next line that says something; false at the end of the text.
+core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
+    while (true) {
+        const Program& program = library.program(state.next.source);
+        FEELER_TRY(const auto found, program.find_line(state.next.line));
+        if (!found) return false;
+        const uint32_t number = state.next.line++;
+        std::string_view text =
+            dialect.language == Language::klartext ? klartext_block(program, number) : *found;
+        if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
+        if (program.windows) text = line_text.assign(text); // flow statements look at other lines
+        if (environment.block_delete && is_deleted(text)) continue;
+        if (auto parsed = parse_line(text, number, dialect, block); !parsed)
+            return tl::unexpected(std::move(parsed).error());
+        const bool inside = state.frames.size() > 1;
+        if (block.tape_mark && inside && !dialect.has_o_words) return false;
+        if (block.tape_mark && state.next.source == 0
+            && (state.tape_open || state.next_block > 0)) {
+            state.ending = Ending::tape_mark;
+            return false;
+        }
+        if (begins_another_program(state)) return false;
+        if (state.next.source == 0) state.tape_open |= block.tape_mark;
+        if (block.kept_words && environment.block_delete)
+            block.words.erase(block.words.begin() + static_cast<std::ptrdiff_t>(*block.kept_words),
+                              block.words.end());
+        if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
+        return true;
+    }
+}
+
+/// Where O numbers are programs of their own, one ends where the next one begins.
+bool Interpreter::Scratch::begins_another_program(const InterpreterState& state) const {
+    const bool numbered = !block.words.empty() && block.words.front().letter == 'O';
+    return numbered && dialect.has_fanuc_flow && (state.frames.size() > 1 || state.next_block > 0);
+}
+
+/// The words of the block before, which macros can ask for, and the time it took.
+void Interpreter::Scratch::remember_words(InterpreterState& state) const {
+    if (!remembers_words(dialect.system_parameters)) return;
+    advance_timers(state);
+    for (const Word& word : block.words)
+        if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
+}
+
+/// What the end of a text means: the end of the run, unless a subprogram should have gone back or
+/// does so by itself, so that there is more to read.
+core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
+    if (state.ending == Ending::running && state.frames.size() > 1 && dialect.text_end_returns) {
+        keep_calls(state, before);
+        leave(state);
+        return true;
+    }
+    if (state.ending == Ending::running && state.frames.size() > 1)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("the subprogram {} ends here without {}: the control stops "
+                                      "with an alarm",
+                                      state.frames.back().name,
+                                      dialect.has_o_words ? "endsub or M99" : "M99"),
+                          {.line = state.next.line - 1});
+    if (state.ending == Ending::running) state.ending = Ending::text_end;
+    return false;
+}
+
+void Interpreter::Scratch::begin_result(const InterpreterState& state, Place place) {
+    result.block = core::BlockIndex(state.next_block);
+    result.line = block.line;
+    result.text = block.text;
+    result.own_text.reset();
+    result.file = place.source == 0 ? std::string_view() : library.program(place.source).file;
+    result.calls.clear();
+    for (size_t level = 1; level < state.frames.size(); ++level)
+        result.calls.push_back(state.frames[level].called_from.line);
+    result.is_cycle = result.goes_home = false;
+    result.commands.clear();
+    result.columns.clear();
+    result.warnings.clear();
+}
+
+/// Gives the parameters of a block that failed their old values.
+void Interpreter::Scratch::take_back(InterpreterState& state) {
+    restore_calls(state, before);
+    ProgramParameters parameters(state, environment);
+    take_back_assignments(undos, parameters);
+    undos.clear();
+    restore(state, before);
+}
+
+core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
+    ProgramParameters parameters(state, environment);
+    const bool is_plain = block.flow.kind == FlowKind::none && block.pool.instructions.empty()
+                          && block.assignments.empty();
+    undos.clear();
+    if (!is_plain) {
+        if (block.flow.kind == FlowKind::if_then) {
+            FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
+            if (!holds) return {};
+        }
+        const bool inch = state.modal.unit == LengthUnit::inch;
+        const Assigning assigning{block, dialect, parameters, undos, values, result, inch};
+        if (auto done = work_out_block(assigning); !done) return done;
+        if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
+        if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);
+        if (changes_level(block.flow.kind)) keep_calls(state, before);
+        if (block.flow.kind != FlowKind::none && block.flow.kind != FlowKind::if_then)
+            return run_flow({library, environment, dialect, block, state, result});
+    }
+    if (dialect.decimal_points_matter) {
+        if (environment.counts_smallest_steps)
+            count_smallest_steps(block, state.modal);
+        else
+            note_points(block, state, result);
+    }
+    if (auto looked_up =
+            look_up(block, dialect, environment, statement, blocks_are_arguments(state));
+        !looked_up)
+        return looked_up;
+    if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
+        || !state.modal_macros.empty()
+        || (dialect.language == Language::siemens && changes_levels_in_siemens(statement, state)))
+        keep_calls(state, before);
+    Execution execution{library, environment, dialect, block, statement, state, result};
+    if (dialect.language == Language::klartext) return run_klartext(execution);
+    if (dialect.language == Language::siemens) return run_siemens(execution);
+    if (auto taken = take_steps(execution); !taken) return taken;
+    look_for_regrets(execution, before.modal);
+    if (state.siemens->is_iso) return leave_iso(execution);
+    return {};
+}
+
+core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
+    if (!dialect.supported)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("the dialect {} is not supported yet", dialect.name));
+    FEELER_TRY(bool found, read_line(state));
+    while (!found) {
+        FEELER_TRY(const bool goes_on, end_of_text(state));
+        if (!goes_on) return false;
+        FEELER_TRY(found, read_line(state));
+    }
+    const Place place{state.next.source, block.line};
+    begin_result(state, place);
+    if (state.next_block >= environment.limits.blocks)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("the program was stopped after {} blocks; if it is meant to "
+                                      "be that long, raise the limit with --max-blocks",
+                                      environment.limits.blocks),
+                          {.line = block.line, .column = 1});
+    if (asks_for_stop(state) && environment.limits.is_stopped())
+        return core::fail(ErrorCode::io, "the program was stopped", {.line = block.line});
+    if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
+    ++state.next_block;
+    if (auto watched = watch_for_endless_loop(state, place); !watched)
+        return tl::unexpected(std::move(watched).error());
+    return true;
+}
+
+/// Takes a line that is a straight move and nothing else; false when it is not, and nothing has
+/// changed then. Nothing can fail here, so nothing is kept to be taken back.
+bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
+    if (dialect.language != Language::words || environment.counts_smallest_steps
+        || state.next_block >= environment.limits.blocks || asks_for_stop(state)
+        || !moves_quickly(state))
+        return false;
+    const auto found = library.program(state.next.source).find_line(state.next.line);
+    if (!found || !*found) return false;
+    block.clear();
+    block.line = state.next.line;
+    block.text = **found;
+    if (!read_plain_words(block.text, block.line, dialect, block)) return false;
+    begin_result(state, {state.next.source, block.line});
+    if (!take_quick_move(block, state, result)) return false;
+    if (dialect.decimal_points_matter) note_points(block, state, result);
+    ++state.next.line;
+    ++state.next_block;
+    remember_words(state);
+    return true;
+}
+
+/// Where a place of the block really is: a block may have several lines.
+core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
+    const bool several = dialect.language == Language::klartext && where.line == block.line;
+    return several ? gcode::place_in_lines(block.text, where) : where;
+}
+
+void Interpreter::Scratch::place_in_lines() {
+    for (Warning& warning : result.warnings) warning.where = place_of(warning.where);
+}
+namespace {
+
+/// Gives a block that waits for later ones a text of its own.
+void keep_text(BlockResult& result) {
+    result.own_text = std::make_shared<const std::string>(result.text);
+    result.text = *result.own_text;
+}
+
+} // namespace
+
+Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment)
+    : scratch_(new Scratch{library, environment, gcode::dialect(environment.dialect)}) {}
+
+Interpreter::~Interpreter() = default;
+
+core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
+    while (true) {
+        Scratch& scratch = scratch_->speaking(state);
+        Contour& contour = state.contour;
+        if (!contour.ready.empty()) {
+            scratch.result = std::move(contour.ready.front());
+            contour.ready.pop_front();
+            return &scratch.result;
+        }
+        if (contour.failure) return tl::unexpected(*contour.failure);
+        if (state.ending != Ending::running) return nullptr;
+        if (scratch.try_quick_move(state)) return &scratch.result;
+        keep(state, scratch.before);
+        scratch.undos.clear();
+        const uint32_t source = state.next.source;
+        auto found = scratch.try_next(state);
+        if (found)
+            scratch.place_in_lines();
+        else
+            found.error().where = scratch.place_of(found.error().where);
+        const bool is_block = found && *found;
+        const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
+        if (is_block && straight_out) {
+            scratch.remember_words(state);
+            return &scratch.result;
+        }
+        core::Result<void> taken;
+        if (is_block && scratch.library.program(source).windows) keep_text(scratch.result);
+        if (is_block)
+            taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
+        else if (found)
+            taken = end_contour(contour);
+        if (is_block && taken) scratch.remember_words(state);
+        if (found && taken) continue;
+        core::Error error = found ? std::move(taken).error() : std::move(found).error();
+        scratch.take_back(state);
+        error.where = scratch.place_of(error.where);
+        if (error.file.empty()) error.file = scratch.library.program(source).file;
+        if (contour.is_idle()) return tl::unexpected(std::move(error));
+        // What came before is complete but for the moves that waited for this one.
+        give_up(contour);
+        contour.failure = std::move(error);
+    }
+}
+
+InterpreterState initial_state(const Environment& environment) {
+    InterpreterState state;
+    ModalState& modal = state.modal;
+    const Dialect& rules = dialect(environment.dialect);
+    modal.unit = rules.unit_is_machines ? environment.machine_unit : rules.unit;
+    modal.retract = dialect(environment.dialect).retract;
+    Tables& tables = state.tables.write();
+    for (size_t i = 0; i < plain_offset_count; ++i)
+        tables.work[i].origin = environment.work_offsets[i];
+    tables.lengths = environment.length_offsets;
+    tables.tool_lengths = environment.tool_lengths;
+    tables.tool_diameters = environment.tool_diameters;
+    load_parameters(state, environment);
+    modal.offsets.work = tables.work[0];
+    if (environment.machine && environment.machine->has_rotary())
+        modal.offsets.machine = environment.machine.get();
+    begin_with_kept_offsets(state, environment);
+    Position start = environment.start;
+    // Axes beyond X, Y and Z that nobody speaks of stand at zero, or are not there.
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (!start[axis]) start[axis] = 0.0;
+    modal.position = program_from_machine(modal.offsets, start);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (environment.home) modal.home[axis] = (*environment.home)[axis];
+        if (environment.second_home) modal.second_home[axis] = (*environment.second_home)[axis];
+    }
+    return state;
+}
+
+std::optional<Warning> ending_warning(const Environment& environment,
+                                      const InterpreterState& state) {
+    const core::SourceSpan where{.line = static_cast<uint32_t>(state.next.line - 1)};
+    if (state.ending == Ending::main_return)
+        return Warning{Severity::warning, where,
+                       "M99 in a main program starts it again; one pass was looked at"};
+    const bool proper_mark =
+        state.ending == Ending::tape_mark && dialect(environment.dialect).tape_mark_ends_program;
+    if (state.ending == Ending::text_end || (state.ending == Ending::tape_mark && !proper_mark))
+        return Warning{Severity::warning, where, "the program has no M2 or M30 at its end"};
+    return std::nullopt;
+}
+
+Run run(const Program& program, const Environment& environment) {
+    Run whole;
+    whole.library = std::make_shared<ProgramLibrary>(program, dialect(environment.dialect),
+                                                     environment.search_path);
+    Interpreter interpreter(*whole.library, environment);
+    whole.state = initial_state(environment);
+    while (true) {
+        auto result = interpreter.next(whole.state);
+        if (!result) {
+            whole.error = std::move(result).error();
+            return whole;
+        }
+        if (!*result) break;
+        whole.blocks.push_back(**result);
+    }
+    whole.ending = ending_warning(environment, whole.state);
+    return whole;
+}
+
+void keep_calls(const InterpreterState& state, BeforeBlock& before) {
+    before.has_calls = true;
+    before.frames = state.frames;
+    before.modal_macros = state.modal_macros;
+}
+
+void keep(const InterpreterState& state, BeforeBlock& before) {
+    before.modal = state.modal;
+    before.next = state.next;
+    before.next_block = state.next_block;
+    before.tape_open = state.tape_open;
+    before.said_unit = state.said_unit;
+    before.said_home = state.said_home;
+    before.ending = state.ending;
+    before.said_time = state.said_time;
+    before.points = state.points;
+    before.rules = state.rules;
+    before.tables = state.tables;
+    before.klartext = state.klartext;
+    before.spline = state.spline;
+    before.siemens = state.siemens;
+    before.has_calls = false;
+}
+
+void restore(InterpreterState& state, const BeforeBlock& before) {
+    state.modal = before.modal;
+    state.next = before.next;
+    state.next_block = before.next_block;
+    state.tape_open = before.tape_open;
+    state.said_unit = before.said_unit;
+    state.said_home = before.said_home;
+    state.ending = before.ending;
+    state.said_time = before.said_time;
+    state.points = before.points;
+    state.rules = before.rules;
+    state.tables = before.tables;
+    state.klartext = before.klartext;
+    state.spline = before.spline;
+    state.siemens = before.siemens;
+}
+
+void restore_calls(InterpreterState& state, const BeforeBlock& before) {
+    if (!before.has_calls) return;
+    state.frames = before.frames;
+    state.modal_macros = before.modal_macros;
+}
+
+namespace {
+
+template <typename Wanted>
+bool has_code(const Block& block, char letter, Wanted wanted) {
+    return std::any_of(block.words.begin(), block.words.end(), [&](const Word& word) {
+        return word.letter == letter && !word.expression && wanted(word.value);
+    });
+}
+
+/// Whether X, Y, Z, I and J of a block are something else than lengths.
+bool has_other_meanings(const Block& block) {
+    return has_code(block, 'G', [](double code) {
+        return code == 4.0 || code == 10.0 || code == 65.0 || code == 66.0 || code == 66.1;
+    });
+}
+
+bool is_cycle(double code) { return code >= 73.0 && code <= 89.0 && code != 80.0; }
+
+} // namespace
+
+void note_points(const Block& block, InterpreterState& state, BlockResult& result) {
+    DecimalPoints& points = state.points;
+    if (points.said || has_other_meanings(block)) return;
+    for (const Word& word : block.words) {
+        const bool is_length =
+            std::string_view("XYZIJ").find(word.letter) != std::string_view::npos;
+        if (!is_length || word.expression || word.value == 0.0) continue;
+        (word.has_point ? points.present : points.missing) = true;
+        if (!points.present || !points.missing) continue;
+        points.said = true;
+        result.warnings.push_back(
+            {Severity::warning, word.span,
+             fmt::format("{} has {} decimal point, lengths before it have {}: those without one "
+                         "are taken as whole units; a control set to count its smallest steps "
+                         "makes them a thousandth or less",
+                         written(word), word.has_point ? "a" : "no",
+                         word.has_point ? "none" : "one"),
+             "missing-decimal-point", "Write every length with a decimal point."});
+        return;
+    }
+}
+
+void count_smallest_steps(Block& block, const ModalState& modal) {
+    const bool waits = has_code(block, 'G', [](double code) { return code == 4.0; });
+    if (waits) return; // X is a time, and counts milliseconds anyway
+    const bool to_inch = has_code(block, 'G', [](double code) { return code == 20.0; });
+    const bool to_mm = has_code(block, 'G', [](double code) { return code == 21.0; });
+    const bool inch = to_inch || (modal.unit == LengthUnit::inch && !to_mm);
+    const bool cycle = modal.cycle || has_code(block, 'G', is_cycle);
+    const bool calls = has_code(block, 'M', [](double code) { return code >= 96.0; });
+    const bool turns = has_code(block, 'G', [](double code) { return code == 68.0; });
+    for (Word& word : block.words) {
+        if (word.has_point || word.expression) continue;
+        if (std::string_view("XYZABCUVWIJKRQrc").find(word.letter) == std::string_view::npos)
+            continue;
+        if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && calls)) continue;
+        const bool angle =
+            (word.letter >= 'A' && word.letter <= 'C') || (word.letter == 'R' && turns);
+        word.value /= inch && !angle ? 10000.0 : 1000.0;
+    }
+}
+
+} // namespace gcode

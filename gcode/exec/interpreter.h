@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "gcode/contour/contour.h"
+#include "gcode/cycles/spline.h"
+#include "gcode/exec/frame.h"
+#include "gcode/exec/rules.h"
+#include "gcode/klartext/klartext_state.h"
+#include "gcode/language/canonical.h"
+#include "gcode/language/environment.h"
+#include "gcode/language/parameters.h"
+#include "gcode/language/tables.h"
+#include "gcode/siemens/siemens_state.h"
+#include "gcode/text/shared.h"
+#include "gcode/text/source.h"
+
+namespace gcode {
+
+/// Whether and how a program came to its end.
+enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
+
+/// Remembers one state of a loop, at farther and farther intervals, so that a loop in which a state
+/// comes again is found in the end however long it is.
+///
+/// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
+struct LoopWatch {
+    uint64_t jumps = 0, next_note = 1, noted = 0;
+
+    bool operator==(const LoopWatch&) const { return true; }
+};
+
+/// Whether a program writes lengths with a decimal point, without one, or now so and now so.
+struct DecimalPoints {
+    bool present = false, missing = false, said = false;
+
+    bool operator==(const DecimalPoints&) const = default;
+};
+
+/// Everything between two blocks. A plain value: copy it to go back in time; copies share what is
+/// large until one of them changes it.
+struct InterpreterState {
+    ModalState modal;
+    Place next; // the line that is read next
+    uint32_t next_block = 0;
+    bool tape_open = false; // a % was seen
+    bool said_unit = false; // the note that units were assumed
+    bool said_home = false; // the warning that home was assumed
+    bool said_time = false; // the warning that the time is not known
+    DecimalPoints points;
+    Ending ending = Ending::running;
+    std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
+    std::vector<ModalMacro> modal_macros;              // G66, the one that was said last behind
+    LocalParameters said{}; // Fanuc: the words that were said last, by the numbers of arguments
+    Shared<Parameters> parameters;
+    Shared<Tables> tables;
+    Contour contour; // blocks on their way through cutter radius compensation
+    Shared<KlartextState> klartext;
+    Shared<SplineState> spline;
+    Shared<SiemensState> siemens;
+    LoopWatch watch;
+    RuleWatch rules;
+
+    bool operator==(const InterpreterState&) const = default;
+};
+
+/// A number that follows from all that decides how a program goes on: everything but the count of
+/// blocks and the watch over loops.
+uint64_t digest_of(const InterpreterState& state);
+
+/// The state before the first block.
+InterpreterState initial_state(const Environment& environment);
+
+/// Carries out programs block by block. It keeps no state of a program itself.
+class Interpreter {
+public:
+    /// The library and the environment must outlive it.
+    Interpreter(ProgramLibrary& library, const Environment& environment);
+    ~Interpreter();
+
+    /// Executes the next block that does something, and gives what came of it until the next call;
+    /// null when the program has ended (see `state.ending`).
+    ///
+    /// Errors: those of parse_line and of the codes, with file, line, column and word; programs
+    ///         that never end, as far as that can be seen. Nothing has changed then: `state` is as
+    ///         before the block at fault.
+    /// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+    core::Result<const BlockResult*> next(InterpreterState& state);
+
+private:
+    struct Scratch;
+    std::unique_ptr<Scratch> scratch_;
+};
+
+/// What is to be said about the way the program ended: no M2 or M30.
+std::optional<Warning> ending_warning(const Environment& environment,
+                                      const InterpreterState& state);
+
+/// A whole program, which is not read in windows, up to its end or its first error.
+struct Run {
+    std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
+    std::vector<BlockResult> blocks;
+    std::optional<Warning> ending; // as ending_warning
+    std::optional<core::Error> error;
+    InterpreterState state; // after the last good block
+};
+
+Run run(const Program& program, const Environment& environment);
+
+} // namespace gcode

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/modes.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+core::Result<int> number_under(const Execution& execution, const CodeWord& entry, char letter) {
+    const Word* word = execution.statement.word(letter);
+    if (!word)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} needs a {} word", written(*entry.word), letter),
+                          entry.word->span);
+    return whole_number(*word, 0, 9999);
+}
+
+/// M62 to M65: a digital output on or off. M67, M68: an analogue one.
+core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
+    const int code = entry.code->tenths / 10;
+    const bool analog = code == 67 || code == 68;
+    FEELER_TRY(const int number, number_under(execution, entry, analog ? 'E' : 'P'));
+    double value = code == 62 || code == 64 ? 1.0 : 0.0;
+    if (analog) {
+        const Word* word = execution.statement.word('Q');
+        value = word ? word->value : -1.0;
+    }
+    execution.emit(SetOutput{number, value, analog, code == 62 || code == 63 || code == 67});
+    return {};
+}
+
+/// M66: what the input will be is not known before; the program goes on as if it stayed off.
+core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
+    const bool digital = execution.statement.word('P') != nullptr;
+    const bool analog = execution.statement.word('E') != nullptr;
+    if (digital == analog)
+        return core::fail(ErrorCode::missing_value,
+                          "M66 needs the number of an input: P of a digital or E of an analogue "
+                          "one, not both",
+                          entry.word->span);
+    FEELER_TRY(const int number, number_under(execution, entry, digital ? 'P' : 'E'));
+    int kind = 0;
+    if (const Word* word = execution.statement.word('L')) {
+        FEELER_TRY(kind, whole_number(*word, 0, 4));
+    }
+    const Word* time = execution.statement.word('Q');
+    if (kind > 0 && (analog || !time || time->value <= 0.0))
+        return core::fail(ErrorCode::invalid_value,
+                          analog ? "M66 waits for digital inputs only: E goes with L0"
+                                 : "M66 L1 to L4 waits: it needs the longest time as Q",
+                          entry.word->span);
+    execution.emit(WaitForInput{number, analog, kind > 0 ? time->value : 0.0});
+    execution.state.parameters.write().set_numbered(5399, 0.0);
+    return {};
+}
+
+void enable(Execution& execution, OverrideKind kind, bool enabled) {
+    ModalState& modal = execution.modal();
+    switch (kind) {
+    case OverrideKind::feed:
+        modal.feed_override = enabled;
+        break;
+    case OverrideKind::speed:
+        modal.speed_override = enabled;
+        break;
+    case OverrideKind::adaptive_feed:
+        modal.adaptive_feed = enabled;
+        break;
+    default:
+        modal.feed_hold = enabled;
+        break;
+    }
+    execution.emit(EnableOverride{kind, enabled});
+}
+
+} // namespace
+
+core::Result<void> switch_machine(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->letter != 'M') continue;
+        const int code = entry.code->tenths / 10;
+        if (code == 66) {
+            if (auto done = wait_for_input(execution, entry); !done) return done;
+        } else if (code >= 62 && code <= 68) {
+            if (auto done = set_output(execution, entry); !done) return done;
+        }
+    }
+    return {};
+}
+
+core::Result<void> save_or_restore_modes(Execution& execution) {
+    InterpreterState& state = execution.state;
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->letter != 'M' || entry.code->tenths < tenths(70)
+            || entry.code->tenths > tenths(73))
+            continue;
+        Frame& frame = state.frames.back();
+        const int code = entry.code->tenths / 10;
+        if (code == 71) {
+            frame.saved.write().reset();
+        } else if (code == 72) {
+            if (!*frame.saved)
+                return core::fail(ErrorCode::missing_value,
+                                  "M72 has no modes to restore: M70 did not save any on this level",
+                                  entry.word->span);
+            const ModalState before = state.modal;
+            for (const std::string& loss : losses_of_restoring(before, **frame.saved))
+                execution.warn(entry.word->span, "M72: " + loss);
+            restore_modes(state, **frame.saved);
+            announce_modes(execution.result, entry.word->span.column, before, state.modal);
+        } else {
+            frame.saved.write() = state.modal;
+            frame.restores = code == 73;
+        }
+    }
+    return {};
+}
+
+core::Result<void> set_overrides(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::overrides);
+    if (!entry) return {};
+    const int code = entry->code->tenths / 10;
+    if (code == 48 || code == 49) {
+        enable(execution, OverrideKind::feed, code == 48);
+        enable(execution, OverrideKind::speed, code == 48);
+        return {};
+    }
+    const Word* word = execution.statement.word('P');
+    const bool on = !word || word->value != 0.0;
+    constexpr OverrideKind kinds[] = {OverrideKind::feed, OverrideKind::speed,
+                                      OverrideKind::adaptive_feed, OverrideKind::feed_hold};
+    enable(execution, kinds[code - 50], on);
+    return {};
+}
+
+using core::ErrorCode;
+
+core::Result<void> feed_with_spindle(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Word& mover = moving_word(execution);
+    const Word* pitch = execution.statement.word('K');
+    if (!pitch)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs K, its way for each turn of the spindle", written(mover)),
+            mover.span);
+    const bool back_again = modal.motion == tenths(33, 1);
+    if (back_again && modal.spindle == core::SpindleDirection::stopped)
+        return core::fail(ErrorCode::missing_value,
+                          "G33.1 taps with a turning spindle, and it stands still: start it with "
+                          "M3 or M4",
+                          mover.span);
+    FEELER_TRY(const Position end, target_of(execution));
+    execution.emit(ThreadFeed{end, length_of(execution, *pitch), back_again});
+    if (!back_again) modal.position = end;
+    return {};
+}
+
+core::Result<void> probe(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Word& mover = moving_word(execution);
+    if (modal.feed_mode != FeedMode::per_minute)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: a probe feeds in mm a minute: say G94", written(mover)),
+                          mover.span);
+    FEELER_TRY(const Position end, target_of(execution));
+    const std::optional<double> way = way_between(modal.position, end);
+    FEELER_TRY(const double rate, feed_rate(execution, way));
+    if (way && *way < 0.254)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: the probe starts too near to where it should end", written(mover)),
+            mover.span);
+    const int kind = *modal.motion % 10;
+    execution.warn(mover.span,
+                   fmt::format("{}: where the probe meets something is not known before; the whole "
+                               "way is looked at, and the program goes on from its end",
+                               written(mover)));
+    execution.emit(StraightProbe{end, rate, kind == 2 || kind == 3, kind == 2 || kind == 4});
+    modal.position = end;
+    Parameters& parameters = execution.state.parameters.write();
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const double value = end[axis].value_or(0.0);
+        parameters.set_numbered(static_cast<int>(5061 + axis),
+                                is_rotary(axis) ? value : from_mm(value, modal.unit));
+    }
+    parameters.set_numbered(5070, 1.0);
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,395 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// Which work offset a P word means: 1 is G54, 0 the active one.
+core::Result<size_t> work_offset_index(const Execution& execution, const CodeWord& entry) {
+    const Word* word = execution.statement.word('P');
+    if (!word)
+        return core::fail(ErrorCode::missing_value,
+                          "G10 does not say which work offset: it needs a P word",
+                          entry.word->span);
+    const bool extended = execution.dialect.has_extended_offsets;
+    if (extended && execution.statement.word('L')->value == 20.0) {
+        FEELER_TRY(const int number, whole_number(*word, 1, extended_offset_count));
+        return plain_offset_count + static_cast<size_t>(number - 1);
+    }
+    FEELER_TRY(const int number, whole_number(*word, 0, extended ? 6 : plain_offset_count));
+    return number > 0 ? static_cast<size_t>(number - 1) : execution.modal().offsets.active;
+}
+
+/// The origin or shift as the words of G10 L2 leave it. Under G91 some controls add to it.
+void write_values(const Execution& execution, AxisValues& values) {
+    const bool adds = execution.dialect.offset_writes_follow_g91
+                      && execution.modal().distance == DistanceMode::incremental;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            values[axis] = (adds ? values[axis] : 0.0) + axis_value(execution, axis, *word);
+}
+
+/// G10 L2: the origin itself, and how far it is turned.
+void write_origin(const Execution& execution, WorkOffset& offset) {
+    write_values(execution, offset.origin);
+    if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
+}
+
+/// G10 L20: the origin that makes the present place read as the words say.
+core::Result<void> write_origin_here(const Execution& execution, WorkOffset& offset) {
+    const ModalState& modal = execution.modal();
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    if (const Word* word = execution.statement.word('R'))
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: G10 L20 does not turn an offset, L2 does", written(*word)),
+            word->span);
+    Offsets there = modal.offsets;
+    there.work = offset;
+    Position read = program_from_machine(there, machine);
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        if (!read[axis])
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("{}: G10 L20 needs a known place, and where the machine "
+                                          "is along {} is unknown",
+                                          written(*word), axis_letters[axis]),
+                              word->span);
+        read[axis] = axis_value(execution, axis, *word);
+    }
+    // The origin moves by what the wanted reading is off from the machine's place.
+    const Position meant = machine_from_program(there, read);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (meant[axis] && machine[axis]) offset.origin[axis] += *machine[axis] - *meant[axis];
+    return {};
+}
+
+/// Whether R may turn a work offset: not on all controls.
+core::Result<void> check_turn(const Execution& execution) {
+    const Word* word = execution.statement.word('R');
+    if (!word || execution.dialect.work_offsets_turn) return {};
+    return core::fail(
+        ErrorCode::unsupported,
+        fmt::format("{}: work offsets are not turned by this control; use G68", written(*word)),
+        word->span);
+}
+
+/// The offset as it is in effect: what the table has, and Fanuc's external one.
+WorkOffset in_effect(const Tables& tables, size_t index) {
+    WorkOffset offset = work_offset(tables, index);
+    for (size_t axis = 0; axis < axis_count; ++axis) offset.origin[axis] += tables.external[axis];
+    return offset;
+}
+
+/// The work offset a code selects: G54 to G59.3; G54.1 P, G54 P, Haas's G154 P and G110 to G129.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, 7.2.6 "Adding workpiece coordinate systems"; Haas
+///         mill operator's manual 96-8000, G110 to G129 and G154.
+core::Result<size_t> selected_offset(const Execution& execution, const CodeWord& entry) {
+    const int code = entry.code->tenths;
+    const Word* word = execution.statement.word('P');
+    if (code >= tenths(110) && code <= tenths(129))
+        return plain_offset_count + static_cast<size_t>(code / 10 - 110);
+    const bool is_numbered = code == tenths(54, 1) || code == tenths(154);
+    if (is_numbered && !word)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} does not say which work offset: it needs a P word",
+                                      written(*entry.word)),
+                          entry.word->span);
+    const auto wants_p = [](const CodeWord& other) { return other.code->uses('P'); };
+    const std::span<const CodeWord> codes = execution.statement.codes();
+    const bool is_free = std::none_of(codes.begin(), codes.end(), wants_p);
+    const bool is_g54_p =
+        execution.dialect.has_extended_offsets && code == tenths(54) && word && is_free;
+    if (is_numbered || is_g54_p) {
+        const int most = code == tenths(154) ? 99 : static_cast<int>(extended_offset_count);
+        FEELER_TRY(const int number, whole_number(*word, 1, most));
+        return plain_offset_count + static_cast<size_t>(number - 1);
+    }
+    return static_cast<size_t>(code <= tenths(59) ? (code - tenths(54)) / 10
+                                                  : 5 + code - tenths(59));
+}
+
+core::Result<void> write_work_offset(Execution& execution, const CodeWord& entry,
+                                     const Word& kind) {
+    const Word* number = execution.statement.word('P');
+    const bool extended = execution.dialect.has_extended_offsets;
+    if (extended && kind.value == 2.0 && number && number->value == 0.0)
+        return write_external_offset(execution);
+    FEELER_TRY(const size_t index, work_offset_index(execution, entry));
+    WorkOffset offset = work_offset(*execution.state.tables, index);
+    if (kind.value == 2.0 || extended)
+        write_origin(execution, offset);
+    else if (auto done = write_origin_here(execution, offset); !done)
+        return done;
+    writable_work_offset(execution.state.tables.write(), index) = offset;
+    return {};
+}
+
+void use(Execution& execution, const Offsets& offsets) {
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+}
+
+/// After G10 LinuxCNC works out where it stands as if there were no G92 or G52. Where the offset is
+/// turned otherwise than before, it is then wrong about it.
+///
+/// Source: rs274 2.9, probed.
+void use_written_offset(Execution& execution, const CodeWord& entry) {
+    ModalState& modal = execution.modal();
+    const Offsets before = modal.offsets;
+    Offsets offsets = before;
+    offsets.work = in_effect(*execution.state.tables, offsets.active);
+    const bool turned = before.work.rotation_deg != offsets.work.rotation_deg;
+    const bool shifted = before.axis[0] != 0.0 || before.axis[1] != 0.0;
+    if (!execution.dialect.offset_writes_miss_axis_offset || !turned || !shifted)
+        return use(execution, offsets);
+    Offsets plain_before = before, plain = offsets;
+    plain_before.axis = plain.axis = zero_position;
+    modal.position =
+        program_from_machine(plain, machine_from_program(plain_before, modal.position));
+    modal.offsets = offsets;
+    execution.emit(SetOffset{offsets});
+    execution.warn(entry.word->span,
+                   "G10 turns the work offset while G92 or G52 is on: the control is wrong about "
+                   "where it stands now, and axes that the next move does not name move as well; "
+                   "say G92.1 before");
+}
+
+} // namespace
+
+void change_offsets(Execution& execution, const Offsets& offsets) {
+    change_offsets(execution.modal(), offsets);
+}
+
+void change_offsets(ModalState& modal, const Offsets& offsets) {
+    if (mixes_axes(modal.offsets) || mixes_axes(offsets)) {
+        modal.position =
+            program_from_machine(offsets, machine_from_program(modal.offsets, modal.position));
+        modal.offsets = offsets;
+        return;
+    }
+    const Position before = machine_minus_program(modal.offsets);
+    const Position after = machine_minus_program(offsets);
+    modal.offsets = offsets;
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (before[axis] == after[axis]) continue;
+        std::optional<double>& place = modal.position[axis];
+        if (place && before[axis] && after[axis])
+            *place += *before[axis] - *after[axis];
+        else
+            place.reset();
+    }
+}
+
+core::Result<void> select_offset(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
+    if (!entry) return {};
+    Offsets offsets = execution.modal().offsets;
+    FEELER_TRY(offsets.active, selected_offset(execution, *entry));
+    const bool stays =
+        execution.dialect.same_offset_stays && offsets.active == execution.modal().offsets.active;
+    if (!stays) offsets.work = in_effect(*execution.state.tables, offsets.active);
+    use(execution, offsets);
+    return {};
+}
+
+core::Result<void> write_offset(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    const Word* kind = execution.statement.word('L');
+    if (!kind)
+        return core::fail(ErrorCode::missing_value,
+                          "G10 does not say what to write: it needs L2 "
+                          "or L20",
+                          entry.word->span);
+    if (kind->value == 0.0 && execution.dialect.tool_entries_by_axes) {
+        execution.warn(kind->span,
+                       "G10 L0 reads the control's tool table again, which is taken "
+                       "as unchanged",
+                       Severity::note);
+        return {};
+    }
+    const bool is_tool = kind->value == 1.0 || kind->value == 10.0 || kind->value == 11.0;
+    if (is_tool && execution.dialect.tool_entries_by_axes)
+        return write_tool_entry(execution, static_cast<int>(kind->value));
+    if (execution.dialect.has_extended_offsets) {
+        if (kind->value >= 10.0 && kind->value <= 13.0) {
+            FEELER_TRY(const int table, whole_number(*kind));
+            return write_fanuc_entry(execution, table);
+        }
+        if (kind->value == 3.0 || kind->value == 50.0 || kind->value == 52.0) {
+            pass_over_data(execution, *kind);
+            return {};
+        }
+    }
+    if (kind->value != 2.0 && kind->value != 20.0)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: this kind of G10 is not supported yet; L2 and L20 write "
+                                      "work offsets",
+                                      written(*kind)),
+                          kind->span);
+    if (auto checked = check_turn(execution); !checked) return checked;
+    if (auto done = write_work_offset(execution, entry, *kind); !done) return done;
+    use_written_offset(execution, entry);
+    return {};
+}
+
+namespace {
+
+/// G92 and G52 without an axis.
+core::Result<void> need_an_axis(const Execution& execution) {
+    if (execution.statement.has_axis_word() || !execution.dialect.local_offset_is_axis_offset)
+        return {};
+    const Word& word = *execution.statement.of(ModalGroup::action)->word;
+    return core::fail(ErrorCode::missing_value,
+                      fmt::format("{} does not say of which axis: it needs an axis word{}",
+                                  written(word),
+                                  word.value == 92.0 ? ", or G92.1 to clear all" : ""),
+                      word.span);
+}
+
+} // namespace
+
+core::Result<void> set_local_offset(Execution& execution) {
+    if (auto checked = need_an_axis(execution); !checked) return checked;
+    Offsets offsets = execution.modal().offsets;
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        const double value = axis_value(execution, axis, *word);
+        if (execution.dialect.local_offset_is_axis_offset)
+            offsets.axis[axis] = value;
+        else
+            offsets.local[axis] = value;
+    }
+    if (execution.dialect.local_offset_is_axis_offset) {
+        execution.modal().suspended_axis = offsets.axis;
+        execution.modal().axis_offset_on = true;
+    }
+    use(execution, offsets);
+    return {};
+}
+
+core::Result<void> set_axis_offset(Execution& execution) {
+    ModalState& modal = execution.modal();
+    Offsets offsets = modal.offsets;
+    if (offsets.has_frame)
+        return core::fail(ErrorCode::invalid_value,
+                          "G92 cannot be used in coordinates that are scaled, reflected or turned: "
+                          "cancel that first with G50, G50.1 or G69",
+                          execution.statement.of(ModalGroup::action)->word->span);
+    const int code = execution.statement.of(ModalGroup::action)->code->tenths;
+    modal.axis_offset_on = code == tenths(92) || code == tenths(92, 3);
+    switch (code) {
+    case tenths(92, 1):
+        offsets.axis = modal.suspended_axis = zero_position;
+        break;
+    case tenths(92, 2):
+        offsets.axis = zero_position; // what G92 said stays for G92.3
+        break;
+    case tenths(92, 3):
+        offsets.axis = modal.suspended_axis;
+        break;
+    default:
+        if (auto checked = need_an_axis(execution); !checked) return checked;
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            const Word* word = execution.statement.word(axis_letters[axis]);
+            if (!word) continue;
+            const std::optional<double> place = modal.position[axis];
+            const double wanted = axis_value(execution, axis, *word);
+            // The machine stays and this place takes a new name; of an unknown place, only the
+            // name is known.
+            if (place && offsets.axis[axis])
+                *offsets.axis[axis] += *place - wanted;
+            else
+                offsets.axis[axis].reset();
+        }
+        modal.suspended_axis = offsets.axis;
+        change_offsets(execution, offsets);
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (const Word* word = execution.statement.word(axis_letters[axis]))
+                modal.position[axis] = axis_value(execution, axis, *word);
+        execution.emit(SetOffset{offsets});
+        return {};
+    }
+    use(execution, offsets);
+    return {};
+}
+
+namespace {
+
+using core::ErrorCode;
+using core::OffsetNumber;
+
+/// Adds under G91, replaces under G90.
+void write(const Execution& execution, double value, double& place) {
+    const bool adds = execution.dialect.offset_writes_follow_g91
+                      && execution.modal().distance == DistanceMode::incremental;
+    place = (adds ? place : 0.0) + value;
+}
+
+} // namespace
+
+core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    const Word* number = execution.statement.word('P');
+    const Word* value = execution.statement.word('R');
+    if (!number || !value)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("G10 L{} needs {}", kind,
+                                      number ? "an R word, the value" : "a P word, the number"),
+                          entry.word->span);
+    FEELER_TRY(const int index, whole_number(*number, 1, 999));
+    const bool is_active = execution.modal().length_sign != 0.0
+                           && execution.modal().length_number == OffsetNumber(index);
+    Tables& tables = execution.state.tables.write();
+    const bool known = tables.lengths.count(OffsetNumber(index)) != 0;
+    const double length = known ? 0.0 : length_under(tables, index).value_or(0.0);
+    LengthOffset& offset = tables.lengths[OffsetNumber(index)];
+    if (!known) offset.length = length;
+    const double written_value = length_of(execution, *value);
+    const double radii = execution.dialect.diameters_in_tool_entries ? 1.0 : 2.0;
+    switch (kind) {
+    case 10:
+        write(execution, written_value, offset.length);
+        break;
+    case 11:
+        write(execution, written_value, offset.wear);
+        break;
+    case 12:
+        write(execution, radii * written_value, offset.diameter);
+        break;
+    default:
+        write(execution, 0.5 * radii * written_value, offset.radius_wear);
+        break;
+    }
+    if (is_active && kind <= 11)
+        execution.warn(value->span,
+                       fmt::format("H{} is in use: the new length is taken from the next G43 or H "
+                                   "on, which a parameter of the control may change",
+                                   index));
+    return {};
+}
+
+core::Result<void> write_external_offset(Execution& execution) {
+    AxisValues& external = execution.state.tables.write().external;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            write(execution, axis_value(execution, axis, *word), external[axis]);
+    return {};
+}
+
+void pass_over_data(Execution& execution, const Word& kind) {
+    execution.warn(kind.span,
+                   fmt::format("G10 {}: tool lives and parameters of the control are not kept "
+                               "here; what stands up to G11 changes nothing",
+                               written(kind)));
+}
+
+} // namespace gcode

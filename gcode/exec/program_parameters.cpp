@@ -1,0 +1,200 @@
+#include "gcode/exec/program_parameters.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/fanuc_parameters.h"
+#include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/siemens/siemens.h"
+#include "gcode/siemens/siemens_flow.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// The number of a parameter; a computed one may be off by rounding.
+core::Result<int> parameter_number(double number, int lowest, const Dialect& dialect,
+                                   core::SourceSpan where) {
+    const double whole = std::round(number);
+    if (whole == 0.0 && std::abs(number) < 1e-4 && dialect.has_parameter_zero)
+        return highest_parameter;
+    if (std::abs(number - whole) > 1e-4 || !(whole >= lowest && whole <= highest_parameter))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}{:.12g}: parameters have whole numbers from {} to {}",
+                                      dialect.parameter_letter, number, lowest, highest_parameter),
+                          where);
+    return static_cast<int>(whole);
+}
+
+} // namespace
+
+ProgramParameters::ProgramParameters(InterpreterState& state, const Environment& environment)
+    : state_(state), environment_(environment), dialect_(gcode::dialect(environment.dialect)) {}
+
+/// The level whose local parameters count: M98 goes on with those of its caller.
+Frame& ProgramParameters::locals() {
+    size_t level = state_.frames.size() - 1;
+    while (level > 0 && state_.frames[level].shares_locals) --level;
+    return state_.frames[level];
+}
+
+const Frame& ProgramParameters::locals() const {
+    return const_cast<ProgramParameters*>(this)->locals();
+}
+
+bool ProgramParameters::is_global(std::string_view name) const {
+    return name.starts_with('_') && !dialect_.names_are_declared;
+}
+
+/// Names that begin with `_` are of all levels, others of the one that runs.
+const NamedValues& ProgramParameters::named_values(std::string_view name) const {
+    return is_global(name) ? state_.parameters->named() : state_.frames.back().named;
+}
+
+core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan where) const {
+    FEELER_TRY(const int index,
+               parameter_number(number, dialect_.unset_is_vacant ? 0 : 1, dialect_, where));
+    if (index == 0) return Value{};
+    const Value unset = dialect_.unset_is_vacant ? Value{} : Value{0.0};
+    if (index <= dialect_.local_count) {
+        const Value local = locals().locals[static_cast<size_t>(index)];
+        return local ? local : unset;
+    }
+    if (const auto shown = system_parameter(state_, environment_, index)) return *shown;
+    const Value value = state_.parameters->numbered(index);
+    return value ? value : unset;
+}
+
+tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
+                                                          core::SourceSpan where) const {
+    const bool system = name.starts_with('$');
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("'{}': {}", name,
+                                  system ? "this variable of the control is not known here; write "
+                                           "its value instead"
+                                         : "there is no variable of this name in this program: "
+                                           "declare it with DEF REAL, or write its value"),
+                      where);
+}
+
+core::Result<Value> ProgramParameters::named(std::string_view name, core::SourceSpan where) const {
+    if (const auto shown = system_parameter(state_, environment_, name)) return *shown;
+    const NamedValues& all = named_values(name);
+    const auto found = all.find(name);
+    if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
+    if (found == all.end())
+        return core::fail(ErrorCode::invalid_value, fmt::format("#<{}> was never set", name),
+                          where);
+    return Value{found->second};
+}
+
+bool ProgramParameters::exists(std::string_view name) const {
+    const NamedValues& all = named_values(name);
+    return all.find(name) != all.end() || system_parameter(state_, environment_, name).has_value();
+}
+
+core::Result<void> ProgramParameters::set_numbered(double number, Value value,
+                                                   core::SourceSpan where) {
+    FEELER_TRY(const int index, parameter_number(number, 1, dialect_, where));
+    if (index <= dialect_.local_count) {
+        locals().locals[static_cast<size_t>(index)] = value;
+        return {};
+    }
+    FEELER_TRY(const bool taken, set_system_parameter(state_, environment_, index, value, where));
+    if (taken) return {};
+    state_.parameters.write().set_numbered(index, value);
+    return {};
+}
+
+Value ProgramParameters::kept(double number) const {
+    const auto index = parameter_number(number, 1, dialect_, {});
+    if (!index) return {};
+    const bool is_local = *index <= dialect_.local_count;
+    return is_local ? locals().locals[static_cast<size_t>(*index)]
+                    : state_.parameters->numbered(*index);
+}
+
+void ProgramParameters::restore_numbered(double number, Value kept) {
+    const auto index = parameter_number(number, 1, dialect_, {});
+    if (!index) return;
+    if (*index <= dialect_.local_count)
+        locals().locals[static_cast<size_t>(*index)] = kept;
+    else if (state_.parameters->numbered(*index) != kept)
+        state_.parameters.write().set_numbered(*index, kept);
+}
+
+void ProgramParameters::restore_named(std::string_view name, Value value) {
+    NamedValues& own = state_.frames.back().named;
+    if (is_global(name))
+        state_.parameters.write().set_named(name, value);
+    else if (value)
+        own.insert_or_assign(std::string(name), *value);
+    else if (const auto found = own.find(name); found != own.end())
+        own.erase(found);
+}
+
+core::Result<void> ProgramParameters::set_named(std::string_view name, Value value,
+                                                core::SourceSpan where) {
+    if (system_parameter(state_, environment_, name))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("#<{}> is the control's own and cannot be set", name), where);
+    const NamedValues& all = named_values(name);
+    if (dialect_.names_are_declared) {
+        if (all.find(name) == all.end()) return undeclared(name, where);
+        const auto type = state_.frames.back().types.find(name);
+        if (type != state_.frames.back().types.end())
+            value = held_as(type->second, value.value_or(0.0));
+    }
+    if (all.size() >= most_named_parameters && all.find(name) == all.end())
+        return core::fail(ErrorCode::invalid_value, "there are too many named parameters", where);
+    if (is_global(name))
+        state_.parameters.write().set_named(name, value.value_or(0.0));
+    else
+        state_.frames.back().named.insert_or_assign(std::string(name), value.value_or(0.0));
+    return {};
+}
+
+void load_parameters(InterpreterState& state, const Environment& environment) {
+    for (const auto& [number, value] : environment.parameters) {
+        const auto taken = set_system_parameter(state, environment, number, value, {});
+        const bool own = number > 0 && number <= highest_parameter;
+        if (own && !(taken && *taken)) state.parameters.write().set_numbered(number, value);
+    }
+}
+
+namespace {
+
+bool is_siemens(const Environment& environment) {
+    return dialect(environment.dialect).system_parameters == SystemParameters::siemens;
+}
+
+bool is_fanuc(const Environment& environment) {
+    return dialect(environment.dialect).system_parameters >= SystemParameters::fanuc;
+}
+
+} // namespace
+
+std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
+                                      int number) {
+    if (is_siemens(environment)) return std::nullopt;
+    if (is_fanuc(environment)) return fanuc_parameter(state, environment, number);
+    return linuxcnc_parameter(state, environment, number);
+}
+
+std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
+                                      std::string_view name) {
+    if (is_siemens(environment)) return siemens_variable(state, name);
+    if (is_fanuc(environment)) return std::nullopt;
+    return linuxcnc_parameter(state, environment, name);
+}
+
+core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
+                                        int number, Value value, core::SourceSpan where) {
+    if (is_siemens(environment)) return false;
+    if (is_fanuc(environment)) return set_fanuc_parameter(state, environment, number, value, where);
+    return set_linuxcnc_parameter(state, environment, number, value, where);
+}
+
+} // namespace gcode

@@ -1,0 +1,83 @@
+#include "gcode/exec/quick_move.h"
+
+#include "gcode/language/codes.h"
+
+namespace gcode {
+namespace {
+
+constexpr MotionCode rapid = tenths(0);
+constexpr MotionCode straight = tenths(1);
+
+/// The index of an axis by its letter; axis_count for a letter that is none.
+constexpr std::array<uint8_t, 26> axes_by_letter = [] {
+    std::array<uint8_t, 26> axes{};
+    axes.fill(axis_count);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        axes[static_cast<size_t>(axis_letters[axis] - 'A')] = static_cast<uint8_t>(axis);
+    return axes;
+}();
+
+/// A block as it is read: what it changes.
+struct Move {
+    MotionCode motion = rapid;
+    std::optional<double> feed{}; // mm/min
+    Position end{};
+    bool has_code = false, has_axis = false;
+
+    bool take(const Word& word, const ModalState& modal) {
+        if (word.letter == 'N') return true;
+        if (word.letter == 'F') {
+            feed = to_mm(word.value, modal.unit);
+            return true;
+        }
+        if (word.letter == 'G') {
+            const bool known = !has_code && (word.value == 0.0 || word.value == 1.0);
+            motion = word.value == 0.0 ? rapid : straight;
+            has_code = true;
+            return known;
+        }
+        const size_t axis = axes_by_letter[static_cast<size_t>(word.letter - 'A')];
+        if (axis == axis_count) return false;
+        has_axis = true;
+        const double value = is_rotary(axis) ? word.value : to_mm(word.value, modal.unit);
+        if (modal.distance == DistanceMode::absolute)
+            end[axis] = value;
+        else if (end[axis])
+            *end[axis] += value;
+        return true;
+    }
+};
+
+} // namespace
+
+bool moves_quickly(const InterpreterState& state) {
+    const ModalState& modal = state.modal;
+    const ProgramTransforms& transforms = modal.transforms;
+    return (modal.motion == rapid || modal.motion == straight) && !modal.cycle
+           && modal.compensation == Side::none && modal.feed_mode == FeedMode::per_minute
+           && !modal.diameter_mode && (modal.unit_said || state.said_unit) && !transforms.polar
+           && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
+           && state.contour.is_idle() && !state.siemens->is_iso;
+}
+
+bool take_quick_move(const Block& block, InterpreterState& state, BlockResult& result) {
+    ModalState& modal = state.modal;
+    Move move{.motion = *modal.motion, .feed = modal.feed, .end = modal.position};
+    for (const Word& word : block.words)
+        if (!move.take(word, modal)) return false;
+    const bool lacks_feed = move.motion == straight && !(move.feed && *move.feed > 0.0);
+    if (!move.has_axis || lacks_feed || (move.feed && *move.feed < 0.0)) return false;
+    modal.motion = move.motion;
+    modal.feed = move.feed;
+    modal.position = move.end;
+    modal.leaves_contour = false;
+    state.rules.has_moved = true;
+    if (move.motion == rapid)
+        result.commands.emplace_back(StraightTraverse{move.end});
+    else
+        result.commands.emplace_back(StraightFeed{move.end, *move.feed});
+    result.columns.push_back(1);
+    return true;
+}
+
+} // namespace gcode

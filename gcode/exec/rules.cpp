@@ -1,0 +1,238 @@
+#include "gcode/exec/rules.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/language/canonical.h"
+
+namespace gcode {
+namespace {
+
+using core::SourceSpan;
+
+bool moves(const Execution& execution) {
+    const auto& commands = execution.result.commands;
+    return std::any_of(commands.begin(), commands.end(), is_motion);
+}
+
+bool has_g53_1(const Execution& execution) {
+    const auto codes = execution.statement.codes();
+    return std::any_of(codes.begin(), codes.end(), [](const CodeWord& entry) {
+        return entry.code->letter == 'G' && entry.code->tenths == tenths(53, 1);
+    });
+}
+
+bool has_code(const Execution& execution, ModalGroup group, int tenths_of_code) {
+    const CodeWord* entry = execution.statement.of(group);
+    return entry && entry->code->tenths == tenths_of_code;
+}
+
+/// G28, G30, G53: places of the machine, not of the work; G53.1 turns rotary axes alone.
+bool goes_to_machine_place(const Execution& execution) {
+    if (has_g53_1(execution)) return true;
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    if (!action) return false;
+    return action->code->tenths == tenths(28) || action->code->tenths == tenths(30)
+           || action->code->tenths == tenths(53);
+}
+
+void advise(Execution& execution, SourceSpan where, std::string_view rule, std::string message,
+            std::string cure, Severity severity = Severity::warning) {
+    execution.result.warnings.push_back(
+        {severity, where, std::move(message), rule, std::move(cure)});
+}
+
+/// What turns, scales or offsets the path and is still on, for a sentence.
+std::string left_over(const ModalState& modal, bool at_end) {
+    std::string found;
+    const auto add = [&](bool on, std::string_view what) {
+        if (on) found += fmt::format("{}{}", found.empty() ? "" : ", ", what);
+    };
+    const ProgramTransforms& transforms = modal.transforms;
+    add(modal.compensation != Side::none, "cutter radius compensation (G41 or G42)");
+    add(!at_end && modal.cycle.has_value(), "a canned cycle");
+    add(transforms.scaling.has_value(), "scaling (G51)");
+    add(transforms.rotation.has_value(), "rotation (G68)");
+    add(transforms.mirror.axes != MirrorImage{}.axes, "a mirror image");
+    add(transforms.tilt.has_value(), "a tilted plane (G68.2)");
+    add(at_end && modal.offsets.axis != zero_position, "an axis offset (G92)");
+    return found;
+}
+
+void look_at_tool_change(Execution& execution, const ModalState& before) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
+    if (!entry || entry->code->tenths != tenths(6)) return;
+    RuleWatch& watch = execution.state.rules;
+    const ModalState& modal = execution.modal();
+    const bool has_tool = modal.tool && core::value_of(*modal.tool) != 0;
+    watch.lacks_length = has_tool && execution.dialect.length_needs_g43 && !modal.length_is_tools();
+    watch.length_cancelled = false;
+    watch.increments_stay =
+        before.distance == DistanceMode::incremental && modal.distance == DistanceMode::incremental;
+    if (const std::string on = left_over(before, false); !on.empty())
+        advise(execution, entry->word->span, "state-left-over",
+               fmt::format("{}: still on at this tool change: {}", written(*entry->word), on),
+               "Cancel it before the tool change.");
+}
+
+void look_at_length_codes(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
+    if (!entry) return;
+    RuleWatch& watch = execution.state.rules;
+    const bool cancels = entry->code->tenths == tenths(49);
+    watch.length_cancelled = cancels && !watch.lacks_length && execution.dialect.length_needs_g43
+                             && execution.modal().tool.has_value();
+    if (!cancels) watch.lacks_length = false;
+}
+
+/// The first Z motion in work coordinates tells whether the length of the tool was thought of.
+void look_at_length(Execution& execution, const ModalState& before) {
+    RuleWatch& watch = execution.state.rules;
+    if (!watch.lacks_length && !watch.length_cancelled) return;
+    const ModalState& modal = execution.modal();
+    if (goes_to_machine_place(execution) || modal.position[2] == before.position[2]) return;
+    if (!moves(execution)) return; // a frame gave the place another name
+    const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
+    const SourceSpan where = moving_word(execution).span;
+    const std::string cure = fmt::format("Write G43 H{} before the first motion in Z.", tool);
+    if (watch.lacks_length && modal.length_sign != 0.0 && modal.length_number)
+        advise(execution, where, "missing-length-offset",
+               fmt::format("tool {} is in the spindle and the length offset of another one, H{}, "
+                           "is still on",
+                           tool, core::value_of(*modal.length_number)),
+               cure);
+    else if (watch.lacks_length)
+        advise(execution, where, "missing-length-offset",
+               fmt::format("tool {} moves in Z without a length offset: Z counts from the gauge "
+                           "line, not from the tip",
+                           tool),
+               cure);
+    else if (before.position[2] && modal.position[2] < before.position[2])
+        advise(execution, where, "length-offset-cancelled",
+               fmt::format("tool {} moves down after G49 has cancelled its length offset", tool),
+               cure);
+    else
+        return; // up and away after G49
+    watch.lacks_length = watch.length_cancelled = false;
+}
+
+void look_at_work_offset(Execution& execution) {
+    RuleWatch& watch = execution.state.rules;
+    if (execution.statement.of(ModalGroup::work_offset)) watch.offset_is_fresh = true;
+    if (!watch.offset_is_fresh || !moves(execution) || goes_to_machine_place(execution)) return;
+    watch.offset_is_fresh = false;
+    const Tables& tables = *execution.state.tables;
+    const size_t active = execution.modal().offsets.active;
+    const WorkOffset unset{};
+    if (execution.modal().offsets.work != unset || active >= plain_offset_count) return;
+    for (size_t other = 0; other < plain_offset_count; ++other) {
+        if (tables.work[other] == unset) continue;
+        const auto name = [](size_t index) {
+            return index < 6 ? fmt::format("G{}", 54 + index) : fmt::format("G59.{}", index - 5);
+        };
+        advise(execution, moving_word(execution).span, "work-offset-unset",
+               fmt::format("{} is in use and has never been set, while {} is set", name(active),
+                           name(other)),
+               fmt::format("Set {}, or call the work offset that the job was set up in.",
+                           name(active)));
+        return;
+    }
+}
+
+void look_at_increments(Execution& execution) {
+    RuleWatch& watch = execution.state.rules;
+    if (!watch.increments_stay) return;
+    if (execution.modal().distance == DistanceMode::absolute) watch.increments_stay = false;
+    if (!watch.increments_stay || !moves(execution) || goes_to_machine_place(execution)) return;
+    watch.increments_stay = false;
+    advise(execution, moving_word(execution).span, "incremental-left-on",
+           "this first motion of a tool is incremental: G91 is on since before the tool change",
+           "Write G90 behind the tool change.");
+}
+
+void look_at_machine_moves(Execution& execution, const ModalState& before) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    if (!action || !moves(execution)) return;
+    const ModalState& modal = execution.modal();
+    if (action->code->tenths == tenths(53)) {
+        std::string on = left_over(modal, false);
+        if (modal.distance == DistanceMode::incremental)
+            on += fmt::format("{}G91", on.empty() ? "" : ", ");
+        if (!on.empty())
+            advise(execution, action->word->span, "machine-move-with-state",
+                   fmt::format("{}: a place of the machine, while this is on: {}",
+                               written(*action->word), on),
+                   "Cancel it before G53.");
+        return;
+    }
+    const bool homes = action->code->tenths == tenths(28) || action->code->tenths == tenths(30);
+    const Word* word = execution.statement.word('Z');
+    if (!homes || !word || modal.distance == DistanceMode::incremental) return;
+    const auto* between = std::get_if<StraightTraverse>(&execution.result.commands.front());
+    if (!between || !between->end[2]) return;
+    const std::optional<double>& from = before.position[2];
+    if (from ? *between->end[2] >= *from : *between->end[2] > 0.0) return;
+    advise(execution, action->word->span, "home-through-part",
+           fmt::format("{} {}: under G90 the way home leads down to Z{:.3f} of the work first",
+                       written(*action->word), written(*word), *between->end[2]),
+           "Write G91 G28 Z0, or G53 with a place of the machine.");
+}
+
+void look_at_units(Execution& execution, const ModalState& before) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::units);
+    if (!entry || !execution.state.rules.has_moved || execution.modal().unit == before.unit) return;
+    advise(execution, entry->word->span, "units-jump",
+           fmt::format("{}: the unit changes in the middle of the program: the same numbers are "
+                       "25.4 times as {} from here on",
+                       written(*entry->word),
+                       execution.modal().unit == LengthUnit::inch ? "long" : "short"),
+           "Write a program in one unit.");
+}
+
+void look_at_end(Execution& execution) {
+    if (!has_code(execution, ModalGroup::stopping, tenths(2))
+        && !has_code(execution, ModalGroup::stopping, tenths(30)))
+        return;
+    const std::string on = left_over(execution.modal(), true);
+    if (on.empty()) return;
+    advise(execution, execution.statement.of(ModalGroup::stopping)->word->span, "state-left-over",
+           fmt::format("still on at the end of the program: {}; the next program may begin with it",
+                       on),
+           "Cancel it before the end.");
+}
+
+void look_at_block_delete(Execution& execution) {
+    RuleWatch& watch = execution.state.rules;
+    const bool switched = execution.block.block_delete || execution.block.kept_words;
+    if (!switched || watch.said_block_delete) return;
+    watch.said_block_delete = true;
+    advise(
+        execution, {.line = execution.block.line, .column = 1}, "block-delete",
+        "blocks with '/' are run here; with the switch on at the machine the path is another one",
+        "Check the program with --block-delete on as well.", Severity::note);
+}
+
+} // namespace
+
+void look_for_regrets(Execution& execution, const ModalState& before) {
+    RuleWatch& watch = execution.state.rules;
+    look_at_block_delete(execution);
+    if (execution.statement.code_count > 0) {
+        look_at_tool_change(execution, before);
+        look_at_length_codes(execution);
+        look_at_machine_moves(execution, before);
+        look_at_units(execution, before);
+        look_at_end(execution);
+    }
+    if (watch.waits() || execution.statement.of(ModalGroup::work_offset)) {
+        look_at_length(execution, before);
+        look_at_work_offset(execution);
+        look_at_increments(execution);
+    }
+    watch.has_moved = watch.has_moved || moves(execution);
+}
+
+} // namespace gcode

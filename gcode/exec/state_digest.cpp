@@ -1,0 +1,283 @@
+#include "gcode/exec/interpreter.h"
+#include "gcode/text/digest.h"
+
+namespace gcode {
+namespace {
+
+template <typename T>
+uint64_t number_of(T value) {
+    return static_cast<uint64_t>(static_cast<int64_t>(value));
+}
+
+template <typename Id>
+void add_id(Digest& digest, const std::optional<Id>& id) {
+    digest.add(uint64_t{id.has_value()});
+    if (id) digest.add(number_of(core::value_of(*id)));
+}
+
+template <typename Values>
+void add_all(Digest& digest, const Values& values) {
+    for (const auto& value : values) digest.add(value);
+}
+
+void add(Digest& digest, const Offsets& offsets) {
+    digest.add(number_of(offsets.active));
+    add_all(digest, offsets.work.origin);
+    digest.add(offsets.work.rotation_deg);
+    add_all(digest, offsets.local);
+    add_all(digest, offsets.axis);
+    add_all(digest, offsets.tool);
+    digest.add(uint64_t{offsets.tilted_plane});
+    digest.add(uint64_t{offsets.follows_tip});
+    digest.add(uint64_t{offsets.has_frame});
+    if (!offsets.has_frame) return;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) digest.add(offsets.frame.linear[column][row]);
+        digest.add(offsets.frame.shift[row]);
+    }
+    digest.add(uint64_t{offsets.frame.tilts_tool});
+}
+
+void add(Digest& digest, const core::Vec3& vector) {
+    for (int axis = 0; axis < 3; ++axis) digest.add(vector[axis]);
+}
+
+void add(Digest& digest, const ProgramTransforms& transforms) {
+    digest.add(uint64_t{transforms.scaling.has_value()});
+    if (transforms.scaling) {
+        add(digest, transforms.scaling->factors);
+        add(digest, transforms.scaling->centre);
+    }
+    for (const bool axis : transforms.mirror.axes) digest.add(uint64_t{axis});
+    add(digest, transforms.mirror.place);
+    digest.add(uint64_t{transforms.rotation.has_value()});
+    if (const auto& rotation = transforms.rotation) {
+        digest.add(number_of(2 * rotation->normal + int(rotation->is_reversed)));
+        add(digest, rotation->centre);
+        digest.add(rotation->degrees);
+    }
+    digest.add(uint64_t{transforms.tilt.has_value()});
+    if (const auto& tilt = transforms.tilt) {
+        for (int column = 0; column < 3; ++column) add(digest, tilt->axes[column]);
+        add(digest, tilt->origin);
+    }
+    digest.add(uint64_t{transforms.follows_vectors});
+    digest.add(uint64_t{transforms.polar.has_value()});
+    if (const auto& polar = transforms.polar) {
+        add_all(digest, polar->origin);
+        digest.add(polar->radius);
+        digest.add(polar->angle_deg);
+    }
+    digest.add(uint64_t{transforms.before_rotation.has_value()});
+    if (transforms.before_rotation) add_all(digest, *transforms.before_rotation);
+}
+
+void add(Digest& digest, const CannedCycle& cycle) {
+    digest.add(number_of(cycle.code));
+    for (const auto& value : {cycle.bottom, cycle.r, cycle.dwell, cycle.peck, cycle.initial_level})
+        digest.add(value);
+    add_all(digest, cycle.shift);
+    digest.add(uint64_t{cycle.r_is_way});
+    digest.add(uint64_t{cycle.bottom_is_way});
+}
+
+void add(Digest& digest, const SplineState& spline) {
+    digest.add(number_of(spline.gathering.order));
+    for (const ControlPoint& point : spline.gathering.points)
+        for (const double value : {point.at.x, point.at.y, point.weight}) digest.add(value);
+    digest.add(spline.next_tangent.x);
+    digest.add(spline.next_tangent.y);
+}
+
+void add_modes(Digest& digest, const ModalState& modal) {
+    for (const int mode :
+         {int(modal.unit),          int(modal.unit_said),      modal.motion.value_or(-1),
+          int(modal.plane),         int(modal.distance),       int(modal.arc_distance),
+          int(modal.feed_mode),     int(modal.retract),        int(modal.path),
+          int(modal.compensation),  int(modal.leaves_contour), int(modal.diameter_mode),
+          int(modal.surface_speed), int(modal.feed_override),  int(modal.speed_override),
+          int(modal.adaptive_feed), int(modal.feed_hold),      int(modal.spindle),
+          int(modal.mist),          int(modal.flood),          modal.turning_orientation})
+        digest.add(number_of(mode));
+    for (const double value :
+         {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,
+          modal.fastest_speed, modal.speed, modal.length_sign, modal.cycle_dwell})
+        digest.add(value);
+}
+
+void add(Digest& digest, const ModalState& modal) {
+    add_modes(digest, modal);
+    for (const Position* place :
+         {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
+        add_all(digest, *place);
+    digest.add(uint64_t{modal.axis_offset_on});
+    digest.add(modal.feed);
+    digest.add(uint64_t{modal.cycle.has_value()});
+    if (modal.cycle) add(digest, *modal.cycle);
+    add_id(digest, modal.selected_tool);
+    add_id(digest, modal.tool);
+    add_id(digest, modal.length_number);
+    digest.add(number_of(modal.radius_number));
+    add(digest, modal.offsets);
+    add(digest, modal.transforms);
+    digest.add(uint64_t{modal.way_home.has_value()});
+    if (modal.way_home) add_all(digest, *modal.way_home);
+    add_all(digest, modal.direction);
+}
+
+void add(Digest& digest, const Place& place) {
+    digest.add(number_of(place.source));
+    digest.add(number_of(place.line));
+}
+
+void add(Digest& digest, const Frame& frame) {
+    add(digest, frame.called_from);
+    add(digest, frame.begin);
+    digest.add(frame.name);
+    add_all(digest, frame.locals);
+    for (const auto& [name, value] : frame.named) {
+        digest.add(name);
+        digest.add(value);
+    }
+    for (const auto& [name, type] : frame.types) {
+        digest.add(name);
+        digest.add(number_of(int(type)));
+    }
+    for (const auto& [line, left] : frame.repeats) {
+        digest.add(number_of(line));
+        digest.add(number_of(left));
+    }
+    digest.add(number_of(frame.rounds_left));
+    digest.add(
+        number_of(int(frame.shares_locals) + 2 * int(frame.restores) + 4 * int(frame.modal_macro)));
+    digest.add(uint64_t{frame.again.has_value()});
+    if (frame.again) add_all(digest, *frame.again);
+    digest.add(uint64_t{frame.saved->has_value()});
+    if (*frame.saved) add(digest, **frame.saved);
+}
+
+void add(Digest& digest, const Tables& tables) {
+    for (const WorkOffset& offset : tables.work) {
+        add_all(digest, offset.origin);
+        digest.add(offset.rotation_deg);
+    }
+    add_all(digest, tables.external);
+    for (const auto& [number, entry] : tables.lengths) {
+        digest.add(number_of(core::value_of(number)));
+        for (const double value : {entry.length, entry.wear, entry.diameter, entry.radius_wear,
+                                   entry.front_deg, entry.back_deg, double(entry.orientation)})
+            digest.add(value);
+        add_all(digest, entry.shift);
+    }
+}
+
+void add(Digest& digest, const DefinedCycle& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.clearance,   cycle.depth,       cycle.feed,
+                               cycle.peck,        cycle.surface,     cycle.second_clearance,
+                               cycle.dwell_above, cycle.dwell_below, cycle.retract_feed,
+                               cycle.decrement,   cycle.breaks,      cycle.least_peck,
+                               cycle.break_back,  cycle.break_every, cycle.stop_above,
+                               cycle.stop_below,  cycle.start_depth, cycle.disengage,
+                               cycle.pitch,       cycle.infeed,      cycle.diameter})
+        digest.add(value);
+}
+
+void add(Digest& digest, const Transforms& transforms) {
+    for (const auto kind : transforms.order) digest.add(number_of(int(kind)));
+    add_all(digest, transforms.shift);
+    for (const bool mirrored : transforms.mirrored) digest.add(uint64_t{mirrored});
+    digest.add(transforms.turn_deg);
+    digest.add(transforms.scale);
+}
+
+void add(Digest& digest, const KlartextState& klartext) {
+    add_all(digest, klartext.pole);
+    digest.add(uint64_t{klartext.direction.has_value()});
+    if (klartext.direction) add_all(digest, *klartext.direction);
+    digest.add(uint64_t{klartext.corner.has_value()});
+    if (klartext.corner) {
+        for (const Position* place : {&klartext.corner->point, &klartext.corner->end})
+            add_all(digest, *place);
+        add_all(digest, klartext.corner->centre);
+        digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
+    }
+    add(digest, klartext.cycle);
+    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)));
+    digest.add(klartext.call_feed);
+    add(digest, klartext.transforms);
+}
+
+void add(Digest& digest, const SiemensDrilling& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.retract,
+                               cycle.reference,
+                               cycle.safety,
+                               cycle.bottom,
+                               cycle.dwell_below,
+                               cycle.first_depth,
+                               cycle.degression,
+                               cycle.dwell_above,
+                               cycle.feed_factor,
+                               double(cycle.clears_chips),
+                               cycle.least_peck,
+                               cycle.break_back,
+                               cycle.dwell_final,
+                               cycle.near,
+                               cycle.pitch,
+                               cycle.speed_in,
+                               cycle.speed_out,
+                               double(cycle.direction_after),
+                               cycle.feed_in,
+                               cycle.feed_out,
+                               double(cycle.direction)})
+        digest.add(value);
+    add_all(digest, cycle.aside);
+}
+
+void add(Digest& digest, const SiemensState& siemens) {
+    add_all(digest, siemens.pole);
+    digest.add(siemens.radius);
+    digest.add(siemens.angle_deg);
+    digest.add(uint64_t{siemens.modal_cycle.has_value()});
+    if (siemens.modal_cycle) add(digest, *siemens.modal_cycle);
+    digest.add(uint64_t{siemens.modal_call.has_value()});
+    if (siemens.modal_call) add(digest, *siemens.modal_call);
+    digest.add(number_of(siemens.edge));
+    digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
+                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.follows_tool)
+                         + 16 * int(siemens.is_iso)));
+    for (const std::string& name : siemens.tool_names) digest.add(name);
+}
+
+} // namespace
+
+uint64_t digest_of(const InterpreterState& state) {
+    Digest digest;
+    add(digest, state.modal);
+    add(digest, state.next);
+    digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
+                         + 8 * int(state.ending) + 64 * int(state.said_time)
+                         + 128 * int(state.points.present) + 256 * int(state.points.missing)
+                         + 512 * int(state.points.said)));
+    for (const Frame& frame : state.frames) add(digest, frame);
+    for (const ModalMacro& macro : state.modal_macros) {
+        digest.add(macro.name);
+        add_all(digest, macro.arguments);
+        digest.add(number_of(2 * macro.rounds + int(macro.each_block)));
+    }
+    digest.add(uint64_t{state.contour.path.has_value()});
+    if (state.contour.path) {
+        digest.add(state.contour.path->tool.u);
+        digest.add(state.contour.path->tool.v);
+    }
+    add_all(digest, state.said);
+    digest.add(state.parameters->digest());
+    add(digest, *state.tables);
+    add(digest, *state.klartext);
+    add(digest, *state.spline);
+    add(digest, *state.siemens);
+    return digest.value();
+}
+
+} // namespace gcode

@@ -1,0 +1,177 @@
+#include "gcode/exec/statement.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/language/lexer.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+bool is_cycle(const Code& code) {
+    return code.group == ModalGroup::cycle && code.tenths != tenths(80);
+}
+
+/// The code of the block that this one cannot stand beside. G80 gets on with any motion.
+const CodeWord* rival_of(const Statement& statement, const Code& code, const Dialect& dialect) {
+    if (code.group == ModalGroup::other) return nullptr;
+    if (const CodeWord* same = statement.of(code.group)) return same;
+    if (!dialect.cycles_are_motions) return nullptr;
+    const CodeWord* cycle = statement.of(ModalGroup::cycle);
+    if (code.group == ModalGroup::motion && cycle && is_cycle(*cycle->code)) return cycle;
+    return is_cycle(code) ? statement.of(ModalGroup::motion) : nullptr;
+}
+
+/// Whether a control of another kind calls a subprogram, jumps or returns with this word.
+bool goes_elsewhere(const Word& word) {
+    for (const DialectId id :
+         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
+        if (const Code* code = find_code(word.letter, word.value, id))
+            if (code->group == ModalGroup::subprogram) return true;
+    return false;
+}
+
+/// An M code that the table does not have is passed over, unless the order of the blocks may hang
+/// on it or no control can read it.
+core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
+                                      const Dialect& dialect, const Environment& environment) {
+    if (environment.known_m_codes.count(static_cast<int>(word.value))) return {};
+    if (word.value < 0.0 || std::abs(word.value - std::round(word.value)) > 1e-6)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: an M code is a whole number, not negative; take it out "
+                                      "or correct it",
+                                      written(word)),
+                          word.span);
+    if (goes_elsewhere(word))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: other controls jump or call with it, the dialect {} has "
+                                      "no such code; take it out or name the program's dialect",
+                                      written(word), dialect.name),
+                          word.span);
+    statement.unknown_m_codes.push_back(&word);
+    return {};
+}
+
+/// What a code of other controls is called here.
+std::string_view meant_instead(const Word& word) {
+    if (word.value == 70.0) return "; where it means inches, write G20";
+    if (word.value == 71.0) return "; where it means millimetres, write G21";
+    return {};
+}
+
+core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect,
+                            const Environment& environment) {
+    const Code* code = find_code(word.letter, word.value, dialect.id);
+    if (!code && word.letter == 'M')
+        return add_unknown_m_code(statement, word, dialect, environment);
+    if (!code)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: there is no such code in the dialect {}{}",
+                                      written(word), dialect.name, meant_instead(word)),
+                          word.span);
+    if (!code->refusal.empty())
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: {}", written(word), code->refusal), word.span);
+    const CodeWord* other = rival_of(statement, *code, dialect);
+    const bool repeated = other && other->code == code && !dialect.repeated_codes_are_errors;
+    if (other && !repeated)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{} and {} are of one modal group: a block takes one of them",
+                                      written(*other->word), written(word)),
+                          word.span);
+    if (repeated) return {};
+    if (statement.code_count == Statement::most_codes)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: there are too many codes in this block", written(word)),
+                          word.span);
+    statement.code_words[statement.code_count++] = {code, &word};
+    statement.groups |= uint64_t{1} << static_cast<unsigned>(code->group);
+    return {};
+}
+
+/// Whether all words that follow are arguments: behind G65, G66 and G66.1.
+bool calls_macro(const Statement& statement) {
+    const CodeWord* macro = statement.of(ModalGroup::macro);
+    return macro && macro->code->tenths != tenths(67);
+}
+
+} // namespace
+
+const CodeWord* Statement::find(ModalGroup group) const {
+    for (const CodeWord& entry : codes())
+        if (entry.code->group == group) return &entry;
+    return nullptr;
+}
+
+const CodeWord* Statement::taker_of_axis_words() const {
+    for (const CodeWord& entry : codes()) {
+        const Code& code = *entry.code;
+        const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle
+                           || (code.letter == 'G' && code.tenths == tenths(53));
+        const bool dwells = code.letter == 'G' && code.tenths == tenths(4) && !word('P');
+        if ((!moves && code.uses_axes()) || dwells) return &entry;
+    }
+    return nullptr;
+}
+
+core::Result<void> look_up(const Block& block, const Dialect& dialect,
+                           const Environment& environment, Statement& statement,
+                           bool words_are_arguments) {
+    statement.words.fill(nullptr);
+    statement.polar_radius = statement.polar_angle = nullptr;
+    statement.corner = statement.angle = nullptr;
+    statement.code_count = 0;
+    statement.groups = 0;
+    statement.letters = 0;
+    statement.unknown_m_codes.clear();
+    statement.arguments.clear();
+    for (const Word& word : block.words) {
+        const bool is_argument =
+            calls_macro(statement) || (words_are_arguments && word.letter != 'G');
+        if (is_argument) {
+            statement.arguments.push_back(&word);
+        } else if (word.letter == 'G' || word.letter == 'M') {
+            if (auto added = add_code(statement, word, dialect, environment); !added) return added;
+        } else if (word.letter == '@') {
+            statement.polar_radius = &word;
+        } else if (word.letter == '^') {
+            statement.polar_angle = &word;
+        } else if (word.letter >= 'i' && word.letter <= 'k') {
+            continue; // I1, J1 and K1 of CIP, which looks them up itself
+        } else if (word.letter >= 'A' && word.letter <= 'Z') {
+            statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
+            statement.letters |= letter_bit(word.letter);
+        } else {
+            const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
+            if (place)
+                return core::fail(ErrorCode::syntax,
+                                  fmt::format("{} and {} in one block: a motion ends in one corner",
+                                              written(*place), written(word)),
+                                  word.span);
+            place = &word;
+            if (word.letter != 'a') statement.letters |= corner_bit;
+        }
+    }
+    return {};
+}
+
+std::string written(const Word& word) {
+    const bool comma = word.letter == 'r' || word.letter == 'c' || word.letter == 'a';
+    return fmt::format("{}{}{:.12g}", comma ? "," : "", comma ? upper(word.letter) : word.letter,
+                       word.value);
+}
+
+core::Result<int> whole_number(const Word& word, int lowest, int highest) {
+    const double rounded = std::round(word.value);
+    if (std::abs(word.value - rounded) > 1e-4 || !(rounded >= lowest && rounded <= highest))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: {} takes a whole number from {} to {}", written(word),
+                                      word.letter, lowest, highest),
+                          word.span);
+    return static_cast<int>(rounded);
+}
+
+} // namespace gcode

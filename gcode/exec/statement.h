@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "gcode/language/block.h"
+#include "gcode/language/codes.h"
+#include "gcode/language/environment.h"
+#include "gcode/language/modal_state.h"
+
+namespace gcode {
+
+/// A G or M word with the code it names.
+struct CodeWord {
+    const Code* code = nullptr;
+    const Word* word = nullptr;
+};
+
+constexpr uint32_t letter_bit(char letter) { return 1u << (letter - 'A'); }
+
+constexpr uint32_t letter_bits(std::string_view letters) {
+    uint32_t bits = 0;
+    for (const char letter : letters) bits |= letter_bit(letter);
+    return bits;
+}
+
+constexpr uint32_t axis_letter_bits = letter_bits(axis_letters);
+constexpr uint32_t corner_bit = 1u << 26; // ,R or ,C
+
+/// A block with its words looked up. Refers to the block's words.
+struct Statement {
+    static constexpr size_t most_codes = 32;
+
+    std::array<const Word*, 26> words{};         // by letter, without G and M
+    const Word* polar_radius = nullptr;          // @
+    const Word* polar_angle = nullptr;           // ^
+    const Word* corner = nullptr;                // ,R or ,C
+    const Word* angle = nullptr;                 // ,A
+    std::array<CodeWord, most_codes> code_words; // in the order written
+    size_t code_count = 0;
+    uint64_t groups = 0;                        // a bit for each modal group that is there
+    uint32_t letters = 0;                       // a bit for each of `words` that is there
+    std::vector<const Word*> unknown_m_codes{}; // a machine builder's
+    std::vector<const Word*> arguments{};       // of a macro call: what stands behind G65 or G66
+
+    std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
+    const Word* word(char letter) const { return words[static_cast<size_t>(letter - 'A')]; }
+    const CodeWord* of(ModalGroup group) const {
+        if (!(groups & (uint64_t{1} << static_cast<unsigned>(group)))) return nullptr;
+        return find(group);
+    }
+    bool has_axis_word() const {
+        return (letters & axis_letter_bits) != 0 || polar_radius || polar_angle;
+    }
+
+    /// The code that takes the axis words away from the motion: G10, G28, G30, G52, G92, G43.1, and
+    /// a G4 that has no P.
+    const CodeWord* taker_of_axis_words() const;
+
+private:
+    const CodeWord* find(ModalGroup group) const;
+};
+
+/// Looks up what a block's words mean in a dialect. Under G66.1 all but the G codes are arguments.
+///
+/// Effect: `statement` is overwritten.
+/// Errors: unsupported for a G code the dialect or this version does not have, and for an M code
+///         that moves the machine, changes its state or jumps; syntax for two codes of one modal
+///         group.
+core::Result<void> look_up(const Block& block, const Dialect& dialect,
+                           const Environment& environment, Statement& statement,
+                           bool words_are_arguments = false);
+
+/// The word as a person would write it, such as X10.5.
+std::string written(const Word& word);
+
+/// The value of a word that counts or names something.
+///
+/// Errors: invalid_value when it is not a whole number from `lowest` to `highest`.
+core::Result<int> whole_number(const Word& word, int lowest = 0, int highest = 99999999);
+
+} // namespace gcode

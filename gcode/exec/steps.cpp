@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "gcode/cycles/cycles.h"
+#include "gcode/exec/execution.h"
+
+namespace gcode {
+namespace {
+
+constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
+    uint64_t bits = 0;
+    for (const ModalGroup group : these) bits |= uint64_t{1} << static_cast<unsigned>(group);
+    return bits;
+}
+
+/// What one kind of words does. It is asked only where the block has one of its groups of codes or
+/// of its letters. One with neither is asked always, or where the state makes it due.
+struct ExecutionStep {
+    core::Result<void> (*take)(Execution&);
+    uint64_t groups = 0;
+    uint32_t letters = 0;
+    bool (*is_due)(const Execution&) = nullptr;
+
+    constexpr bool concerns_all() const { return groups == 0 && letters == 0; }
+    bool concerns(const Execution& execution) const {
+        if (concerns_all()) return !is_due || is_due(execution);
+        return (groups & execution.statement.groups) || (letters & execution.statement.letters);
+    }
+};
+
+bool lacks_units(const Execution& execution) {
+    return !execution.modal().unit_said && !execution.state.said_unit;
+}
+
+bool has_comments(const Execution& execution) { return !execution.block.comments.empty(); }
+
+bool is_compensated(const Execution& execution) {
+    return execution.modal().compensation != Side::none
+           || execution.statement.of(ModalGroup::cutter_radius);
+}
+
+bool may_call(const Execution& execution) {
+    return !execution.state.modal_macros.empty() || execution.statement.of(ModalGroup::subprogram)
+           || execution.statement.of(ModalGroup::macro);
+}
+
+using enum ModalGroup;
+
+// NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
+constexpr ExecutionStep execution_steps[] = {
+    {check_words},
+    {note_assumed_units, 0, 0, lacks_units},
+    {say_message, 0, 0, has_comments},
+    {set_feed_mode, groups({feed_mode})},
+    {set_feed, 0, letter_bits("F")},
+    {set_speed, 0, letter_bits("S")},
+    {set_spindle_mode, groups({spindle_mode})},
+    {select_tool, 0, letter_bits("T")},
+    {switch_machine, groups({other})},
+    {change_tool, groups({tool_change})},
+    {turn_spindle, groups({spindle})},
+    {save_or_restore_modes, groups({other})},
+    {set_coolant, groups({coolant})},
+    {set_overrides, groups({overrides})},
+    {dwell, groups({action})},
+    {select_plane, groups({plane})},
+    {set_units, groups({units})},
+    {set_diameter_mode, groups({diameter})},
+    {set_cutter_radius, 0, 0, is_compensated},
+    {set_tool_length, groups({tool_length}), letter_bits("H")},
+    {select_offset, groups({work_offset})},
+    {set_path_mode, groups({path_control})},
+    {set_distance_mode, groups({distance, arc_distance})},
+    {set_retract_mode, groups({retract})},
+    {set_frame, groups({mirror, scaling, rotation, polar, other})},
+    {act, groups({action})},
+    {move},
+    {ask_for_corner, 0, corner_bit},
+    {stop, groups({stopping})},
+    {call, 0, 0, may_call},
+};
+
+constexpr uint64_t groups_of_steps = [] {
+    uint64_t bits = 0;
+    for (const ExecutionStep& step : execution_steps) bits |= step.groups;
+    return bits;
+}();
+
+constexpr uint32_t letters_of_steps = [] {
+    uint32_t bits = 0;
+    for (const ExecutionStep& step : execution_steps) bits |= step.letters;
+    return bits;
+}();
+
+constexpr size_t steps_for_all =
+    std::count_if(std::begin(execution_steps), std::end(execution_steps),
+                  [](const ExecutionStep& step) { return step.concerns_all(); });
+
+/// The steps of a block that only moves.
+constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
+    std::array<ExecutionStep, steps_for_all> found{};
+    std::copy_if(std::begin(execution_steps), std::end(execution_steps), found.begin(),
+                 [](const ExecutionStep& step) { return step.concerns_all(); });
+    return found;
+}();
+
+} // namespace
+
+core::Result<void> take_steps(Execution& execution) {
+    const Statement& statement = execution.statement;
+    const bool only_moves =
+        !(statement.groups & groups_of_steps) && !(statement.letters & letters_of_steps);
+    const std::span<const ExecutionStep> wanted =
+        only_moves ? std::span<const ExecutionStep>(steps_of_moves) : execution_steps;
+    for (const ExecutionStep& step : wanted)
+        if (step.concerns(execution))
+            if (auto done = step.take(execution); !done) return done;
+    return {};
+}
+
+core::Result<void> act(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    if (!entry) return {};
+    switch (entry->code->tenths) {
+    case tenths(10):
+        return write_offset(execution);
+    case tenths(12):
+    case tenths(13):
+        return mill_circular_pocket(execution);
+    case tenths(27):
+        return check_home(execution);
+    case tenths(29):
+        return return_from_home(execution);
+    case tenths(31):
+        return skip_move(execution);
+    case tenths(70):
+    case tenths(71):
+    case tenths(72):
+        return run_hole_pattern(execution);
+    case tenths(28):
+    case tenths(30):
+        return go_home(execution);
+    case tenths(28, 1):
+    case tenths(30, 1):
+        return store_home(execution);
+    case tenths(52):
+        return set_local_offset(execution);
+    case tenths(92):
+    case tenths(92, 1):
+    case tenths(92, 2):
+    case tenths(92, 3):
+        return set_axis_offset(execution);
+    default:
+        return {}; // G4 and G53 have steps of their own
+    }
+}
+
+core::Result<void> stop(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
+    if (!entry) return {};
+    switch (entry->code->tenths) {
+    case tenths(1):
+        execution.emit(OptionalStop{});
+        break;
+    case tenths(2):
+    case tenths(30):
+        execution.state.ending = Ending::program_end;
+        execution.emit(ProgramEnd{});
+        break;
+    default:
+        execution.emit(ProgramStop{});
+        break; // M0, M60
+    }
+    return {};
+}
+
+} // namespace gcode

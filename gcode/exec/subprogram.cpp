@@ -1,0 +1,453 @@
+#include "gcode/exec/subprogram.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/flow.h"
+#include "gcode/exec/modes.h"
+#include "gcode/language/canonical.h"
+#include "gcode/language/codes.h"
+
+namespace gcode {
+namespace {
+
+constexpr std::array<std::string_view, 11> endings = {
+    "", ".nc", ".NC", ".ngc", ".tap", ".TAP", ".txt", ".TXT", ".cnc", ".CNC", ".gcode"};
+
+/// O1234.nc, O1234, 1234.nc ..., also with zeros before the number.
+std::vector<std::string> file_names(int number) {
+    std::vector<std::string> digits;
+    for (const int width : {1, 4, 5, 8}) {
+        std::string written = fmt::format("{:0{}}", number, width);
+        if (std::find(digits.begin(), digits.end(), written) == digits.end())
+            digits.push_back(std::move(written));
+    }
+    std::vector<std::string> names;
+    for (const std::string& some : digits)
+        for (const std::string_view prefix : {"O", "o", ""})
+            for (const std::string_view ending : endings)
+                names.push_back(fmt::format("{}{}{}", prefix, some, ending));
+    return names;
+}
+
+/// The first line behind a tape mark and a program number.
+uint32_t first_line(const Program& program, const FlowIndex& index) {
+    uint32_t line = 1;
+    for (; line <= program.line_count(); ++line) {
+        const std::string_view text = program.line(line);
+        const size_t first = text.find_first_not_of(" \t");
+        if (first != std::string_view::npos && text[first] != '%') break;
+    }
+    const FlowMark* mark = index.at(line);
+    return mark && mark->kind == FlowKind::program_number ? line + 1 : line;
+}
+
+std::optional<Place> place_in(ProgramLibrary& library, uint32_t source, int number) {
+    const FlowMark* mark = library.index(source).first(FlowKind::program_number, label_of(number));
+    if (!mark) return std::nullopt;
+    return Place{source, mark->line + 1};
+}
+
+std::optional<Place> place_in_programs(ProgramLibrary& library, uint32_t source, int number) {
+    if (const auto own = place_in(library, source, number)) return own;
+    return source == 0 ? std::nullopt : place_in(library, 0, number);
+}
+
+/// A file that is named for the program may leave its number out, where O words do not need it.
+core::Result<std::optional<Place>> place_in_files(ProgramLibrary& library, int number) {
+    FEELER_TRY(const std::optional<uint32_t> source, library.find(file_names(number)));
+    if (!source) return std::nullopt;
+    if (const auto numbered = place_in(library, *source, number)) return numbered;
+    if (library.dialect().has_o_words) return std::nullopt;
+    return Place{*source, first_line(library.program(*source), library.index(*source))};
+}
+
+} // namespace
+
+core::Result<std::optional<Place>> find_program(ProgramLibrary& library, uint32_t source,
+                                                int number, bool files_first) {
+    if (!files_first)
+        if (const auto place = place_in_programs(library, source, number)) return place;
+    FEELER_TRY(const std::optional<Place> place, place_in_files(library, number));
+    if (place || !files_first) return place;
+    return place_in_programs(library, source, number);
+}
+
+std::string missing_program(ProgramLibrary& library, uint32_t source, int number) {
+    constexpr size_t most_named = 8;
+    const FlowIndex& index = library.index(source);
+    std::vector<std::string> others;
+    for (const FlowMark& mark : index.marks)
+        if (mark.kind == FlowKind::program_number && others.size() < most_named)
+            others.push_back("O" + mark.name);
+    std::string message = fmt::format(
+        "there is no program O{} in this file, and no file such as O{}.nc in ", number, number);
+    if (library.search_path().empty())
+        message += "a search path, for there is none";
+    else
+        message += fmt::format("{}", fmt::join(library.search_path(), ", "));
+    if (!others.empty()) message += fmt::format("; this file has {}", fmt::join(others, ", "));
+    if (index.line_of_number(number, 1, UINT32_MAX))
+        message += fmt::format("; N{} is a block of it, which {} calls", number,
+                               find_code('M', 97.0, library.dialect().id)
+                                   ? fmt::format("M97 P{}", number)
+                                   : fmt::format("M98 Q{}", number));
+    return message;
+}
+
+namespace {
+
+using core::ErrorCode;
+
+/// The line of the block that a word names, in a program of the library.
+core::Result<uint32_t> block_named(Execution& execution, const Word& word, Place from,
+                                   std::string_view where) {
+    FEELER_TRY(const int number, whole_number(word));
+    const auto line = line_of_block(execution.library, from.source, number, from.line);
+    if (line) return *line;
+    return core::fail(ErrorCode::syntax,
+                      fmt::format("{}: there is no block N{} in {}", written(word), number, where),
+                      word.span);
+}
+
+/// How often the call is made: its L word.
+core::Result<int> rounds_of(Execution& execution) {
+    const Word* word = execution.statement.word('L');
+    if (!word) return 1;
+    FEELER_TRY(const int rounds, whole_number(*word));
+    if (rounds == 0) execution.warn(word->span, "L0: the subprogram is not run at all");
+    return rounds;
+}
+
+core::Result<void> enter_rounds(Execution& execution, Place begin, std::string name, int rounds) {
+    if (rounds == 0) return {};
+    Frame frame{.called_from = {execution.state.next.source, execution.block.line},
+                .begin = begin,
+                .name = std::move(name),
+                .shares_locals = true,
+                .rounds_left = rounds - 1};
+    return enter(execution.state, execution.environment, std::move(frame),
+                 execution.statement.of(ModalGroup::subprogram)->word->span);
+}
+
+/// M97, and M98 with a Q alone: from a block of the same program on.
+core::Result<void> call_block(Execution& execution, const Word& word) {
+    const uint32_t source = execution.state.next.source;
+    FEELER_TRY(const int rounds, rounds_of(execution));
+    FEELER_TRY(const uint32_t line,
+               block_named(execution, word, {source, execution.block.line}, "this program"));
+    return enter_rounds(execution, {source, line}, fmt::format("N{:.12g}", word.value), rounds);
+}
+
+struct Called {
+    int number;
+    int rounds;
+    Place begin;
+};
+
+/// The program that M98 means. Where no L stands, digits before the last four of P may be one.
+core::Result<Called> called_by(Execution& execution, const Word& word, bool files_first) {
+    FEELER_TRY(int number, whole_number(word));
+    FEELER_TRY(int rounds, rounds_of(execution));
+    const uint32_t source = execution.state.next.source;
+    FEELER_TRY(std::optional<Place> begin,
+               find_program(execution.library, source, number, files_first));
+    const bool may_hold_rounds = execution.dialect.repeats_in_program_number && number > 9999
+                                 && !execution.statement.word('L');
+    if (!begin && may_hold_rounds) {
+        rounds = number / 10000;
+        number %= 10000;
+        FEELER_TRY(begin, find_program(execution.library, source, number, files_first));
+    }
+    if (begin) return Called{number, rounds, *begin};
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format("{}: {}", written(word), missing_program(execution.library, source, number)),
+        word.span);
+}
+
+core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
+    const Word* program = execution.statement.word('P');
+    const Word* block = execution.statement.word('Q');
+    if (block && execution.dialect.has_o_words)
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: M98 takes P and L only on this control", written(*block)),
+            block->span);
+    if (!program && block) return call_block(execution, *block);
+    if (!program)
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} does not say what to call: it needs a P word", written(*entry.word)),
+            entry.word->span);
+    const bool external = entry.code->tenths == tenths(198);
+    FEELER_TRY(Called called, called_by(execution, *program, external));
+    if (block) {
+        FEELER_TRY(called.begin.line,
+                   block_named(execution, *block, {called.begin.source, called.begin.line - 1},
+                               fmt::format("O{}", called.number)));
+    }
+    return enter_rounds(execution, called.begin, fmt::format("O{}", called.number), called.rounds);
+}
+
+/// M99, in a subprogram and in the main program, with and without the block to go on at.
+core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
+    InterpreterState& state = execution.state;
+    const Word* target = execution.statement.word('P');
+    const Frame& frame = state.frames.back();
+    const bool inside = state.frames.size() > 1;
+    if (target && execution.dialect.has_o_words)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: M99 takes no P on this control", written(*target)),
+                          target->span);
+    if (inside && execution.dialect.has_o_words && !frame.shares_locals)
+        return core::fail(ErrorCode::syntax,
+                          "M99 belongs to what M98 calls; this subprogram was called by an O word "
+                          "and ends with endsub or return",
+                          entry.word->span);
+    if (target) {
+        const Place from =
+            inside ? frame.called_from : Place{state.next.source, execution.block.line};
+        FEELER_TRY(const uint32_t line,
+                   block_named(execution, *target, from,
+                               inside ? "the program that called" : "this program"));
+        if (inside)
+            leave_to(state, line);
+        else
+            state.next.line = line;
+    } else if (inside) {
+        const ModalState before = state.modal;
+        leave(state);
+        announce_modes(execution.result, entry.word->span.column, before, state.modal);
+    } else {
+        state.ending = Ending::main_return;
+        if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
+    }
+    return {};
+}
+
+/// M96 jumps while an input is off. One that jumps back waits for it, so it will come.
+core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
+    const Word* target = execution.statement.word('P');
+    if (!target)
+        return core::fail(ErrorCode::missing_value,
+                          "M96 does not say where to jump: it needs a P word", entry.word->span);
+    const Place here{execution.state.next.source, execution.block.line};
+    FEELER_TRY(const uint32_t line, block_named(execution, *target, here, "this program"));
+    const Word* input = execution.statement.word('Q');
+    const std::string name = input ? written(*input) : "its input";
+    if (line <= execution.block.line) {
+        execution.warn(entry.word->span,
+                       fmt::format("M96 waits for {}: taken as on, so it goes on", name));
+        return {};
+    }
+    execution.warn(entry.word->span,
+                   fmt::format("M96: {} is taken as off, so it jumps; the blocks up to {} were "
+                               "not looked at",
+                               name, written(*target)));
+    execution.state.next.line = line;
+    return {};
+}
+
+/// Some controls read the block of a call for the call alone.
+core::Result<void> check_company(const Execution& execution, const CodeWord& entry) {
+    if (!execution.dialect.calls_stand_alone) return {};
+    for (const Word& word : execution.block.words) {
+        if (std::string_view("NMPLQ").find(word.letter) != std::string_view::npos) continue;
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: {} stands in a block of its own on this control",
+                                      written(word), written(*entry.word)),
+                          word.span);
+    }
+    return {};
+}
+
+} // namespace
+
+core::Result<void> call_subprogram(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::subprogram);
+    if (!entry) return {};
+    if (auto checked = check_company(execution, *entry); !checked) return checked;
+    switch (entry->code->tenths) {
+    case tenths(96):
+        return jump_on_input(execution, *entry);
+    case tenths(97): {
+        const Word* word = execution.statement.word('P');
+        if (word) return call_block(execution, *word);
+        return core::fail(ErrorCode::missing_value,
+                          "M97 does not say which block to call: it needs a P word",
+                          entry->word->span);
+    }
+    case tenths(99):
+        return come_back(execution, *entry);
+    default:
+        return call_program(execution, *entry); // M98, M198
+    }
+}
+
+namespace {
+
+using core::ErrorCode;
+
+// Fanuc B-64304, argument specification I, for A to Z. G, L, N, O and P have the places that are
+// left, which G66.1 and the variables of the block before (#4101 and on) use.
+constexpr size_t numbers[26] = {1,  2,  3,  7,  8,  9,  10, 11, 4,  5,  6,  12, 13,
+                                14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
+
+constexpr int most_offset_sets = 10;
+
+bool is_offset(char letter) { return letter >= 'I' && letter <= 'K'; }
+
+const Word* argument(const Execution& execution, char letter) {
+    for (const Word* word : execution.statement.arguments)
+        if (word->letter == letter) return word;
+    return nullptr;
+}
+
+/// The words of the call's block but for its P and L.
+std::vector<const Word*> words_of_call(const Execution& execution) {
+    std::vector<const Word*> words;
+    for (const Word* word : execution.statement.arguments)
+        if (word->letter != 'P' && word->letter != 'L') words.push_back(word);
+    return words;
+}
+
+/// The macro that G65 or G66 names, with its arguments.
+core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry) {
+    const Word* program = argument(execution, 'P');
+    if (!program)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} does not say which macro: it needs a P word behind it",
+                                      written(*entry.word)),
+                          entry.word->span);
+    FEELER_TRY(const int number, whole_number(*program));
+    const uint32_t source = execution.state.next.source;
+    FEELER_TRY(const std::optional<Place> begin, find_program(execution.library, source, number));
+    if (!begin)
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("{}: {}", written(*program),
+                                      missing_program(execution.library, source, number)),
+                          program->span);
+    ModalMacro macro{.name = fmt::format("O{}", number), .begin = *begin};
+    if (const Word* rounds = argument(execution, 'L')) {
+        FEELER_TRY(macro.rounds, whole_number(*rounds));
+        if (macro.rounds == 0) execution.warn(rounds->span, "L0: the macro is not run at all");
+    }
+    FEELER_TRY(macro.arguments, arguments_of(words_of_call(execution)));
+    macro.each_block = entry.code->tenths == tenths(66, 1);
+    return macro;
+}
+
+core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, size_t modal,
+                               core::SourceSpan where) {
+    if (macro.rounds == 0) return {};
+    Frame frame{.called_from = {execution.state.next.source, execution.block.line},
+                .begin = macro.begin,
+                .name = macro.name,
+                .locals = macro.arguments,
+                .rounds_left = macro.rounds - 1,
+                .modal_macro = modal};
+    if (macro.rounds > 1 && modal == 0) frame.again = macro.arguments;
+    return enter(execution.state, execution.environment, std::move(frame), where);
+}
+
+/// What G66 calls behind a motion, and G66.1 for every block.
+core::Result<void> call_modal_macro(Execution& execution) {
+    const size_t modal = modal_macro_in_effect(execution.state);
+    if (modal == 0) return {};
+    ModalMacro macro = execution.state.modal_macros[modal - 1];
+    const auto& commands = execution.result.commands;
+    if (!macro.each_block && std::none_of(commands.begin(), commands.end(), is_motion)) return {};
+    if (macro.each_block) {
+        FEELER_TRY(macro.arguments, arguments_of(execution.statement.arguments));
+        if (execution.statement.code_count > 0)
+            macro.arguments[argument_number('G')] = execution.statement.codes().back().word->value;
+    }
+    return enter_macro(execution, macro, modal, {.line = execution.block.line, .column = 1});
+}
+
+} // namespace
+
+size_t argument_number(char letter) {
+    return letter >= 'A' && letter <= 'Z' ? numbers[letter - 'A'] : 0;
+}
+
+core::Result<LocalParameters> arguments_of(const std::vector<const Word*>& words) {
+    LocalParameters locals{};
+    int set = 0;
+    char last = '\0';
+    for (const Word* word : words) {
+        const char letter = word->letter;
+        if (letter == 'N' || letter == 'O') continue;
+        if (letter == 'G' || argument_number(letter) == 0)
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{} cannot be an argument of a macro: write it before "
+                                          "the call",
+                                          written(*word)),
+                              word->span);
+        if (!is_offset(letter)) {
+            locals[argument_number(letter)] = word->value;
+            continue;
+        }
+        if (letter <= last) ++set;
+        last = letter;
+        if (set == most_offset_sets)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: a macro takes I, J and K ten times at most", written(*word)),
+                word->span);
+        locals[argument_number(letter) + 3 * static_cast<size_t>(set)] = word->value;
+    }
+    return locals;
+}
+
+size_t modal_macro_in_effect(const InterpreterState& state) {
+    if (state.modal_macros.empty()) return 0;
+    for (auto frame = state.frames.rbegin(); frame != state.frames.rend(); ++frame)
+        if (frame->modal_macro > 0)
+            return std::min(frame->modal_macro - 1, state.modal_macros.size());
+    return state.modal_macros.size();
+}
+
+bool blocks_are_arguments(const InterpreterState& state) {
+    const size_t modal = modal_macro_in_effect(state);
+    return modal > 0 && state.modal_macros[modal - 1].each_block;
+}
+
+core::Result<void> call_macro(Execution& execution) {
+    InterpreterState& state = execution.state;
+    const CodeWord* entry = execution.statement.of(ModalGroup::macro);
+    if (!entry)
+        return execution.statement.of(ModalGroup::subprogram) ? core::Result<void>{}
+                                                              : call_modal_macro(execution);
+    if (entry->code->tenths == tenths(67)) {
+        if (!state.modal_macros.empty()) state.modal_macros.pop_back();
+        return {};
+    }
+    FEELER_TRY(ModalMacro macro, named_macro(execution, *entry));
+    if (entry->code->tenths == tenths(65))
+        return enter_macro(execution, macro, 0, entry->word->span);
+    if (state.modal_macros.size() == execution.dialect.deepest_calls)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: {} macros are called by every motion already: cancel "
+                                      "them with G67",
+                                      written(*entry->word), state.modal_macros.size()),
+                          entry->word->span);
+    const bool now = macro.each_block;
+    state.modal_macros.push_back(std::move(macro));
+    if (!now) return {};
+    return enter_macro(execution, state.modal_macros.back(), state.modal_macros.size(),
+                       entry->word->span);
+}
+
+core::Result<void> call(Execution& execution) {
+    if (execution.state.ending != Ending::running) return {};
+    if (auto called = call_subprogram(execution); !called) return called;
+    return call_macro(execution);
+}
+
+} // namespace gcode

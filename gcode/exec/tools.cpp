@@ -1,0 +1,329 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using core::OffsetNumber;
+using core::ToolNumber;
+
+void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
+                bool follows_tip = false) {
+    Offsets offsets = execution.modal().offsets;
+    offsets.tool = offset;
+    offsets.follows_tip = follows_tip;
+    change_offsets(execution, offsets);
+    execution.modal().length_number = number;
+    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
+}
+
+/// The offset under a number: along Z its length, else as the table says.
+AxisValues offset_under(const Execution& execution, int number, double length) {
+    AxisValues offset{};
+    const auto& lengths = execution.state.tables->lengths;
+    if (const auto entry = lengths.find(OffsetNumber(number)); entry != lengths.end())
+        offset = entry->second.shift;
+    offset[2] = length;
+    return offset;
+}
+
+/// The number G43 means: its H word, else what the dialect says.
+core::Result<std::optional<int>> length_number(const Execution& execution) {
+    if (const Word* word = execution.statement.word('H')) {
+        FEELER_TRY(const int number, whole_number(*word));
+        if (number != 0 || !execution.dialect.bare_h0_is_tool) return number;
+    }
+    const ModalState& modal = execution.modal();
+    if (execution.dialect.bare_length_offset_is_tool)
+        return modal.tool ? std::optional(value_of(*modal.tool)) : std::nullopt;
+    return modal.length_number ? std::optional(value_of(*modal.length_number)) : std::nullopt;
+}
+
+core::Result<void> use_table_length(Execution& execution, const Word& word, double sign,
+                                    bool follows_tip = false) {
+    FEELER_TRY(const std::optional<int> number, length_number(execution));
+    execution.modal().length_sign = sign;
+    const core::SourceSpan where = word.span;
+    if (!number) {
+        execution.warn(where, fmt::format("{} has no H word and no tool to take it from: no length "
+                                          "offset is applied",
+                                          written(word)));
+        use_offset(execution, std::nullopt, {}, follows_tip);
+        return {};
+    }
+    const std::optional<double> length =
+        *number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, *number);
+    if (!length)
+        execution.warn(where, fmt::format("{}: nothing is known about length offset H{}, taken as "
+                                          "0",
+                                          written(word), *number));
+    use_offset(execution, OffsetNumber(*number),
+               offset_under(execution, *number, sign * length.value_or(0.0)), follows_tip);
+    const auto& tool = execution.modal().tool;
+    if (tool && *number != 0 && *number != value_of(*tool))
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("{}: H{} is not the offset of the tool in the spindle, T{}", written(word),
+                         *number, value_of(*tool)),
+             "offset-not-tool", fmt::format("Write H{}.", value_of(*tool))});
+    return {};
+}
+
+/// G43.1: the offset stands in the block.
+core::Result<void> use_given_offset(Execution& execution) {
+    AxisValues offset = execution.modal().offsets.tool;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            offset[axis] = axis_value(execution, axis, *word);
+    use_offset(execution, std::nullopt, offset);
+    return {};
+}
+
+/// G43.2: one more offset on top of what is on, from the table or from the block.
+core::Result<void> add_table_offset(Execution& execution, const Word& word) {
+    AxisValues sum = execution.modal().offsets.tool;
+    const Word* number = execution.statement.word('H');
+    AxisValues more{};
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* value = execution.statement.word(axis_letters[axis]))
+            more[axis] = axis_value(execution, axis, *value);
+    if (number) {
+        FEELER_TRY(const int entry, whole_number(*number));
+        const std::optional<double> length = length_under(*execution.state.tables, entry);
+        if (!length)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: nothing is known about length offset H{}", written(word), entry),
+                number->span);
+        more = offset_under(execution, entry, *length);
+    } else if (!execution.statement.has_axis_word()) {
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs an H word, or the offset itself as axis words", written(word)),
+            word.span);
+    }
+    for (size_t axis = 0; axis < axis_count; ++axis) sum[axis] += more[axis];
+    use_offset(execution, execution.modal().length_number, sum);
+    return {};
+}
+
+/// G43.4 and G43.5: the control keeps the tip where the program says, seen from the work.
+core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
+    use_transforms(execution, transforms);
+    if (!execution.modal().offsets.machine)
+        execution.warn(entry.word->span,
+                       fmt::format("{}: taken as G43; rotary axes are followed in the program's "
+                                   "coordinates, not in those of the machine",
+                                   written(*entry.word)),
+                       Severity::note);
+    return use_table_length(execution, *entry.word, +1.0, true);
+}
+
+/// Once a plain length offset or none is on, motions do not say where the tool points to.
+void leave_vectors(Execution& execution) {
+    if (!execution.modal().transforms.follows_vectors) return;
+    ProgramTransforms transforms = execution.modal().transforms;
+    transforms.follows_vectors = false;
+    use_transforms(execution, transforms);
+}
+
+} // namespace
+
+bool changes_length_alone(const Execution& execution) {
+    const auto uses = [](const CodeWord& entry) { return entry.code->uses('H'); };
+    const std::span<const CodeWord> codes = execution.statement.codes();
+    return execution.dialect.lone_h_is_length_offset && execution.modal().length_sign != 0.0
+           && execution.statement.word('H') && !execution.statement.of(ModalGroup::tool_length)
+           && std::none_of(codes.begin(), codes.end(), uses);
+}
+
+core::Result<void> select_tool(Execution& execution) {
+    const Word* word = execution.statement.word('T');
+    if (!word) return {};
+    FEELER_TRY(const int number, whole_number(*word));
+    const auto& table = execution.state.tables->lengths;
+    if (execution.dialect.tool_entries_by_axes && number != 0 && !table.empty()
+        && !length_under(*execution.state.tables, number))
+        execution.warn(word->span, fmt::format("{}: this tool is not in the tool table: a control "
+                                               "with this table stops here",
+                                               written(*word)));
+    execution.modal().selected_tool = ToolNumber(number);
+    execution.emit(SelectTool{ToolNumber(number)});
+    return {};
+}
+
+core::Result<void> change_tool(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
+    if (!entry) return {};
+    ModalState& modal = execution.modal();
+    execution.column = entry->word->span.column;
+    if (entry->code->tenths == tenths(61)) return name_tool(execution);
+    if (!modal.selected_tool)
+        return core::fail(ErrorCode::missing_value,
+                          "M6 has no tool to change to: no T word came before it",
+                          entry->word->span);
+    modal.tool = modal.selected_tool;
+    // RS274/NGC 3.6.3: the spindle is stopped when the tool change is complete.
+    if (modal.spindle != core::SpindleDirection::stopped) {
+        modal.spindle = core::SpindleDirection::stopped;
+        execution.emit(Spindle{modal.spindle, 0.0});
+    }
+    const bool empty = *modal.tool == ToolNumber(0);
+    execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
+    return {};
+}
+
+core::Result<void> set_tool_length(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
+    ModalState& modal = execution.modal();
+    if (!entry && changes_length_alone(execution))
+        return use_table_length(execution, *execution.statement.word('H'), modal.length_sign,
+                                modal.offsets.follows_tip);
+    if (!entry) return {};
+    leave_vectors(execution);
+    switch (entry->code->tenths) {
+    case tenths(43):
+        return use_table_length(execution, *entry->word, +1.0);
+    case tenths(44):
+        return use_table_length(execution, *entry->word, -1.0);
+    case tenths(43, 2):
+        return add_table_offset(execution, *entry->word);
+    case tenths(43, 4):
+    case tenths(43, 5):
+        return use_tool_centre_control(execution, *entry);
+    case tenths(43, 1):
+        modal.length_sign = 0.0;
+        return use_given_offset(execution);
+    default:
+        modal.length_sign = 0.0;
+        use_offset(execution, std::nullopt, {});
+        return {}; // G49
+    }
+}
+
+namespace {
+
+using core::ErrorCode;
+using core::OffsetNumber;
+using core::ToolNumber;
+
+core::Result<int> tool_of_entry(const Execution& execution) {
+    const Word* word = execution.statement.word('P');
+    if (!word)
+        return core::fail(ErrorCode::missing_value,
+                          "G10 does not say which tool: it needs a P word",
+                          execution.statement.of(ModalGroup::action)->word->span);
+    return whole_number(*word, 1, 99999);
+}
+
+core::Result<void> need_a_value(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    for (const char letter : {'R', 'I', 'J', 'Q'})
+        if (statement.word(letter)) return {};
+    if (statement.has_axis_word()) return {};
+    return core::fail(ErrorCode::missing_value,
+                      "G10 does not say what to write into the tool table: it needs an axis word, "
+                      "R, I, J or Q",
+                      statement.of(ModalGroup::action)->word->span);
+}
+
+/// The radius, the angles and the way a turning tool points, which L1, L10 and L11 take alike.
+core::Result<void> take_shape(const Execution& execution, LengthOffset& entry) {
+    const Statement& statement = execution.statement;
+    if (const Word* word = statement.word('R')) entry.diameter = 2.0 * length_of(execution, *word);
+    if (const Word* word = statement.word('I')) entry.front_deg = word->value;
+    if (const Word* word = statement.word('J')) entry.back_deg = word->value;
+    if (const Word* word = statement.word('Q')) {
+        FEELER_TRY(entry.orientation, whole_number(*word, 0, 9));
+    }
+    return {};
+}
+
+/// Of the frame in which L10 and L11 read the place: the active one, or that of G59.3.
+Offsets reading_offsets(const Execution& execution, bool in_last_offset) {
+    Offsets offsets = execution.modal().offsets;
+    offsets.tool = {};
+    if (in_last_offset) offsets.axis = zero_position;
+    if (in_last_offset) offsets.work = work_offset(*execution.state.tables, plain_offset_count - 1);
+    return offsets;
+}
+
+/// What an entry would shift, as a place without any other offset.
+Position shift_of(const LengthOffset& entry) {
+    Position shift;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        shift[axis] = axis == 2 ? entry.length : entry.shift[axis];
+    return shift;
+}
+
+/// The tool offsets that would make the present place read as the words say. Where the offset is
+/// turned, the entry keeps what it has along the turned axes that are not named.
+core::Result<void> take_offsets_here(const Execution& execution, bool in_last_offset,
+                                     LengthOffset& entry) {
+    const ModalState& modal = execution.modal();
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    const Offsets offsets = reading_offsets(execution, in_last_offset);
+    Offsets only_turned;
+    only_turned.work.rotation_deg = offsets.work.rotation_deg;
+    const Position read = program_from_machine(offsets, machine);
+    Position off = program_from_machine(only_turned, shift_of(entry));
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        if (!read[axis])
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("{}: this needs a known place, and where the machine is "
+                                          "along {} is unknown",
+                                          written(*word), axis_letters[axis]),
+                              word->span);
+        off[axis] = *read[axis] - axis_value(execution, axis, *word);
+    }
+    const Position shift = machine_from_program(only_turned, off);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        (axis == 2 ? entry.length : entry.shift[axis]) = *shift[axis];
+    return {};
+}
+
+} // namespace
+
+core::Result<void> write_tool_entry(Execution& execution, int kind) {
+    FEELER_TRY(const int tool, tool_of_entry(execution));
+    if (auto checked = need_a_value(execution); !checked) return checked;
+    std::map<OffsetNumber, LengthOffset>& lengths = execution.state.tables.write().lengths;
+    LengthOffset entry;
+    if (const auto known = lengths.find(OffsetNumber(tool)); known != lengths.end())
+        entry = known->second;
+    else if (const auto length = length_under(*execution.state.tables, tool))
+        entry.length = *length;
+    if (auto taken = take_shape(execution, entry); !taken) return taken;
+    if (kind == 1) {
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (const Word* word = execution.statement.word(axis_letters[axis]))
+                (axis == 2 ? entry.length : entry.shift[axis]) = axis_value(execution, axis, *word);
+    } else if (auto taken = take_offsets_here(execution, kind == 11, entry); !taken) {
+        return taken;
+    }
+    lengths[OffsetNumber(tool)] = entry;
+    return {};
+}
+
+core::Result<void> name_tool(Execution& execution) {
+    const Word* word = execution.statement.word('Q');
+    if (!word)
+        return core::fail(ErrorCode::missing_value,
+                          "M61 does not say which tool is in the spindle: it needs a Q word",
+                          execution.statement.of(ModalGroup::tool_change)->word->span);
+    FEELER_TRY(const int tool, whole_number(*word));
+    execution.modal().tool = ToolNumber(tool);
+    execution.emit(NameTool{tool == 0 ? std::nullopt : std::optional(ToolNumber(tool))});
+    return {};
+}
+
+} // namespace gcode

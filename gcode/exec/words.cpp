@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "gcode/exec/execution.h"
+#include "gcode/language/error_rules.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
+constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
+constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R are often none
+
+/// The code of the motion or cycle that a block without one goes on with.
+const Code* going_on(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);
+    if (modal.motion) return find_code('G', *modal.motion / 10.0, execution.dialect.id);
+    return nullptr;
+}
+
+/// G30 P2, the place that G30 means by itself.
+bool names_second_home(const Execution& execution) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const Word* place = execution.statement.word('P');
+    return execution.dialect.p_names_more_places && action && action->code->tenths == tenths(30)
+           && place && place->value == 2.0;
+}
+
+/// A P that makes G30 a place that nobody told.
+core::Result<void> refuse_unknown_home(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const Word* place = statement.word('P');
+    if (!place || !execution.dialect.p_names_more_places) return {};
+    const CodeWord* action = statement.of(ModalGroup::action);
+    if (action && action->code->tenths == tenths(30) && !names_second_home(execution))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: G30 knows the second reference position only: go to "
+                                      "another one with G53",
+                                      written(*place)),
+                          place->span);
+    return {};
+}
+
+/// G54 P3, which is G54.1 P3. A P that another code of the block wants is that one's.
+bool names_extended_offset(const Execution& execution) {
+    const CodeWord* offset = execution.statement.of(ModalGroup::work_offset);
+    return execution.dialect.has_extended_offsets && offset && offset->code->tenths == tenths(54);
+}
+
+bool is_used(const Execution& execution, char letter) {
+    const Statement& statement = execution.statement;
+    if (!statement.unknown_m_codes.empty()) return true;
+    if (letter == 'H' && changes_length_alone(execution)) return true;
+    if (letter == 'P' && names_extended_offset(execution)) return true;
+    if (execution.modal().transforms.follows_vectors && letter >= 'I' && letter <= 'K') return true;
+    if (letter == 'P' && names_second_home(execution)) return true;
+    const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
+    if (std::any_of(statement.codes().begin(), statement.codes().end(), uses)) return true;
+    if (statement.of(ModalGroup::motion) || statement.of(ModalGroup::cycle)) return false;
+    const Code* modal = going_on(execution);
+    return modal && modal->uses(letter);
+}
+
+core::Result<void> check_word(Execution& execution, const Word& word) {
+    if (is_used(execution, word.letter)) return {};
+    const bool exponent = word.letter == 'E'; // of a number, most likely
+    const std::string message =
+        fmt::format("{}: nothing in this block uses it{}", written(word),
+                    exponent ? "; an exponent such as 1E3 is written out, and the extruder of a "
+                               "3D printer is none of a milling machine's"
+                             : "");
+    if (exponent || execution.dialect.unused_words_are_errors)
+        return core::fail(ErrorCode::syntax, message, word.span);
+    execution.warn(word.span, message);
+    return {};
+}
+
+} // namespace
+
+double length_of(const Execution& execution, const Word& word) {
+    return to_mm(word.value, execution.modal().unit);
+}
+
+core::Result<void> check_words(Execution& execution) {
+    if (auto checked = refuse_unknown_home(execution); !checked) return checked;
+    for (const Word* word : execution.statement.unknown_m_codes)
+        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
+                                               "builder; it is passed over",
+                                               written(*word)));
+    if (!(execution.statement.letters & bits_that_need_a_code)) return {};
+    for (const char letter : letters_that_need_a_code)
+        if (const Word* word = execution.statement.word(letter))
+            if (auto checked = check_word(execution, *word); !checked) return checked;
+    return {};
+}
+
+core::Result<void> note_assumed_units(Execution& execution) {
+    if (execution.modal().unit_said || execution.state.said_unit
+        || execution.statement.of(ModalGroup::units) || execution.statement.of(ModalGroup::macro))
+        return {};
+    for (const Word& word : execution.block.words) {
+        if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;
+        const bool inch = execution.modal().unit == LengthUnit::inch;
+        execution.state.said_unit = true;
+        execution.warn(word.span,
+                       fmt::format("units not said (G20 or G21) before {}, taken as {}",
+                                   written(word), inch ? "inches" : "millimetres"),
+                       Severity::note);
+        return {};
+    }
+    return {};
+}
+
+namespace {
+
+core::Error refusal(const Word& word, core::ErrorCode code, std::string_view why) {
+    return {code, word.span, fmt::format("{}: {}", written(word), why)};
+}
+
+} // namespace
+
+core::Result<void> place_by_angle(const Execution& execution, Position& target) {
+    const Word* angle = execution.statement.angle;
+    if (!angle) return {};
+    using core::ErrorCode;
+    const ModalState& modal = execution.modal();
+    if (modal.cycle || (modal.motion != tenths(0) && modal.motion != tenths(1)))
+        return tl::unexpected(
+            refusal(*angle, ErrorCode::syntax, "an angle gives the direction of a G0 or G1"));
+    const PlaneAxes axes = axes_of(modal.plane);
+    const bool first = execution.statement.word(axis_letters[axes.first]) != nullptr;
+    const bool second = execution.statement.word(axis_letters[axes.second]) != nullptr;
+    const std::string both =
+        fmt::format("{} or {}", axis_letters[axes.first], axis_letters[axes.second]);
+    if (first && second)
+        return tl::unexpected(refusal(*angle, ErrorCode::syntax,
+                                      fmt::format("beside an angle stands {}, not both", both)));
+    if (!first && !second)
+        return tl::unexpected(
+            refusal(*angle, ErrorCode::unsupported,
+                    fmt::format("a line to where it crosses the next one is not supported yet: "
+                                "write {} as well",
+                                both)));
+    const size_t given = first ? axes.first : axes.second;
+    const size_t other = first ? axes.second : axes.first;
+    if (!modal.position[given] || !modal.position[other])
+        return tl::unexpected(refusal(*angle, ErrorCode::missing_value,
+                                      "where the line begins is unknown: move there first"));
+    const double radians = angle->value * std::numbers::pi / 180.0;
+    const double along = first ? std::cos(radians) : std::sin(radians);
+    const double across = first ? std::sin(radians) : std::cos(radians);
+    const double way = *target[given] - *modal.position[given];
+    if (std::abs(along) < 1e-9)
+        return tl::unexpected(refusal(*angle, ErrorCode::invalid_value,
+                                      fmt::format("in this direction {} does not change: write {}",
+                                                  axis_letters[given], axis_letters[other])));
+    target[other] = *modal.position[other] + way * across / along;
+    return {};
+}
+
+namespace {
+
+/// How fast the spindle turns, rev/min. Under G96 that hangs on the distance from its axis: that of
+/// where the motion begins is taken for the whole of it.
+double turns_a_minute(const ModalState& modal) {
+    if (!modal.surface_speed) return modal.speed;
+    const double speed = modal.speed * (modal.unit == LengthUnit::inch ? 304.8 : 1000.0); // mm/min
+    constexpr double least_radius = 0.01; // mm; at the axis itself no speed is fast enough
+    const double radius = std::max(std::abs(modal.position[0].value_or(0.0)), least_radius);
+    const double turns = speed / (2.0 * std::numbers::pi * radius);
+    return modal.fastest_speed > 0.0 ? std::min(turns, modal.fastest_speed) : turns;
+}
+
+} // namespace
+
+std::optional<double> way_between(const Position& from, const Position& to) {
+    // The rate is along X, Y, Z, or, when these stand, along U, V, W, or the rotary axes.
+    for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
+        double squared = 0.0;
+        for (size_t axis = first; axis < first + 3; ++axis) {
+            if (from[axis] == to[axis]) continue;
+            if (!from[axis] || !to[axis]) return std::nullopt;
+            squared += (*to[axis] - *from[axis]) * (*to[axis] - *from[axis]);
+        }
+        if (squared > 0.0) return std::sqrt(squared);
+    }
+    return 0.0;
+}
+
+core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length) {
+    const ModalState& modal = execution.modal();
+    const auto refuse = [&](std::string_view why) {
+        const Word& mover = moving_word(execution);
+        return core::fail(no_feed, fmt::format("{}: {}", written(mover), why), mover.span);
+    };
+    const bool inverse = modal.feed_mode == FeedMode::inverse_time;
+    if (inverse && !execution.statement.word('F'))
+        return refuse("under G93 every feed needs its own F word");
+    if (!modal.feed) return refuse("this motion has no feed rate, no F word came before it");
+    if (*modal.feed == 0.0) return refuse("this motion has the feed rate F0");
+    if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
+    if (inverse && !path_length)
+        return refuse("G93 gives no feed rate here, where the motion starts is unknown");
+    const bool has_slowest = execution.dialect.system_parameters == SystemParameters::rs274;
+    const double slowest = has_slowest ? to_mm(0.1, modal.unit) : 0.0; // a minute
+    if (inverse) return std::max(slowest, *modal.feed * *path_length);
+    if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
+        return refuse("G95 gives no feed rate here, the spindle does not turn");
+    return *modal.feed * turns_a_minute(modal);
+}
+
+} // namespace gcode

@@ -1,0 +1,280 @@
+#include "gcode/klartext/klartext.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/language/error_rules.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using enum CommandKind;
+
+/// Whether the block's code of a group is one that counts from the block's beginning.
+bool begins_block(const Execution& execution, ModalGroup group, int last_tenths) {
+    const CodeWord* entry = execution.statement.of(group);
+    return entry && entry->code->tenths != last_tenths;
+}
+
+bool ends_block(const Execution& execution, ModalGroup group, int last_tenths) {
+    const CodeWord* entry = execution.statement.of(group);
+    return entry && entry->code->tenths == last_tenths;
+}
+
+void warn_of_m_codes(Execution& execution) {
+    for (const Word* word : execution.statement.unknown_m_codes)
+        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
+                                               "builder; it is passed over",
+                                               written(*word)));
+    for (const CodeWord& entry : execution.statement.codes())
+        if (entry.code->letter == 'M' && entry.code->tenths == tenths(128))
+            execution.warn(entry.word->span, "M128: the linear axes do not follow the rotary ones "
+                                             "here; ends are taken as they are written");
+}
+
+core::Result<void> take_feed(Execution& execution) {
+    const CommandKind kind = execution.block.command.kind;
+    if (kind == rounding || kind == chamfer) return {}; // it holds there alone
+    if (const Word* word = execution.statement.word('E')) {
+        if (!execution.state.klartext->call_feed)
+            return core::fail(ErrorCode::missing_value,
+                              "FAUTO: no TOOL CALL with an F came before it", word->span);
+        execution.modal().feed = execution.state.klartext->call_feed;
+    }
+    return set_feed(execution);
+}
+
+core::Result<void> program_error_of(const Execution& execution) {
+    const Word* word = execution.statement.word('P');
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("FN 14: the program stops itself here with its error {:.12g}",
+                                  word ? word->value : 0.0),
+                      execution.block.command.span);
+}
+
+core::Result<void> run_statement(Execution& execution) {
+    switch (execution.block.command.kind) {
+    case none:
+    case note:
+    case modes:
+        return {};
+    case rounding:
+    case chamfer:
+        return make_corner(execution);
+    case tool_call:
+        return call_klartext_tool(execution);
+    case tool_definition:
+        return define_klartext_tool(execution);
+    case cycle_definition:
+        return define_cycle(execution);
+    case read_system:
+        return read_system_datum(execution);
+    case program_error:
+        return program_error_of(execution);
+    default:
+        return move_in_klartext(execution);
+    }
+}
+
+bool is_motion(CommandKind kind) {
+    return kind >= straight && kind <= tangent_polar && kind != pole;
+}
+
+/// M99 calls once, M89 after every motion from its own on, until M99 or another cycle.
+core::Result<void> call_cycle(Execution& execution) {
+    const Command& command = execution.block.command;
+    KlartextState& klartext = execution.state.klartext.write();
+    if (command.calls_from_here) klartext.calls_after_motions = true;
+    const bool moves = is_motion(command.kind)
+                       && (command.kind != straight || execution.statement.has_axis_word());
+    const bool calls =
+        command.calls_cycle || command.calls_from_here || (klartext.calls_after_motions && moves);
+    if (command.calls_cycle) klartext.calls_after_motions = false;
+    return calls ? call_defined_cycle(execution) : core::Result<void>{};
+}
+
+} // namespace
+
+core::Result<void> run_klartext(Execution& execution) {
+    const Command& command = execution.block.command;
+    warn_of_m_codes(execution);
+    const bool late_spindle = ends_block(execution, ModalGroup::spindle, tenths(5));
+    const bool late_coolant = ends_block(execution, ModalGroup::coolant, tenths(9));
+    for (const auto step : {set_units, select_plane, take_feed})
+        if (auto done = step(execution); !done) return done;
+    if (begins_block(execution, ModalGroup::spindle, tenths(5)))
+        if (auto done = turn_spindle(execution); !done) return done;
+    if (begins_block(execution, ModalGroup::coolant, tenths(9)))
+        if (auto done = set_coolant(execution); !done) return done;
+    if (auto done = run_statement(execution); !done) return done;
+    const bool calls = command.calls_cycle || command.calls_from_here
+                       || execution.state.klartext->calls_after_motions;
+    if (calls)
+        if (auto done = call_cycle(execution); !done) return done;
+    if (late_spindle)
+        if (auto done = turn_spindle(execution); !done) return done;
+    if (late_coolant)
+        if (auto done = set_coolant(execution); !done) return done;
+    return stop(execution);
+}
+
+tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why) {
+    const core::SourceSpan where = execution.block.command.span;
+    const std::string_view text = execution.block.text;
+    const size_t begin = std::min<size_t>(where.column - 1, text.size());
+    const std::string_view words = text.substr(begin, where.length);
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("{}: {}", words.substr(0, words.find_first_of(";~\r\n")), why),
+                      where);
+}
+
+core::Result<double> klartext_feed(const Execution& execution) {
+    const std::optional<double> feed = execution.modal().feed;
+    if (feed && *feed > 0.0) return *feed;
+    tl::unexpected<core::Error> error = refuse_statement(
+        execution, feed ? "this motion has the feed F0" : "no feed F came before this motion");
+    error.value().code = no_feed;
+    return error;
+}
+
+double q_number(const Execution& execution, int number) {
+    return execution.state.parameters->numbered(number).value_or(0.0);
+}
+
+double q_length(const Execution& execution, int number) {
+    return to_mm(q_number(execution, number), execution.modal().unit);
+}
+
+namespace {
+
+using core::ErrorCode;
+using core::OffsetNumber;
+using core::ToolNumber;
+
+// Q parameters in which the control shows the tool.
+constexpr int q_radius = 108, q_axis = 109, q_length_of_tool = 114;
+
+void put_into_spindle(Execution& execution, ToolNumber tool) {
+    ModalState& modal = execution.modal();
+    if (modal.tool == tool) return;
+    modal.selected_tool = modal.tool = tool;
+    execution.emit(SelectTool{tool});
+    if (modal.spindle != core::SpindleDirection::stopped) {
+        modal.spindle = core::SpindleDirection::stopped;
+        execution.emit(Spindle{modal.spindle, 0.0});
+    }
+    execution.emit(ChangeTool{tool == ToolNumber(0) ? std::nullopt : std::optional(tool)});
+}
+
+double radius_of(const Execution& execution, int number) {
+    const auto& lengths = execution.state.tables->lengths;
+    const auto entry = lengths.find(OffsetNumber(number));
+    return entry == lengths.end() ? 0.0 : entry->second.diameter / 2.0 + entry->second.radius_wear;
+}
+
+/// The tool's length counts from here on, and its size is shown to the program.
+void use_length(Execution& execution, int number, const Word& tool) {
+    const std::optional<double> length =
+        number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, number);
+    if (!length)
+        execution.warn(tool.span, fmt::format("{}: nothing is known about the length of tool {}, "
+                                              "taken as 0",
+                                              written(tool), number));
+    const Word* longer = execution.statement.word('L');
+    const Word* wider = execution.statement.word('D');
+    Offsets offsets = execution.modal().offsets;
+    offsets.tool = {};
+    const size_t normal = axes_of(execution.modal().plane).normal;
+    offsets.tool[normal] = length.value_or(0.0) + (longer ? length_of(execution, *longer) : 0.0);
+    change_offsets(execution, offsets);
+    execution.modal().length_number = OffsetNumber(number);
+    execution.emit(UseToolLengthOffset{OffsetNumber(number), offsets.tool, offsets.follows_tip});
+    const double radius =
+        radius_of(execution, number) + (wider ? length_of(execution, *wider) : 0.0);
+    const LengthUnit unit = execution.modal().unit;
+    Parameters& parameters = execution.state.parameters.write();
+    parameters.set_numbered(q_radius, from_mm(radius, unit));
+    parameters.set_numbered(q_axis, static_cast<double>(normal));
+    parameters.set_numbered(q_length_of_tool, from_mm(offsets.tool[normal], unit));
+}
+
+/// The length that the set-up gives a tool, where the program says another.
+void warn_of_other_length(Execution& execution, int number, double length, const Word& word) {
+    const auto known = length_under(*execution.state.tables, number);
+    if (!known || std::abs(*known - length) < 1e-6) return;
+    execution.warn(word.span,
+                   fmt::format("{}: the tool table has the length {:.4f} mm for tool {}; "
+                               "the program's counts",
+                               written(word), *known, number));
+}
+
+} // namespace
+
+core::Result<void> call_klartext_tool(Execution& execution) {
+    const Statement& statement = execution.statement;
+    if (const Word* tool = statement.word('T')) {
+        FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
+        put_into_spindle(execution, ToolNumber(number));
+        use_length(execution, number, *tool);
+    } else if (const Word* longer = statement.word('L')) {
+        if (!execution.modal().tool)
+            return refuse_statement(execution, "no tool is in the spindle that DL could make "
+                                               "longer");
+        use_length(execution, value_of(*execution.modal().tool), *longer);
+    }
+    if (statement.word('F')) execution.state.klartext.write().call_feed = execution.modal().feed;
+    return set_speed(execution);
+}
+
+core::Result<void> define_klartext_tool(Execution& execution) {
+    const Statement& statement = execution.statement;
+    const Word* tool = statement.word('T');
+    if (!tool) return refuse_statement(execution, "the number of the tool is missing");
+    FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
+    const Word* length = statement.word('L');
+    const Word* radius = statement.word('R');
+    if (!length && !radius) { // the next tool, to be brought near
+        execution.modal().selected_tool = ToolNumber(number);
+        execution.emit(SelectTool{ToolNumber(number)});
+        return {};
+    }
+    if (length) warn_of_other_length(execution, number, length_of(execution, *length), *length);
+    LengthOffset& entry = execution.state.tables.write().lengths[OffsetNumber(number)];
+    if (length) entry.length = length_of(execution, *length);
+    if (length) entry.wear = 0.0;
+    if (radius) entry.diameter = 2.0 * length_of(execution, *radius);
+    return {};
+}
+
+core::Result<void> read_system_datum(Execution& execution) {
+    const Statement& statement = execution.statement;
+    const auto number = [&](char letter) {
+        const Word* word = statement.word(letter);
+        return word ? std::lround(std::clamp(word->value, -1.0, 1e6)) : 0L;
+    };
+    const long group = number('I'), item = number('N'), index = number('K');
+    const bool machine = group == 240, program = group == 270;
+    if (!(machine || program) || item != 1 || index < 1 || index > long(axis_count))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("FN 18: ID{} NR{} IDX{} is not known here: of the system's "
+                                      "data the positions can be read, ID240 and ID270 NR1",
+                                      group, item, index),
+                          execution.block.command.span);
+    const ModalState& modal = execution.modal();
+    const Position place =
+        machine ? machine_from_program(modal.offsets, modal.position) : modal.position;
+    const auto axis = static_cast<size_t>(index - 1);
+    if (!place[axis])
+        execution.warn(execution.block.command.span,
+                       fmt::format("FN 18: where the machine is along {} is not known, taken as 0; "
+                                   "say where it starts",
+                                   axis_letters[axis]));
+    execution.state.parameters.write().set_numbered(static_cast<int>(statement.word('Q')->value),
+                                                    place[axis].value_or(0.0));
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,439 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/base/units.h"
+#include "gcode/klartext/klartext.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr size_t most_cycle_commands = 200000; // of one block
+
+/// A defined cycle at one hole. Heights are program coordinates along the tool axis.
+struct KlartextHole {
+    Execution& execution;
+    const DefinedCycle& cycle;
+    PlaneAxes axes;
+    double surface, above, bottom; // above: the set-up clearance
+
+    void go(std::optional<double> height, bool rapid, double feed) {
+        Position end = execution.modal().position;
+        end[axes.normal] = height;
+        if (rapid)
+            execution.traverse(end);
+        else
+            execution.feed(end, feed);
+    }
+    void rapid(double height) { go(height, true, 0.0); }
+    void feed(double height) { go(height, false, cycle.feed); }
+    void dwell(double seconds) {
+        if (seconds > 0.0) execution.emit(Dwell{seconds});
+    }
+    void turn_spindle(core::SpindleDirection direction) {
+        const bool stops = direction == core::SpindleDirection::stopped;
+        execution.emit(Spindle{direction, stops ? 0.0 : execution.modal().speed});
+    }
+    void retract() {
+        const double feed_rate = cycle.retract_feed > 0.0 ? cycle.retract_feed : cycle.feed;
+        go(above, false, feed_rate);
+    }
+};
+
+/// Cycle 1, which starts where the tool is; a pause before the bottom of the last peck as in the
+/// manual of the TNC 426: 0.6 mm, for holes deeper than 30 mm a fiftieth, at most 7 mm.
+void peck_from_here(KlartextHole& hole) {
+    const double depth = hole.surface - hole.bottom;
+    const double pause = depth <= 30.0 ? 0.6 : std::min(depth / 50.0, 7.0);
+    const double step = hole.cycle.peck;
+    for (double level = hole.surface - step; level > hole.bottom + 1e-9; level -= step) {
+        hole.feed(level);
+        hole.rapid(hole.above);
+        hole.rapid(std::min(level + pause, hole.above));
+    }
+    hole.feed(hole.bottom);
+    hole.dwell(hole.cycle.dwell_below);
+    hole.rapid(hole.above);
+}
+
+/// Cycle 200: out of the hole after each peck, back to the set-up clearance above its bottom.
+void drill(KlartextHole& hole) {
+    const DefinedCycle& cycle = hole.cycle;
+    const double step = cycle.peck > 0.0 ? cycle.peck : hole.surface - hole.bottom;
+    for (double level = hole.surface - step; level > hole.bottom + 1e-9; level -= step) {
+        hole.feed(level);
+        hole.rapid(hole.above);
+        hole.dwell(cycle.dwell_above);
+        hole.rapid(std::min(level + cycle.clearance, hole.above));
+    }
+    hole.feed(hole.bottom);
+    hole.dwell(cycle.dwell_below);
+    hole.rapid(hole.above);
+}
+
+/// Cycles 203 and 205: pecks that become shorter, with chips broken in between.
+void drill_universal(KlartextHole& hole) {
+    const DefinedCycle& cycle = hole.cycle;
+    const bool by_count = cycle.number == 203;
+    const double start = hole.surface - std::abs(cycle.start_depth);
+    if (cycle.start_depth != 0.0) hole.rapid(start + cycle.clearance);
+    double step = cycle.peck > 0.0 ? cycle.peck : start - hole.bottom;
+    double level = start, since_break = 0.0;
+    int breaks = 0;
+    while (level > hole.bottom + 1e-9
+           && hole.execution.result.commands.size() < most_cycle_commands) {
+        const double next = std::max(hole.bottom, level - step);
+        since_break += level - next;
+        level = next;
+        hole.feed(level);
+        step = std::max(step - cycle.decrement, std::max(cycle.least_peck, 1e-3));
+        if (level <= hole.bottom + 1e-9) break;
+        const bool breaks_chip = by_count ? breaks < cycle.breaks : cycle.break_every > 0.0;
+        if (breaks_chip && by_count) {
+            ++breaks;
+            hole.go(level + cycle.break_back, false, cycle.feed);
+            continue;
+        }
+        breaks = 0;
+        hole.rapid(hole.above);
+        hole.dwell(cycle.dwell_above);
+        hole.rapid(std::min(level + (by_count ? cycle.clearance : cycle.stop_above), hole.above));
+    }
+    hole.dwell(cycle.dwell_below);
+    if (cycle.retract_feed > 0.0)
+        hole.retract();
+    else
+        hole.rapid(hole.above);
+}
+
+/// Cycle 202: off the wall with a spindle that stands.
+void bore(KlartextHole& hole) {
+    const core::SpindleDirection turning = hole.execution.modal().spindle;
+    hole.feed(hole.bottom);
+    hole.dwell(hole.cycle.dwell_below);
+    hole.turn_spindle(core::SpindleDirection::stopped);
+    const Position centre = hole.execution.modal().position;
+    const int side = static_cast<int>(std::lround(std::clamp(hole.cycle.disengage, 0.0, 9.0)));
+    Position aside = centre;
+    const size_t axis = side == 1 || side == 3 ? hole.axes.first : hole.axes.second;
+    if (side >= 1 && side <= 4 && aside[axis]) {
+        *aside[axis] += side <= 2 ? -0.2 : 0.2;
+        hole.execution.feed(aside, hole.cycle.feed);
+    }
+    hole.retract();
+    if (side >= 1 && side <= 4) {
+        Position back = centre;
+        back[hole.axes.normal] = hole.above;
+        hole.execution.traverse(back);
+    }
+    hole.turn_spindle(turning);
+}
+
+/// Cycles 206, 207 and 209: the thread is cut on the way in, the spindle turns back on the way out.
+void tap(KlartextHole& hole) {
+    const ModalState& modal = hole.execution.modal();
+    const bool rigid = hole.cycle.number != 206;
+    const double feed = rigid ? std::abs(hole.cycle.pitch) * modal.speed : hole.cycle.feed;
+    const core::SpindleDirection in = hole.cycle.pitch < 0.0
+                                          ? core::SpindleDirection::counterclockwise
+                                      : rigid ? core::SpindleDirection::clockwise
+                                              : modal.spindle;
+    const core::SpindleDirection out = in == core::SpindleDirection::clockwise
+                                           ? core::SpindleDirection::counterclockwise
+                                           : core::SpindleDirection::clockwise;
+    if (rigid) hole.turn_spindle(in);
+    hole.go(hole.bottom, false, feed);
+    hole.turn_spindle(out);
+    hole.dwell(hole.cycle.dwell_below);
+    hole.go(hole.above, false, feed);
+    hole.turn_spindle(rigid ? core::SpindleDirection::stopped : in);
+    if (rigid) hole.execution.modal().spindle = core::SpindleDirection::stopped;
+}
+
+/// Cycle 208: a helix down to the bottom, a full circle there, and back over the centre.
+core::Result<void> mill_bore(KlartextHole& hole) {
+    Execution& execution = hole.execution;
+    const double tool = to_mm(q_number(execution, 108), execution.modal().unit);
+    const double radius = hole.cycle.diameter / 2.0 - tool;
+    const Position centre = execution.modal().position;
+    const std::optional<double>& x = centre[hole.axes.first];
+    const std::optional<double>& y = centre[hole.axes.second];
+    if (!x || !y || tool <= 0.0 || radius < 0.0 || hole.cycle.infeed <= 0.0)
+        return refuse_statement(execution,
+                                "CYCL DEF 208 needs a known place, a tool whose radius is known "
+                                "and not above that of the bore, and an infeed Q334 above zero");
+    if (radius < 1e-9) {
+        hole.feed(hole.bottom);
+        hole.rapid(hole.above);
+        return {};
+    }
+    Position place = centre;
+    place[hole.axes.first] = *x + radius;
+    place[hole.axes.normal] = hole.above;
+    execution.feed(place, hole.cycle.feed);
+    const auto circle = [&](double height) {
+        place[hole.axes.normal] = height;
+        execution.modal().position = place;
+        execution.emit(ArcFeed{.end = place,
+                               .plane = execution.modal().plane,
+                               .centre = {*x, *y},
+                               .turns = 1,
+                               .feed = hole.cycle.feed});
+    };
+    for (double level = hole.above; level > hole.bottom + 1e-9; level = *place[hole.axes.normal])
+        circle(std::max(hole.bottom, level - hole.cycle.infeed));
+    circle(hole.bottom);
+    place[hole.axes.first] = *x;
+    execution.feed(place, hole.cycle.feed);
+    hole.rapid(hole.above);
+    return {};
+}
+
+core::Result<void> machine(KlartextHole& hole) {
+    switch (hole.cycle.number) {
+    case 1:
+        peck_from_here(hole);
+        return {};
+    case 201:
+        hole.feed(hole.bottom);
+        hole.dwell(hole.cycle.dwell_below);
+        hole.retract();
+        return {};
+    case 202:
+        bore(hole);
+        return {};
+    case 203:
+    case 205:
+        drill_universal(hole);
+        return {};
+    case 206:
+    case 207:
+    case 209:
+        tap(hole);
+        return {};
+    case 208:
+        return mill_bore(hole);
+    default:
+        drill(hole);
+        return {};
+    }
+}
+
+core::Result<void> check(const Execution& execution, const DefinedCycle& cycle) {
+    const bool rigid = cycle.number == 207 || cycle.number == 209;
+    const auto refuse = [&](std::string_view why) {
+        return refuse_statement(execution, fmt::format("CYCL DEF {}: {}", cycle.number, why));
+    };
+    if (cycle.depth > 0.0)
+        return refuse("the depth is above zero, so the tool would go up into the hole; depths are "
+                      "negative");
+    if (rigid ? cycle.pitch == 0.0 : !(cycle.feed > 0.0))
+        return refuse(rigid ? "the pitch Q239 is missing" : "its feed is missing");
+    if (cycle.number == 1 && cycle.peck <= 0.0) return refuse("the pecking depth is missing");
+    const double least = std::max(cycle.least_peck, 1e-3);
+    const double step = cycle.number == 208     ? cycle.infeed
+                        : cycle.decrement > 0.0 ? std::min(cycle.peck, least)
+                                                : cycle.peck;
+    if (step > 0.0 && -cycle.depth / step > most_cycle_commands / 4)
+        return refuse("it makes too many pecks");
+    return {};
+}
+
+void read_old_cycle(Execution& execution, DefinedCycle& cycle) {
+    const Word* word = execution.statement.word('P');
+    if (!word) return;
+    const double length = std::abs(length_of(execution, *word));
+    switch (execution.block.command.part) {
+    case 1:
+        cycle.clearance = length;
+        break;
+    case 2:
+        cycle.depth = length_of(execution, *word);
+        break;
+    case 3:
+        cycle.peck = length;
+        break;
+    case 4:
+        cycle.dwell_below = word->value;
+        break;
+    default:
+        cycle.feed = length;
+        break;
+    }
+}
+
+DefinedCycle new_cycle(const Execution& execution, int number) {
+    const auto length = [&](int q) { return q_length(execution, q); };
+    const auto plain = [&](int q) { return q_number(execution, q); };
+    const bool taps = number == 206 || number == 207 || number == 209;
+    return {.number = number,
+            .clearance = std::abs(length(200)),
+            .depth = length(201),
+            .feed = length(206),
+            .peck = taps || number == 202 || number == 201 || number == 208 ? 0.0
+                                                                            : std::abs(length(202)),
+            .surface = length(203),
+            .second_clearance = std::abs(length(204)),
+            .dwell_above = number == 200 || number == 203 ? plain(210) : 0.0,
+            .dwell_below = number == 207 || number == 208 || number == 209 ? 0.0 : plain(211),
+            .retract_feed = number >= 201 && number <= 203 ? length(208) : 0.0,
+            .decrement = number == 203 || number == 205 ? length(212) : 0.0,
+            .breaks = number == 203 ? plain(213) : 0.0,
+            .least_peck = number == 203 || number == 205 ? length(205) : 0.0,
+            .break_back = number == 203 || number == 205 ? length(256) : 0.0,
+            .break_every = number == 205 ? length(257) : 0.0,
+            .stop_above = number == 205 ? length(258) : 0.0,
+            .stop_below = number == 205 ? length(259) : 0.0,
+            .start_depth = number == 205 ? length(379) : 0.0,
+            .disengage = number == 202 ? plain(214) : 0.0,
+            .pitch = number == 207 || number == 209 ? length(239) : 0.0,
+            .infeed = number == 208 ? length(334) : 0.0,
+            .diameter = number == 208 ? length(335) : 0.0};
+}
+
+} // namespace
+
+core::Result<void> define_cycle(Execution& execution) {
+    const Command& command = execution.block.command;
+    const int number = command.number;
+    switch (number) {
+    case 7:
+    case 8:
+    case 10:
+    case 11:
+    case 19:
+        return change_coordinates(execution);
+    case 9:
+        if (const Word* word = execution.statement.word('P'))
+            execution.emit(Dwell{std::max(word->value, 0.0)});
+        return {};
+    case 13:
+    case 32:
+        return {};
+    case 220:
+    case 221:
+        return run_pattern(execution);
+    case 247:
+        execution.warn(command.span,
+                       fmt::format("CYCL DEF 247: datum {:.12g} of the preset table "
+                                   "is taken as the set-up's work offset",
+                                   q_number(execution, 339)),
+                       Severity::note);
+        return {};
+    default:
+        break;
+    }
+    KlartextState& klartext = execution.state.klartext.write();
+    klartext.calls_after_motions = false;
+    if (number != 1)
+        klartext.cycle = new_cycle(execution, number);
+    else if (command.part == 0)
+        klartext.cycle = {.number = 1};
+    else
+        read_old_cycle(execution, klartext.cycle);
+    return {};
+}
+
+core::Result<void> call_defined_cycle(Execution& execution) {
+    const DefinedCycle cycle = execution.state.klartext->cycle;
+    if (cycle.number == 0)
+        return refuse_statement(execution, "there is no cycle to call: no CYCL DEF came before it");
+    if (cycle.depth == 0.0) return {}; // as the control does
+    if (auto checked = check(execution, cycle); !checked) return checked;
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const std::optional<double> here = modal.position[axes.normal];
+    if (cycle.number == 1 && !here)
+        return refuse_statement(execution, "cycle 1 starts where the tool is, which is not known");
+    const double surface = cycle.number == 1 ? *here - cycle.clearance : cycle.surface;
+    execution.result.is_cycle = true;
+    KlartextHole hole{
+        execution, cycle, axes, surface, surface + cycle.clearance, surface + cycle.depth};
+    const std::optional<double> feed = modal.feed;
+    if (cycle.number != 1) hole.rapid(hole.above);
+    if (auto done = machine(hole); !done) return done;
+    modal.feed = feed;
+    const double second = surface + cycle.second_clearance;
+    if (cycle.number != 1 && second > hole.above) hole.rapid(second);
+    return {};
+}
+
+namespace {
+
+constexpr double most_places = 10000.0;
+
+/// The holes of a circle or its part (220), or of rows that are turned about the first (221).
+core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
+    const auto length = [&](int q) { return q_length(execution, q); };
+    const auto plain = [&](int q) { return q_number(execution, q); };
+    std::vector<PlanePoint> places;
+    if (execution.block.command.number == 220) {
+        const double count = plain(241);
+        if (!(count >= 1.0 && count <= most_places))
+            return refuse_statement(execution, "Q241 is the number of holes, from 1");
+        double step = plain(247);
+        // Q246 counts when no step is given; a full circle has no hole twice.
+        const double sweep = plain(246) - plain(245);
+        const bool full = std::abs(std::abs(sweep) - 360.0) < 1e-9;
+        if (step == 0.0 && count > 1.0) step = sweep / (full ? count : count - 1.0);
+        for (int i = 0; i < static_cast<int>(count); ++i) {
+            const double angle = (plain(245) + i * step) * core::radians_per_degree;
+            places.push_back({length(216) + 0.5 * length(244) * std::cos(angle),
+                              length(217) + 0.5 * length(244) * std::sin(angle)});
+        }
+        return places;
+    }
+    const double columns = plain(242), rows = plain(243);
+    if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_places))
+        return refuse_statement(execution, "Q242 and Q243 are the numbers of columns and lines, "
+                                           "from 1");
+    const double turn = plain(224) * core::radians_per_degree;
+    for (int row = 0; row < static_cast<int>(rows); ++row)
+        for (int i = 0; i < static_cast<int>(columns); ++i) {
+            // Every other line is gone along backwards.
+            const int column = row % 2 == 0 ? i : static_cast<int>(columns) - 1 - i;
+            const double along = column * length(237), across = row * length(238);
+            places.push_back({length(225) + along * std::cos(turn) - across * std::sin(turn),
+                              length(226) + along * std::sin(turn) + across * std::cos(turn)});
+        }
+    return places;
+}
+
+} // namespace
+
+core::Result<void> run_pattern(Execution& execution) {
+    DefinedCycle cycle = execution.state.klartext->cycle;
+    if (cycle.number < 200)
+        return refuse_statement(execution, "there is no cycle from 200 on that the pattern could "
+                                           "repeat: no CYCL DEF of one came before it");
+    cycle.clearance = std::abs(q_length(execution, 200));
+    cycle.surface = q_length(execution, 203);
+    cycle.second_clearance = std::abs(q_length(execution, 204));
+    FEELER_TRY(const std::vector<PlanePoint> places, places_of(execution));
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    const bool high = q_number(execution, 301) != 0.0;
+    const double above = cycle.surface + cycle.clearance;
+    const double between = std::max(above, cycle.surface + cycle.second_clearance);
+    for (size_t i = 0; i < places.size(); ++i) {
+        Position over = execution.modal().position;
+        if (i == 0 || high) {
+            over[axes.normal] = between;
+            if (over != execution.modal().position) execution.traverse(over);
+        }
+        over[axes.first] = places[i][0];
+        over[axes.second] = places[i][1];
+        execution.traverse(over);
+        DefinedCycle& called = execution.state.klartext.write().cycle;
+        called = cycle;
+        if (!high && i + 1 < places.size()) called.second_clearance = 0.0;
+        if (auto done = call_defined_cycle(execution); !done) return done;
+    }
+    return {};
+}
+
+} // namespace gcode

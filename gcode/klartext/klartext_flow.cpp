@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/klartext/klartext.h"
+#include "gcode/read/flow_index.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+tl::unexpected<core::Error> refuse(const FlowStep& step, std::string message) {
+    return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
+}
+
+core::Result<std::string> label_name(const FlowStep& step) {
+    const Flow& flow = step.block.flow;
+    if (flow.has_label) return step.block.pool.names[flow.label_name];
+    const ProgramParameters parameters(step.state, step.environment);
+    FEELER_TRY(const Value value, evaluate(step.block.pool, flow.label, step.block.line, parameters,
+                                           step.dialect.arithmetic));
+    return label_of(std::round(value.value_or(0.0)));
+}
+
+core::Result<uint32_t> line_of_label(const FlowStep& step) {
+    FEELER_TRY(const std::string name, label_name(step));
+    if (name != "0")
+        if (const FlowMark* mark =
+                step.library.index(step.state.next.source).first(FlowKind::label, name))
+            return mark->line;
+    return refuse(step, fmt::format("there is no LBL {} in this program to go to", name));
+}
+
+/// A level that `CALL LBL` began stays in the program of its caller, one of `CALL PGM` does not.
+bool is_label_call(const InterpreterState& state) {
+    const Frame& frame = state.frames.back();
+    return state.frames.size() > 1 && frame.begin.source == frame.called_from.source;
+}
+
+/// LBL 0 ends a subprogram that was called; come across otherwise, it is nothing.
+core::Result<void> pass_label(const FlowStep& step) {
+    FEELER_TRY(const std::string name, label_name(step));
+    if (name == "0" && is_label_call(step.state)) leave(step.state);
+    return {};
+}
+
+/// `CALL LBL 1 REP 5`: the part of the program from the label to here five times more.
+core::Result<void> repeat_part(const FlowStep& step, uint32_t label) {
+    const ProgramParameters parameters(step.state, step.environment);
+    FEELER_TRY(const Value count, evaluate(step.block.pool, step.block.flow.condition,
+                                           step.block.line, parameters, step.dialect.arithmetic));
+    auto& repeats = step.state.frames.back().repeats;
+    const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
+    int64_t& left = repeats.try_emplace(step.block.line, rounds).first->second;
+    if (left > 0) {
+        --left;
+        step.state.next.line = label;
+    } else {
+        repeats.erase(step.block.line);
+    }
+    return {};
+}
+
+core::Result<void> call_label(const FlowStep& step) {
+    FEELER_TRY(const uint32_t line, line_of_label(step));
+    if (step.block.flow.has_condition) return repeat_part(step, line);
+    const uint32_t source = step.state.next.source;
+    Frame next{.called_from = {source, step.block.line},
+               .begin = {source, line + 1},
+               .name = step.block.pool.names.empty() ? "" : step.block.pool.names[0]};
+    return enter(step.state, step.environment, std::move(next), step.block.flow.span);
+}
+
+/// Of the path the control knows only the name counts: files come from the search path.
+core::Result<void> call_program(const FlowStep& step) {
+    const std::string& path = step.block.pool.names[step.block.flow.label_name];
+    const std::string name = path.substr(path.find_last_of("\\/:") + 1);
+    FEELER_TRY(const auto source, step.library.find({name, name + ".h", name + ".H"}));
+    if (!source)
+        return refuse(
+            step, fmt::format("CALL PGM {}: there is no file {} in the search path", path, name));
+    Frame next{.called_from = {step.state.next.source, step.block.line},
+               .begin = {*source, 1},
+               .name = name};
+    return enter(step.state, step.environment, std::move(next), step.block.flow.span);
+}
+
+core::Result<void> end_program(const FlowStep& step) {
+    if (is_label_call(step.state))
+        return refuse(step, fmt::format("END PGM inside the subprogram that line {} calls: its "
+                                        "LBL 0 is missing",
+                                        step.state.frames.back().called_from.line));
+    if (step.state.frames.size() > 1) {
+        leave(step.state);
+        return {};
+    }
+    step.state.ending = Ending::program_end;
+    step.result.commands.push_back(ProgramEnd{});
+    step.result.columns.push_back(step.block.flow.span.column);
+    return {};
+}
+
+} // namespace
+
+core::Result<void> run_klartext_flow(const FlowStep& step) {
+    switch (step.block.flow.kind) {
+    case FlowKind::label:
+        return pass_label(step);
+    case FlowKind::call_label:
+        return call_label(step);
+    case FlowKind::call_program:
+        return call_program(step);
+    case FlowKind::end_program:
+        return end_program(step);
+    default:
+        break;
+    }
+    const ProgramParameters parameters(step.state, step.environment);
+    FEELER_TRY(const bool goes, condition_holds(step.block, parameters, step.dialect));
+    if (!goes) return {};
+    FEELER_TRY(step.state.next.line, line_of_label(step));
+    return {};
+}
+
+} // namespace gcode

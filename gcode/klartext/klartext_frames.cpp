@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gcode/klartext/klartext.h"
+
+namespace gcode {
+namespace {
+
+using Kind = Transforms::Kind;
+
+/// Puts a transform behind those that are there, or takes it out.
+void keep_order(Transforms& transforms, Kind kind, bool is_on) {
+    auto& order = transforms.order;
+    const auto found = std::find(order.begin(), order.end(), kind);
+    if (is_on && found == order.end()) *std::find(order.begin(), order.end(), Kind::none) = kind;
+    if (is_on || found == order.end()) return;
+    std::rotate(found, found + 1, order.end());
+    order.back() = Kind::none;
+}
+
+core::Mat3 turned(double angle_deg, const PlaneAxes& axes) {
+    const double angle = angle_deg * std::numbers::pi / 180.0;
+    const auto first = static_cast<int>(axes.first), second = static_cast<int>(axes.second);
+    core::Mat3 linear(1.0);
+    linear[first][first] = linear[second][second] = std::cos(angle);
+    linear[first][second] = std::sin(angle); // by columns
+    linear[second][first] = -std::sin(angle);
+    return linear;
+}
+
+core::Mat3 linear_of(const Transforms& transforms, Kind kind, const PlaneAxes& axes) {
+    if (kind == Kind::turn) return turned(transforms.turn_deg, axes);
+    core::Mat3 linear(1.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (kind == Kind::scale) linear[axis][axis] = transforms.scale;
+        if (kind == Kind::mirror && transforms.mirrored[static_cast<size_t>(axis)])
+            linear[axis][axis] = -1.0;
+    }
+    return linear;
+}
+
+/// Makes the transforms count. A shift alone is the local offset, which asks for no frame.
+void use_transforms(Execution& execution) {
+    const Transforms& transforms = execution.state.klartext->transforms;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    Offsets offsets = execution.modal().offsets;
+    ProgramFrame frame;
+    bool shift_alone = true;
+    for (const Kind kind : transforms.order) {
+        if (kind == Kind::none) break;
+        if (kind == Kind::shift) {
+            const AxisValues& by = transforms.shift;
+            frame.shift += frame.linear * core::Vec3(by[0], by[1], by[2]);
+            continue;
+        }
+        shift_alone = false;
+        frame.linear = frame.linear * linear_of(transforms, kind, axes);
+    }
+    offsets.local = transforms.shift;
+    offsets.has_frame = !shift_alone;
+    offsets.frame = shift_alone ? ProgramFrame{} : frame;
+    if (!shift_alone) offsets.local[0] = offsets.local[1] = offsets.local[2] = 0.0;
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+}
+
+void shift(Execution& execution, Transforms& transforms) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        const double value = axis_value(execution, axis, *word);
+        const bool incremental = word->addressing == Addressing::incremental;
+        transforms.shift[axis] = incremental ? transforms.shift[axis] + value : value;
+    }
+    const bool is_on = std::any_of(transforms.shift.begin(), transforms.shift.end(),
+                                   [](double value) { return value != 0.0; });
+    keep_order(transforms, Kind::shift, is_on);
+}
+
+void mirror(Execution& execution, Transforms& transforms) {
+    bool is_on = false;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        transforms.mirrored[axis] = execution.statement.word(axis_letters[axis]) != nullptr;
+        is_on |= transforms.mirrored[axis];
+    }
+    keep_order(transforms, Kind::mirror, is_on);
+}
+
+void turn(Execution& execution, Transforms& transforms) {
+    const Word* word = execution.statement.word('R');
+    if (!word) return;
+    const bool incremental = word->addressing == Addressing::incremental;
+    transforms.turn_deg = incremental ? transforms.turn_deg + word->value : word->value;
+    keep_order(transforms, Kind::turn, transforms.turn_deg != 0.0);
+}
+
+core::Result<void> scale(Execution& execution, Transforms& transforms) {
+    const Word* word = execution.statement.word('P');
+    if (!word) return {};
+    if (!(word->value > 0.0)) return refuse_statement(execution, "a scaling factor is above zero");
+    transforms.scale = word->value;
+    keep_order(transforms, Kind::scale, transforms.scale != 1.0);
+    return {};
+}
+
+core::Result<void> tilt(Execution& execution) {
+    for (const char letter : {'A', 'B', 'C'})
+        if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
+            return core::fail(core::ErrorCode::unsupported,
+                              written(*word) + ": tilted planes are not supported yet", word->span);
+    return {};
+}
+
+} // namespace
+
+/// The first line of such a cycle names it, or for mirror images takes away what was there.
+core::Result<void> change_coordinates(Execution& execution) {
+    const Command& command = execution.block.command;
+    if (command.number == 19) return tilt(execution);
+    if (command.part == 0) return {};
+    Transforms transforms = execution.state.klartext->transforms;
+    switch (command.number) {
+    case 7:
+        shift(execution, transforms);
+        break;
+    case 8:
+        mirror(execution, transforms);
+        break;
+    case 10:
+        turn(execution, transforms);
+        break;
+    default:
+        if (auto done = scale(execution, transforms); !done) return done;
+        break;
+    }
+    if (transforms == execution.state.klartext->transforms) return {};
+    execution.state.klartext.write().transforms = transforms;
+    use_transforms(execution);
+    return {};
+}
+
+} // namespace gcode

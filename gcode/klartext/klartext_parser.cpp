@@ -1,0 +1,499 @@
+#include "gcode/klartext/klartext_parser.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "gcode/klartext/klartext_reader.h"
+#include "gcode/language/expression_parser.h"
+#include "gcode/language/modal_state.h"
+#include "gcode/read/flow_index.h"
+#include "gcode/text/program_text.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+struct StatementKeyword {
+    std::string_view spelling;
+    CommandKind kind;
+};
+
+constexpr StatementKeyword motions[] = {
+    {"L", CommandKind::straight},     {"LP", CommandKind::straight_polar},
+    {"CC", CommandKind::pole},        {"C", CommandKind::arc},
+    {"CP", CommandKind::arc_polar},   {"CR", CommandKind::arc_of_radius},
+    {"CT", CommandKind::tangent_arc}, {"CTP", CommandKind::tangent_polar},
+    {"RND", CommandKind::rounding},   {"CHF", CommandKind::chamfer}};
+
+constexpr std::string_view refused[] = {"APPR",  "DEP",      "LN",   "SPL",    "FC",      "FCT",
+                                        "FL",    "FLT",      "FPOL", "SEL",    "PATTERN", "TCH",
+                                        "TRANS", "FUNCTION", "SQL",  "PRESET", "CONTOUR"};
+
+core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
+    Command& command = reader.block.command;
+    command.kind = kind;
+    const bool takes_length = kind == CommandKind::chamfer;
+    while (const char c = reader.next()) {
+        if (takes_length && reader.lexer.is_at_number()) {
+            if (auto done = reader.word('R', reader.lexer.at); !done) return done;
+            continue;
+        }
+        if (!is_letter(c)) return reader.stray();
+        if (auto done = read_contour_word(reader); !done) return done;
+    }
+    command.span = reader.span_from(reader.begin);
+    return {};
+}
+
+/// `BEGIN PGM name MM`: the unit is the last word.
+core::Result<void> read_begin(KlartextReader& reader) {
+    std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
+    reader.lexer.at = reader.lexer.line.size();
+    while (!rest.empty() && (is_blank(rest.back()) || is_line_end(rest.back())))
+        rest.remove_suffix(1);
+    const size_t blank = rest.find_last_of(" \t");
+    const std::string_view unit =
+        blank == std::string_view::npos ? std::string_view() : rest.substr(blank + 1);
+    if (unit != "MM" && unit != "INCH" && unit != "mm" && unit != "inch")
+        return reader.refuse("'BEGIN PGM' needs the name of the program and MM or INCH behind it",
+                             reader.begin);
+    reader.add_word('G', unit == "MM" || unit == "mm" ? 21.0 : 20.0, reader.begin);
+    reader.block.command.kind = CommandKind::modes;
+    return {};
+}
+
+/// Tilted planes: what switches them off is read, what tilts is refused.
+core::Result<void> read_plane(KlartextReader& reader) {
+    if (!reader.accept("RESET"))
+        return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
+                             ErrorCode::unsupported);
+    reader.lexer.at = reader.lexer.line.size();
+    reader.block.command.kind = CommandKind::note;
+    return {};
+}
+
+core::Result<void> read_modes(KlartextReader& reader, CommandKind kind) {
+    reader.block.command.kind = kind;
+    while (const char c = reader.next()) {
+        if (!is_letter(c)) return reader.stray();
+        if (auto done = read_contour_word(reader); !done) return done;
+    }
+    return {};
+}
+
+core::Result<void> read_keyword(KlartextReader& reader, const std::string& first) {
+    reader.accept(first);
+    reader.block.command.span = reader.span_from(reader.begin);
+    if (first == "BEGIN" && reader.accept("PGM")) return read_begin(reader);
+    if (first == "END" && reader.accept("PGM")) {
+        reader.lexer.at = reader.lexer.line.size();
+        reader.block.flow.kind = FlowKind::end_program;
+        reader.block.flow.span = reader.span_from(reader.begin);
+        return {};
+    }
+    if (first == "BLK" && reader.accept("FORM")) { // the stock is the set-up's
+        reader.lexer.at = reader.lexer.line.size();
+        return {};
+    }
+    if (first == "STOP") {
+        reader.add_word('M', 0.0, reader.begin);
+        return read_modes(reader, CommandKind::modes);
+    }
+    if (first == "TOOL") return read_tool(reader);
+    if (first == "CYCL" || first == "CYCLE") return read_cycle(reader);
+    if (first == "CALL") return read_call(reader);
+    if (first == "PLANE") return read_plane(reader);
+    for (const StatementKeyword& keyword : motions)
+        if (first == keyword.spelling) return read_motion(reader, keyword.kind);
+    const bool known =
+        std::find(std::begin(refused), std::end(refused), first) != std::end(refused);
+    return reader.refuse(known ? fmt::format("'{}' is not supported yet", first)
+                               : fmt::format("'{}' begins no statement of Klartext", first),
+                         reader.begin, known ? ErrorCode::unsupported : ErrorCode::syntax);
+}
+
+/// Statements whose keyword may run into a number: `LBL1`, `FN18:`, `Q5`, `M3`, `X+10`.
+core::Result<void> read_statement(KlartextReader& reader) {
+    const std::string first = reader.letters();
+    if (first == "LBL") return read_label(reader);
+    if (first == "FN") return read_function(reader);
+    if (first == "Q" || first == "QR" || first == "QL" || first == "QS")
+        return read_assignment(reader);
+    if (first == "M") return read_modes(reader, CommandKind::modes);
+    const bool axis = axis_letters.find(first[0]) != std::string_view::npos;
+    const bool incremental = first.size() == 2 && first[0] == 'I'
+                             && axis_letters.find(first[1]) != std::string_view::npos;
+    const bool is_c = first == "C"; // an arc, not the axis
+    if ((first.size() == 1 && axis && !is_c) || incremental)
+        return read_motion(reader, CommandKind::straight);
+    return read_keyword(reader, first);
+}
+
+/// The block number, the comment and the `/` that may stand before a statement.
+core::Result<void> read_block(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    if (lexer.accept('/')) reader.block.block_delete = 1;
+    lexer.peek();
+    const size_t digits = lexer.at;
+    while (lexer.at < lexer.line.size() && is_digit(lexer.line[lexer.at])) ++lexer.at;
+    const size_t behind = lexer.at;
+    if (lexer.accept('/')) reader.block.block_delete = 1;
+    const char c = lexer.peek();
+    if (c == '*' || c == ';') {
+        reader.block.comments.push_back(lexer.line_comment());
+        return {};
+    }
+    if (reader.next() == '\0') return {};
+    reader.begin = lexer.at;
+    if (!is_letter(reader.next()) || (behind > digits && lexer.at == behind && c != '/')) {
+        if (!is_letter(reader.next())) return reader.stray();
+        return reader.refuse(fmt::format("'{}' is no block number: a blank belongs behind it",
+                                         lexer.line.substr(digits, behind + 1 - digits)),
+                             digits);
+    }
+    if (auto done = read_statement(reader); !done) return done;
+    return reader.next() == '\0' ? core::Result<void>{} : core::Result<void>(reader.stray());
+}
+
+/// The part of a line that decides whether the next one belongs to it.
+bool goes_on(std::string_view line) {
+    while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+    return line.ends_with('~');
+}
+
+} // namespace
+
+core::Result<void> parse_klartext(std::string_view text, uint32_t line, const Dialect& dialect,
+                                  Block& block) {
+    KlartextReader reader{.lexer = {.line = text,
+                                    .line_number = line,
+                                    .blanks_end_numbers = true,
+                                    .comma_is_point = true},
+                          .dialect = dialect,
+                          .block = block};
+    return read_block(reader);
+}
+
+std::string_view klartext_block(const Program& program, uint32_t line) {
+    size_t last = line;
+    while (last < program.line_count() && goes_on(program.line(last))) ++last;
+    const size_t begin = program.line_starts[line - 1];
+    const size_t end = program.line_starts[last - 1] + program.line(last).size();
+    return std::string_view(program.text).substr(begin, end - begin);
+}
+
+uint32_t lines_of(std::string_view text) {
+    uint32_t count = 1;
+    for (size_t at = 0; at < text.size(); ++at)
+        count += text[at] == '\n' || (text[at] == '\r' && !text.substr(at + 1).starts_with('\n'));
+    return count;
+}
+
+core::SourceSpan place_in_lines(std::string_view text, core::SourceSpan where) {
+    if (where.column == 0) return where;
+    const size_t at = std::min<size_t>(where.column - 1, text.size());
+    const std::string_view before = text.substr(0, at);
+    const size_t line_end = before.find_last_of("\r\n");
+    if (line_end == std::string_view::npos) return where;
+    where.line += lines_of(before) - 1;
+    where.column = static_cast<uint32_t>(at - line_end);
+    return where;
+}
+
+FlowIndex klartext_index(const Program& program, const Dialect& dialect) {
+    FlowIndex index;
+    Block block;
+    for (uint32_t line = 1; line <= program.line_count();) {
+        const std::string_view text = klartext_block(program, line);
+        const size_t keyword = text.find_first_not_of("0123456789 \t/");
+        if (keyword != std::string_view::npos && upper(text[keyword]) == 'L'
+            && upper(text.substr(keyword).size() > 1 ? text[keyword + 1] : ' ') == 'B') {
+            block.clear();
+            if (parse_klartext(text, line, dialect, block) && block.flow.kind == FlowKind::label)
+                index.marks.push_back({.kind = FlowKind::label,
+                                       .name = block.pool.names[block.flow.label_name],
+                                       .line = line});
+        }
+        line += lines_of(text);
+    }
+    return index;
+}
+
+namespace {
+
+using core::ErrorCode;
+
+constexpr int first_new_cycle = 200; // whose parameters are Q parameters
+
+constexpr int cycles[] = {1,   7,   8,   9,   10,  11,  13,  19,  32,  200, 201,
+                          202, 203, 205, 206, 207, 208, 209, 220, 221, 247};
+
+void set_label(KlartextReader& reader, std::string name) {
+    Flow& flow = reader.block.flow;
+    flow.label_name = static_cast<uint32_t>(reader.block.pool.names.size());
+    flow.has_label = true;
+    reader.block.pool.names.push_back(std::move(name));
+}
+
+} // namespace
+
+/// A number, or a name in quotation marks, which it keeps.
+core::Result<void> read_label_name(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    const char c = reader.next();
+    const size_t from = lexer.at;
+    if (is_digit(c)) {
+        FEELER_TRY(const Number number, lexer.number());
+        set_label(reader, label_of(number.value));
+        return {};
+    }
+    if (upper(c) == 'Q') {
+        FEELER_TRY(reader.block.flow.label, reader.operand());
+        return {};
+    }
+    const size_t end = c == '"' ? lexer.line.find('"', from + 1) : std::string_view::npos;
+    if (end == std::string_view::npos)
+        return reader.refuse("'LBL' needs a number behind it, or a name in quotation marks",
+                             reader.begin);
+    lexer.at = end + 1;
+    set_label(reader, lexer.written_from(from));
+    return {};
+}
+
+core::Result<int> read_whole(KlartextReader& reader, std::string_view behind) {
+    reader.next();
+    const size_t from = reader.lexer.at;
+    int value = 0;
+    while (reader.lexer.at < reader.lexer.line.size()
+           && is_digit(reader.lexer.line[reader.lexer.at]) && value < 100000)
+        value = value * 10 + (reader.lexer.line[reader.lexer.at++] - '0');
+    if (reader.lexer.at == from)
+        return reader.refuse(fmt::format("'{}' needs a number behind it", behind), reader.begin);
+    return value;
+}
+
+core::Result<void> read_label(KlartextReader& reader) {
+    reader.accept("LBL");
+    reader.accept("SET");
+    if (auto named = read_label_name(reader); !named) return named;
+    reader.block.flow.kind = FlowKind::label;
+    reader.block.flow.span = reader.span_from(reader.begin);
+    return {};
+}
+
+namespace {
+
+core::Result<void> read_repeats(KlartextReader& reader) {
+    if (!reader.accept("REP")) return {};
+    FEELER_TRY(reader.block.flow.condition, reader.operand());
+    reader.block.flow.has_condition = true;
+    if (!reader.lexer.accept('/')) return {}; // what is left to do, shown by the control
+    if (auto left = reader.operand(); !left) return tl::unexpected(std::move(left).error());
+    return {};
+}
+
+/// Of `TNC:\dir\name.h` the name, as written.
+core::Result<void> read_program_name(KlartextReader& reader) {
+    reader.next();
+    const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
+    std::string_view path = rest.substr(0, rest.find_first_of(";~\r\n"));
+    while (!path.empty() && is_blank(path.back())) path.remove_suffix(1);
+    if (path.size() > 1 && path.front() == '"' && path.back() == '"')
+        path = path.substr(1, path.size() - 2);
+    if (path.empty())
+        return reader.refuse("'CALL PGM' needs the name of a program behind it", reader.begin);
+    reader.lexer.at += std::min(rest.find_first_of(";~\r\n"), rest.size());
+    set_label(reader, std::string(path));
+    return {};
+}
+
+} // namespace
+
+core::Result<void> read_call(KlartextReader& reader) {
+    Flow& flow = reader.block.flow;
+    // `CALL LBL1`: the keyword may run into the number.
+    if (reader.accept("LBL")) {
+        if (auto named = read_label_name(reader); !named) return named;
+        if (auto repeats = read_repeats(reader); !repeats) return repeats;
+        flow.kind = FlowKind::call_label;
+    } else if (reader.accept("PGM")) {
+        if (auto named = read_program_name(reader); !named) return named;
+        flow.kind = FlowKind::call_program;
+    } else {
+        return reader.refuse("behind 'CALL' belongs LBL or PGM", reader.begin);
+    }
+    flow.span = reader.span_from(reader.begin);
+    return {};
+}
+
+namespace {
+
+core::Result<void> read_tool_call_word(KlartextReader& reader) {
+    const std::string letters = reader.letters();
+    const size_t from = reader.lexer.at;
+    if (letters == "X" || letters == "Y" || letters == "Z") {
+        ++reader.lexer.at;
+        reader.add_word('G', letters == "Z" ? 17.0 : letters == "Y" ? 18.0 : 19.0, from);
+        return {};
+    }
+    if (reader.accept_prefix("DL")) return reader.word('L', from);
+    if (letters == "DR" && reader.lexer.line.substr(from + 2).starts_with('2')) { // of the corner
+        reader.lexer.at += 3;
+        if (reader.lexer.accept(':') || !reader.lexer.is_at_number()) return {};
+        FEELER_TRY(const Expression ignored, reader.operand());
+        (void)ignored;
+        return {};
+    }
+    if (reader.accept_prefix("DR")) return reader.word('D', from);
+    if (letters == "S" || letters == "SQ") {
+        ++reader.lexer.at;
+        return reader.word('S', from);
+    }
+    if (letters[0] == 'F' || letters[0] == 'M') return read_contour_word(reader);
+    return reader.stray();
+}
+
+core::Result<void> read_tool_number(KlartextReader& reader) {
+    const char c = reader.next();
+    if (c == '"')
+        return reader.refuse("'TOOL' by name is not supported yet: give the tool's number",
+                             reader.begin, ErrorCode::unsupported);
+    if (!is_digit(c) && upper(c) != 'Q') return {};
+    return reader.word('T', reader.lexer.at);
+}
+
+} // namespace
+
+core::Result<void> read_tool(KlartextReader& reader) {
+    Command& command = reader.block.command;
+    const bool calls = reader.accept("CALL");
+    if (!calls && !reader.accept("DEF"))
+        return reader.refuse("behind 'TOOL' belongs CALL or DEF", reader.begin);
+    command.kind = calls ? CommandKind::tool_call : CommandKind::tool_definition;
+    if (auto done = read_tool_number(reader); !done) return done;
+    while (const char c = reader.next()) {
+        if (!is_letter(c)) return reader.stray();
+        const size_t from = reader.lexer.at;
+        if (calls) {
+            if (auto done = read_tool_call_word(reader); !done) return done;
+        } else if (reader.accept_prefix("L") || reader.accept_prefix("R")) {
+            if (auto done = reader.word(upper(c), from); !done) return done;
+        } else {
+            return reader.stray();
+        }
+    }
+    command.span = reader.span_from(reader.begin);
+    return {};
+}
+
+namespace {
+
+/// `Q200=2`; what stands before it is the cycle's name.
+core::Result<void> read_cycle_parameters(KlartextReader& reader) {
+    while (reader.next()) {
+        Lexer& lexer = reader.lexer;
+        const bool is_q = upper(lexer.line[lexer.at]) == 'Q' && lexer.at + 1 < lexer.line.size()
+                          && is_digit(lexer.line[lexer.at + 1]);
+        if (!is_q) { // a word of the name
+            while (lexer.at < lexer.line.size() && !is_blank(lexer.line[lexer.at])
+                   && std::string_view(";~\r\n").find(lexer.line[lexer.at])
+                          == std::string_view::npos)
+                ++lexer.at;
+            continue;
+        }
+        FEELER_TRY(const int target, read_target(reader));
+        if (auto letters = reader.letters(); letters == "FAUTO" || letters == "FMAX")
+            return reader.refuse(fmt::format("'{}' as a cycle's feed is not supported yet: give a "
+                                             "number",
+                                             letters),
+                                 lexer.at, ErrorCode::unsupported);
+        FEELER_TRY(const Expression value, reader.operand());
+        if (auto set = set_result(reader, target, value); !set) return set;
+    }
+    return {};
+}
+
+/// `X+10 IY-5`; for mirror images the letters alone.
+core::Result<void> read_axes(KlartextReader& reader, bool with_values) {
+    while (is_letter(reader.next())) {
+        const size_t from = reader.lexer.at;
+        const std::string letters = reader.letters();
+        const bool incremental = letters.size() > 1 && letters[0] == 'I';
+        const char axis = letters[incremental ? 1 : 0];
+        if (axis_letters.find(axis) == std::string_view::npos) return reader.stray();
+        reader.lexer.at += incremental ? 2 : 1;
+        if (!with_values) {
+            reader.add_word(axis, 1.0, from);
+            continue;
+        }
+        const Addressing addressing = incremental ? Addressing::incremental : Addressing::absolute;
+        if (auto done = reader.word(axis, from, addressing); !done) return done;
+    }
+    return {};
+}
+
+core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
+    const size_t from = (reader.next(), reader.lexer.at);
+    if (cycle == 7 && reader.next() == '#')
+        return reader.refuse("'#': datums of a datum table are not supported yet: give the shift "
+                             "of each axis",
+                             from, ErrorCode::unsupported);
+    if (cycle == 7 || cycle == 19) return read_axes(reader, true);
+    if (cycle == 8) return read_axes(reader, false);
+    if (cycle == 13 || cycle == 32) { // the spindle's angle, tolerances
+        reader.lexer.at = reader.lexer.line.size();
+        return {};
+    }
+    const std::string letters = reader.letters();
+    if (cycle == 10) {
+        if (!reader.accept("ROT") && !reader.accept("IROT"))
+            return reader.refuse("'CYCL DEF 10.1' needs ROT and an angle", reader.begin);
+        return reader.word('R', from,
+                           letters == "IROT" ? Addressing::incremental : Addressing::absolute);
+    }
+    while (is_letter(reader.next()) && upper(reader.next()) != 'Q') ++reader.lexer.at;
+    return reader.word('P', from); // DIST2, DEPTH-20, PLNGNG5, DWELL0, F200
+}
+
+core::Result<void> read_cycle_call(KlartextReader& reader) {
+    Command& command = reader.block.command;
+    command.kind = CommandKind::cycle_call;
+    command.calls_cycle = true;
+    if (reader.accept("PAT"))
+        return reader.refuse("'CYCL CALL PAT' is not supported yet", reader.begin,
+                             ErrorCode::unsupported);
+    reader.accept("POS");
+    while (const char c = reader.next()) {
+        if (!is_letter(c)) return reader.stray();
+        if (auto done = read_contour_word(reader); !done) return done;
+    }
+    return {};
+}
+
+} // namespace
+
+core::Result<void> read_cycle(KlartextReader& reader) {
+    Command& command = reader.block.command;
+    if (reader.accept("CALL")) return read_cycle_call(reader);
+    if (!reader.accept("DEF"))
+        return reader.refuse("behind 'CYCL' belongs DEF or CALL", reader.begin);
+    FEELER_TRY(command.number, read_whole(reader, "CYCL DEF"));
+    if (std::find(std::begin(cycles), std::end(cycles), command.number) == std::end(cycles))
+        return reader.refuse(
+            fmt::format("'CYCL DEF {}': this cycle is not supported yet", command.number),
+            reader.begin, ErrorCode::unsupported);
+    command.kind = CommandKind::cycle_definition;
+    command.span = reader.span_from(reader.begin);
+    if (command.number >= first_new_cycle) return read_cycle_parameters(reader);
+    if (reader.lexer.accept('.')) {
+        FEELER_TRY(command.part, read_whole(reader, "CYCL DEF"));
+    }
+    if (command.part > 0) return read_cycle_part(reader, command.number);
+    reader.lexer.at = reader.lexer.line.size(); // the cycle's name
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,29 @@
+#include "gcode/language/canonical.h"
+
+#include <array>
+
+namespace gcode {
+
+std::string_view command_name(const CanonicalCommand& command) {
+    // In the order of the variant.
+    constexpr std::array<std::string_view, std::variant_size_v<CanonicalCommand>> names = {
+        "straight_traverse", "straight_feed",    "arc_feed",
+        "straight_probe",    "thread_feed",      "dwell",
+        "select_tool",       "change_tool",      "name_tool",
+        "spindle",           "use_spindle_mode", "coolant",
+        "select_plane",      "set_offset",       "use_tool_length_offset",
+        "set_path_mode",     "enable_override",  "set_output",
+        "wait_for_input",    "message",          "program_stop",
+        "optional_stop",     "program_end"};
+    return names[command.index()];
+}
+
+bool is_motion(const CanonicalCommand& command) {
+    return std::holds_alternative<StraightTraverse>(command)
+           || std::holds_alternative<StraightFeed>(command)
+           || std::holds_alternative<ArcFeed>(command)
+           || std::holds_alternative<StraightProbe>(command)
+           || std::holds_alternative<ThreadFeed>(command);
+}
+
+} // namespace gcode

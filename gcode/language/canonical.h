@@ -1,0 +1,151 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/motion/event.h"
+#include "gcode/language/modal_state.h"
+
+namespace gcode {
+
+/// Canonical commands: what a block means once modes and units are resolved. Lengths in mm, feed in
+/// mm/min, ends in program coordinates of the offsets that are active at the command.
+struct StraightTraverse {
+    Position end;
+};
+struct StraightFeed {
+    Position end;
+    double feed;
+};
+struct ArcFeed {
+    Position end;
+    Plane plane;
+    double centre[2]; // along the plane's first and second axis
+    int turns;        // as LinuxCNC: +1 up to one turn counter-clockwise, -2 up to two clockwise
+    double feed;
+};
+/// Towards a contact; without one, as a feed to its end.
+struct StraightProbe {
+    Position end;
+    double feed;
+    bool towards;      // until contact is made, else until it is lost
+    bool must_succeed; // an error if it never is
+};
+/// A feed that keeps pace with the spindle.
+struct ThreadFeed {
+    Position end;
+    double pitch;    // mm a revolution
+    bool back_again; // G33.1: reverses at the end and returns to where it came from
+};
+struct Dwell {
+    double seconds;
+};
+struct SelectTool {
+    core::ToolNumber tool;
+};
+struct ChangeTool {
+    std::optional<core::ToolNumber> tool; // empty: T0, an empty spindle
+};
+/// M61: that tool is in the spindle already.
+struct NameTool {
+    std::optional<core::ToolNumber> tool;
+};
+struct Spindle {
+    core::SpindleDirection direction;
+    double speed; // rev/min; m/min under G96
+};
+struct Coolant {
+    bool mist, flood;
+};
+struct SelectPlane {
+    Plane plane;
+};
+/// A work offset, G52 or G92 took new values, or another work offset became active.
+struct SetOffset {
+    Offsets offsets; // all of them, as they are from here on
+};
+struct UseToolLengthOffset {
+    std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
+    AxisValues offset;                        // mm and degrees; the length is along Z
+    bool follows_tip = false;                 // G43.4, G43.5
+};
+struct UseSpindleMode {
+    bool surface_speed;   // G96, else G97
+    double speed;         // m/min, or rev/min
+    double fastest_speed; // rev/min, 0 without a limit
+};
+struct SetPathMode {
+    PathMode mode;
+    double tolerance, naive_tolerance; // mm
+};
+enum class OverrideKind : uint8_t { feed, speed, adaptive_feed, feed_hold };
+struct EnableOverride {
+    OverrideKind kind;
+    bool enabled;
+};
+struct SetOutput {
+    int number;
+    double value;
+    bool is_analog;
+    bool with_motion; // when the next motion begins, else at once
+};
+struct WaitForInput {
+    int number;
+    bool is_analog;
+    double seconds; // 0 waits for nothing
+};
+/// What a program says to the operator.
+struct Message {
+    std::string text;
+};
+struct ProgramStop {};
+struct OptionalStop {};
+struct ProgramEnd {};
+
+using CanonicalCommand =
+    std::variant<StraightTraverse, StraightFeed, ArcFeed, StraightProbe, ThreadFeed, Dwell,
+                 SelectTool, ChangeTool, NameTool, Spindle, UseSpindleMode, Coolant, SelectPlane,
+                 SetOffset, UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput,
+                 WaitForInput, Message, ProgramStop, OptionalStop, ProgramEnd>;
+
+/// Whether a command moves axes: a rapid, a feed, an arc, a probing move or a thread.
+bool is_motion(const CanonicalCommand& command);
+
+/// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
+std::string_view command_name(const CanonicalCommand& command);
+
+enum class Severity : uint8_t { note, warning };
+
+/// Something a person should know about a block that does not stop the program.
+struct Warning {
+    Severity severity;
+    core::SourceSpan where;
+    std::string message;
+    std::string_view rule = "program"; // the stable name of what it is about
+    std::string cure{};                // what would make it go away; may be empty
+};
+
+/// One block as executed.
+struct BlockResult {
+    core::BlockIndex block{};
+    uint32_t line = 0;
+    std::string_view text{};       // the line, as long as the library stays where it is; of a
+                                   // program that is read in windows, until the next block
+    std::string_view file{};       // of a subprogram's file; empty for the main program
+    std::vector<uint32_t> calls{}; // lines that called it, the outermost first
+    bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
+    bool goes_home = false;        // G28 or G30
+    std::vector<CanonicalCommand> commands{};
+    std::vector<uint32_t> columns{}; // of the words that the commands come from
+    std::vector<Warning> warnings{};
+    std::shared_ptr<const std::string> own_text{}; // what `text` refers to where windows moved on
+};
+
+} // namespace gcode

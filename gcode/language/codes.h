@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "gcode/language/dialect.h"
+
+namespace gcode {
+
+/// Codes of one group replace one another; a block takes one of each.
+enum class ModalGroup : uint8_t {
+    action, // does something once: G4, G10, G28, G52, G53, G92
+    motion,
+    cycle,
+    plane,
+    units,
+    distance,
+    arc_distance,
+    feed_mode,
+    retract,
+    cutter_radius,
+    tool_length,
+    work_offset,
+    path_control,
+    exact_stop,
+    spindle_mode,
+    scaling,
+    rotation,
+    polar,
+    mirror,
+    macro,
+    other,
+    stopping,
+    tool_change,
+    spindle,
+    coolant,
+    overrides,
+    subprogram,
+    diameter,
+    count
+};
+
+/// Dialects as a set of bits, 1 << id.
+using DialectSet = uint8_t;
+
+/// One G or M code.
+struct Code {
+    char letter;
+    int tenths; // 593 for G59.3
+    ModalGroup group;
+    std::string_view words;   // that it uses besides F, S and T; "XYZ" stands for all axes
+    DialectSet dialects;      // that know it
+    std::string_view refusal; // why it is not carried out; empty when it is
+    int last = 0;             // of several codes in a row that are one, the last, in tenths
+
+    bool uses(char word) const { return words.find(word) != std::string_view::npos; }
+    constexpr int last_tenths() const { return last ? last : tenths; }
+    bool uses_axes() const { return words.starts_with("XYZ"); }
+};
+
+/// The number of a code in tenths; tenths(59, 3) is G59.3.
+constexpr int tenths(int whole, int tenth = 0) { return whole * 10 + tenth; }
+
+/// The code a word such as G59.3 or M6 names in a dialect, or null when the dialect has none.
+const Code* find_code(char letter, double value, DialectId dialect);
+
+} // namespace gcode

@@ -1,0 +1,332 @@
+#include "gcode/language/dialect.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace gcode {
+namespace {
+
+// LinuxCNC: interp_internal.hh, CENTER_ARC_RADIUS_TOLERANCE and SPIRAL_RELATIVE_TOLERANCE.
+constexpr ArcTolerance linuxcnc_arc = {.absolute_mm = 2 * 0.01 * std::numbers::sqrt2,
+                                       .absolute_inch = 2 * 0.001 * std::numbers::sqrt2,
+                                       .relative = 0.001,
+                                       .limit = 100.0,
+                                       .warned_mm = 0.0};
+
+// Fanuc leaves the tolerance to a parameter (3410); posts round to a micron.
+constexpr ArcTolerance fanuc_arc = {.absolute_mm = 0.005,
+                                    .absolute_inch = 0.0005,
+                                    .relative = 0.0,
+                                    .limit = 1.0,
+                                    .warned_mm = 0.05};
+
+// Grbl: gcode.c refuses above 0.5 mm, or above 0.005 mm and a thousandth of the radius.
+constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
+                                   .absolute_inch = 0.005 / 25.4,
+                                   .relative = 0.001,
+                                   .limit = 100.0,
+                                   .warned_mm = 0.0};
+
+constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
+                                      .name = "linuxcnc",
+                                      .supported = true,
+                                      .unit = LengthUnit::mm,
+                                      .unit_is_machines = true,
+                                      .retract = RetractMode::r_level,
+                                      .arc = linuxcnc_arc,
+                                      .peck_clearance = 0.254,
+                                      .dwell_without_point_is_milliseconds = false,
+                                      .dwell_takes_x_and_u = false,
+                                      .bare_length_offset_is_tool = true,
+                                      .cycles_are_rs274 = true,
+                                      .begins_with_g0 = false,
+                                      .motion_codes_move = true,
+                                      .cycles_are_motions = true,
+                                      .axis_words_serve_one_code = true,
+                                      .unused_words_are_errors = true,
+                                      .machine_move_is_rapid = false,
+                                      .machine_move_needs_g90 = true,
+                                      .machine_move_needs_motion = true,
+                                      .length_needs_g43 = true,
+                                      .lone_h_is_length_offset = false,
+                                      .p_names_more_places = false,
+                                      .local_offset_is_axis_offset = true,
+                                      .offset_writes_follow_g91 = false,
+                                      .work_offsets_turn = true,
+                                      .feed_before_units = true,
+                                      .g98_cycle_starts_high = true,
+                                      .cycle_stays_above_r = true,
+                                      .has_extended_offsets = false,
+                                      .diameters_in_tool_entries = false,
+                                      .g87_is_back_boring = false,
+                                      .cycle_levels_follow_g91 = true,
+                                      .boring_feeds_to_r = false,
+                                      .pecks_may_shrink = false,
+                                      .peck_sign_is_ignored = false,
+                                      .scale_without_point_is_thousandths = false,
+                                      .repeats_with_k = false,
+                                      .tape_mark_ends_program = true,
+                                      .repeated_codes_are_errors = true,
+                                      .language = Language::words,
+                                      .expressions = ExpressionSyntax::rs274,
+                                      .arithmetic = {.equality = 0.0001},
+                                      .tool_entries_by_axes = true,
+                                      .arc_after_contour_is_error = true,
+                                      .contour_breaks_are_errors = true,
+                                      .contour_codes = ContourCodes::rs274,
+                                      .contour_style = ContourStyle::rs274,
+                                      .radius_number_stays = false,
+                                      .has_active_comments = true,
+                                      .has_o_words = true,
+                                      .has_fanuc_flow = false,
+                                      .deletes_within_blocks = false,
+                                      .has_corner_words = false,
+                                      .has_polar_words = true,
+                                      .offset_words_may_repeat = false,
+                                      .brackets_optional_in_assignments = false,
+                                      .unset_is_vacant = false,
+                                      .feed_mode_clears_feed = true,
+                                      .bare_h0_is_tool = true,
+                                      .repeats_in_program_number = false,
+                                      .calls_stand_alone = true,
+                                      .decimal_points_matter = false,
+                                      .assumed_feed = 0.0,
+                                      .system_parameters = SystemParameters::rs274,
+                                      .parameter_letter = "#",
+                                      .has_parameter_zero = false,
+                                      .names_are_declared = false,
+                                      .assigns_in_order = false,
+                                      .machine_places_are_of_tip = false,
+                                      .text_end_returns = false,
+                                      .radius_word = "R",
+                                      .first_alarm = 0,
+                                      .local_count = 30,
+                                      .deepest_calls = 10,
+                                      .same_offset_stays = true,
+                                      .offset_writes_miss_axis_offset = true,
+                                      .surface_speed_needs_s = true};
+
+// Fanuc 30i user's manual B-63944EN, "Custom macro"; angles as parameter 6004 has them when it is
+// 0.
+constexpr Arithmetic fanuc_arithmetic = {.bitwise_logic = true,
+                                         .fix_is_to_zero = true,
+                                         .angles_have_no_sign = true,
+                                         .rounds_lengths_to_steps = true};
+
+constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
+                                   .name = "fanuc",
+                                   .supported = true,
+                                   .unit = LengthUnit::mm,
+                                   .unit_is_machines = false,
+                                   .retract = RetractMode::initial_level,
+                                   .arc = fanuc_arc,
+                                   .peck_clearance = 1.0,
+                                   .dwell_without_point_is_milliseconds = true,
+                                   .dwell_takes_x_and_u = true,
+                                   .bare_length_offset_is_tool = false,
+                                   .cycles_are_rs274 = false,
+                                   .begins_with_g0 = true,
+                                   .motion_codes_move = false,
+                                   .cycles_are_motions = false,
+                                   .axis_words_serve_one_code = false,
+                                   .unused_words_are_errors = false,
+                                   .machine_move_is_rapid = true,
+                                   .machine_move_needs_g90 = true,
+                                   .machine_move_needs_motion = false,
+                                   .length_needs_g43 = true,
+                                   .lone_h_is_length_offset = true,
+                                   .p_names_more_places = true,
+                                   .local_offset_is_axis_offset = false,
+                                   .offset_writes_follow_g91 = true,
+                                   .work_offsets_turn = false,
+                                   .feed_before_units = false,
+                                   .g98_cycle_starts_high = false,
+                                   .cycle_stays_above_r = false,
+                                   .has_extended_offsets = true,
+                                   .diameters_in_tool_entries = false,
+                                   .g87_is_back_boring = true,
+                                   .cycle_levels_follow_g91 = false,
+                                   .boring_feeds_to_r = true,
+                                   .pecks_may_shrink = false,
+                                   .peck_sign_is_ignored = true,
+                                   .scale_without_point_is_thousandths = true,
+                                   .repeats_with_k = true,
+                                   .tape_mark_ends_program = false,
+                                   .repeated_codes_are_errors = false,
+                                   .language = Language::words,
+                                   .expressions = ExpressionSyntax::fanuc,
+                                   .arithmetic = fanuc_arithmetic,
+                                   .tool_entries_by_axes = false,
+                                   .arc_after_contour_is_error = true,
+                                   .contour_breaks_are_errors = false,
+                                   .contour_codes = ContourCodes::fanuc,
+                                   .contour_style = ContourStyle::fanuc,
+                                   .radius_number_stays = true,
+                                   .has_active_comments = false,
+                                   .has_o_words = false,
+                                   .has_fanuc_flow = true,
+                                   .deletes_within_blocks = true,
+                                   .has_corner_words = true,
+                                   .has_polar_words = false,
+                                   .offset_words_may_repeat = true,
+                                   .brackets_optional_in_assignments = true,
+                                   .unset_is_vacant = true,
+                                   .feed_mode_clears_feed = false,
+                                   .bare_h0_is_tool = false,
+                                   .repeats_in_program_number = true,
+                                   .calls_stand_alone = false,
+                                   .decimal_points_matter = true,
+                                   .assumed_feed = 0.0,
+                                   .system_parameters = SystemParameters::fanuc,
+                                   .parameter_letter = "#",
+                                   .has_parameter_zero = false,
+                                   .names_are_declared = false,
+                                   .assigns_in_order = false,
+                                   .machine_places_are_of_tip = false,
+                                   .text_end_returns = false,
+                                   .radius_word = "R",
+                                   .first_alarm = 3000,
+                                   .local_count = 33,
+                                   .deepest_calls = 15,
+                                   .same_offset_stays = false,
+                                   .offset_writes_miss_axis_offset = false,
+                                   .surface_speed_needs_s = false};
+
+constexpr Dialect haas_dialect = [] {
+    Dialect entry = fanuc_dialect;
+    entry.id = DialectId::haas;
+    entry.name = "haas";
+    entry.contour_style = ContourStyle::rs274;
+    entry.arithmetic.angles_have_no_sign = false;
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
+    entry.diameters_in_tool_entries = true;
+    entry.pecks_may_shrink = true;
+    entry.g87_is_back_boring = false;
+    entry.scale_without_point_is_thousandths = false;
+    entry.repeats_with_k = false;
+    entry.repeats_in_program_number = false;
+    entry.system_parameters = SystemParameters::haas;
+    entry.first_alarm = 1000;
+    return entry;
+}();
+
+// Grbl 0.8: defaults.h, DEFAULT_FEEDRATE.
+constexpr double grbl_feed = 250.0;
+
+constexpr Dialect grbl_dialect = [] {
+    Dialect entry = linuxcnc_dialect;
+    entry.id = DialectId::grbl;
+    entry.name = "grbl";
+    entry.assumed_feed = grbl_feed;
+    entry.length_needs_g43 = false;
+    entry.unit_is_machines = false;
+    entry.arc = grbl_arc;
+    entry.local_offset_is_axis_offset = false;
+    entry.work_offsets_turn = false;
+    entry.feed_before_units = false;
+    entry.tool_entries_by_axes = false;
+    entry.has_active_comments = false;
+    entry.begins_with_g0 = true;
+    entry.motion_codes_move = false;
+    entry.has_o_words = false;
+    entry.feed_mode_clears_feed = false;
+    entry.has_polar_words = false;
+    return entry;
+}();
+
+// The input tolerance of the iTNC's manual for the end of an arc around CC is 0.016 mm.
+constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
+                                         .absolute_inch = 0.016 / 25.4,
+                                         .relative = 0.0,
+                                         .limit = 1.0,
+                                         .warned_mm = 0.05};
+
+constexpr Dialect heidenhain = [] {
+    Dialect entry = fanuc_dialect;
+    entry.id = DialectId::heidenhain;
+    entry.name = "heidenhain";
+    entry.contour_style = ContourStyle::rs274;
+    entry.radius_number_stays = false;
+    entry.length_needs_g43 = false;
+    entry.arc = heidenhain_arc;
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
+    entry.dwell_without_point_is_milliseconds = false;
+    entry.decimal_points_matter = false;
+    entry.language = Language::klartext;
+    entry.expressions = ExpressionSyntax::klartext;
+    entry.arithmetic = {};
+    entry.has_fanuc_flow = false;
+    entry.has_corner_words = false;
+    entry.unset_is_vacant = false;
+    entry.local_count = 0;
+    entry.deepest_calls = 30;
+    return entry;
+}();
+
+// SINUMERIK 840D, MD21000 and MD21010 as delivered: 0.01 mm, or a thousandth of the radius.
+constexpr ArcTolerance siemens_arc = {.absolute_mm = 0.01,
+                                      .absolute_inch = 0.01 / 25.4,
+                                      .relative = 0.001,
+                                      .limit = 1e12,
+                                      .warned_mm = 0.0};
+
+constexpr Dialect siemens_dialect = [] {
+    Dialect entry = fanuc_dialect;
+    entry.id = DialectId::siemens;
+    entry.name = "siemens";
+    entry.arc = siemens_arc;
+    entry.machine_move_is_rapid = false;
+    entry.machine_move_needs_g90 = false;
+    entry.lone_h_is_length_offset = false;
+    entry.p_names_more_places = false;
+    entry.has_extended_offsets = false;
+    entry.dwell_without_point_is_milliseconds = false;
+    entry.begins_with_g0 = false;
+    entry.language = Language::siemens;
+    entry.expressions = ExpressionSyntax::siemens;
+    entry.arithmetic = {};
+    entry.arc_after_contour_is_error = false;
+    entry.has_fanuc_flow = false;
+    entry.has_corner_words = false;
+    entry.unset_is_vacant = false;
+    entry.decimal_points_matter = false;
+    entry.system_parameters = SystemParameters::siemens;
+    entry.parameter_letter = "R";
+    entry.has_parameter_zero = true;
+    entry.names_are_declared = true;
+    entry.assigns_in_order = true;
+    entry.machine_places_are_of_tip = true;
+    entry.text_end_returns = true;
+    entry.radius_word = "CR=";
+    entry.radius_number_stays = false;
+    entry.local_count = 0;
+    entry.deepest_calls = 16;
+    return entry;
+}();
+
+// ISO dialect M behind G291: Fanuc's language on the same control.
+constexpr Dialect siemens_iso = [] {
+    Dialect entry = fanuc_dialect;
+    entry.id = DialectId::siemens_iso;
+    entry.name = "siemens-iso";
+    entry.arc = siemens_arc;
+    return entry;
+}();
+
+constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect, haas_dialect, grbl_dialect,
+                                 siemens_dialect,  heidenhain,    siemens_iso};
+
+} // namespace
+
+const Dialect& dialect(DialectId id) { return dialects[static_cast<size_t>(id)]; }
+
+std::optional<DialectId> dialect_named(std::string_view name) {
+    for (const Dialect& entry : dialects)
+        if (entry.name == name) return entry.id;
+    return std::nullopt;
+}
+
+} // namespace gcode

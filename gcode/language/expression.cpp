@@ -1,0 +1,301 @@
+#include "gcode/language/expression.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/base/units.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr double largest_whole = 9007199254740992.0; // 2^53
+
+double truth(bool holds) { return holds ? 1.0 : 0.0; }
+
+/// The remainder with the sign of the divisor's size: never negative (RS274/NGC 3.3.2.3).
+double modulo(double a, double b) {
+    const double rest = std::fmod(a, b);
+    return rest < 0.0 ? rest + std::abs(b) : rest;
+}
+
+/// 0x37 as 37 when `base` is 16, and back when it is 10.
+double recode(double value, int from, int to) {
+    auto rest = static_cast<int64_t>(value);
+    double result = 0.0, weight = 1.0;
+    for (; rest > 0; rest /= from, weight *= to)
+        result += weight * static_cast<double>(rest % from);
+    return result;
+}
+
+/// Sines and the like of whole right angles are exact, as a control's tables have them.
+double sine_of_degrees(double angle) {
+    const double turned = std::remainder(angle, 360.0);
+    if (turned == 0.0 || std::abs(turned) == 180.0) return 0.0;
+    if (std::abs(turned) == 90.0) return turned > 0.0 ? 1.0 : -1.0;
+    return std::sin(angle / core::degrees_per_radian);
+}
+
+double cosine_of_degrees(double angle) {
+    const double turned = std::abs(std::remainder(angle, 360.0));
+    if (turned == 90.0) return 0.0;
+    if (turned == 0.0 || turned == 180.0) return turned == 0.0 ? 1.0 : -1.0;
+    return std::cos(angle / core::degrees_per_radian);
+}
+
+/// Something that cannot be computed; empty when it can.
+std::string_view objection_to(Operation operation, double a, double b) {
+    switch (operation) {
+    case Operation::square_root:
+        return a < 0.0 ? "the square root of a negative number" : "";
+    case Operation::logarithm:
+    case Operation::decimal_logarithm:
+        return a <= 0.0 ? "the logarithm of a number that is not above zero" : "";
+    case Operation::arc_cosine:
+    case Operation::arc_sine:
+        return std::abs(a) > 1.0 ? "the arc sine or cosine of a number beyond 1" : "";
+    case Operation::from_decimal_code:
+    case Operation::to_decimal_code:
+        return a < 0.0 || a > largest_whole ? "BIN and BCD take whole numbers from 0" : "";
+    case Operation::divide:
+        return b == 0.0 ? "a division by zero: what stands behind the '/' is 0" : "";
+    case Operation::modulo:
+    case Operation::divide_whole:
+        return b == 0.0 ? "a division by zero" : "";
+    case Operation::power:
+        return a < 0.0 && b != std::floor(b) ? "a broken power of a negative number" : "";
+    case Operation::bits_and:
+    case Operation::bits_or:
+    case Operation::bits_xor:
+        return std::abs(a) > largest_whole || std::abs(b) > largest_whole
+                   ? "bits of a number that is too large"
+                   : "";
+    default:
+        return "";
+    }
+}
+
+double of_one(Operation operation, double a) {
+    switch (operation) {
+    case Operation::negate:
+        return -a;
+    case Operation::absolute:
+        return std::abs(a);
+    case Operation::arc_cosine:
+        return std::acos(a) * core::degrees_per_radian;
+    case Operation::arc_sine:
+        return std::asin(a) * core::degrees_per_radian;
+    case Operation::cosine:
+        return cosine_of_degrees(a);
+    case Operation::exponential:
+        return std::exp(a);
+    case Operation::fix:
+        return std::floor(a);
+    case Operation::fup:
+        return std::ceil(a);
+    case Operation::logarithm:
+        return std::log(a);
+    case Operation::round:
+        return std::round(a);
+    case Operation::sine:
+        return sine_of_degrees(a);
+    case Operation::square_root:
+        return std::sqrt(a);
+    case Operation::tangent:
+        return sine_of_degrees(a) / cosine_of_degrees(a);
+    case Operation::from_decimal_code:
+        return recode(a, 16, 10);
+    case Operation::to_decimal_code:
+        return recode(a, 10, 16);
+    case Operation::decimal_logarithm:
+        return std::log10(a);
+    case Operation::sign:
+        return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
+    case Operation::fraction:
+        return a - std::trunc(a);
+    case Operation::truncate:
+        return std::trunc(a);
+    case Operation::square:
+        return a * a;
+    case Operation::full_turn:
+        return modulo(a, 360.0);
+    case Operation::away_from_zero:
+        return std::copysign(std::ceil(std::abs(a)), a);
+    case Operation::arc_tangent_of_one:
+        return std::atan(a) * core::degrees_per_radian;
+    default:
+        return truth(a == 0.0); // truth_not
+    }
+}
+
+double of_bits(Operation operation, double a, double b) {
+    const auto left = static_cast<int64_t>(a), right = static_cast<int64_t>(b);
+    if (operation == Operation::bits_and) return static_cast<double>(left & right);
+    if (operation == Operation::bits_or) return static_cast<double>(left | right);
+    return static_cast<double>(left ^ right);
+}
+
+double of_two(Operation operation, double a, double b, double equality) {
+    switch (operation) {
+    case Operation::arc_tangent:
+        return std::atan2(a, b) * core::degrees_per_radian;
+    case Operation::hypotenuse:
+        return std::hypot(a, b);
+    case Operation::power:
+        return std::pow(a, b);
+    case Operation::multiply:
+        return a * b;
+    case Operation::divide:
+        return a / b;
+    case Operation::modulo:
+        return modulo(a, b);
+    case Operation::divide_whole:
+        return std::trunc(a / b);
+    case Operation::add:
+        return a + b;
+    case Operation::subtract:
+        return a - b;
+    case Operation::equal:
+        return truth(std::abs(a - b) <= equality);
+    case Operation::not_equal:
+        return truth(!(std::abs(a - b) <= equality));
+    case Operation::greater:
+        return truth(a > b);
+    case Operation::greater_or_equal:
+        return truth(a >= b);
+    case Operation::less:
+        return truth(a < b);
+    case Operation::less_or_equal:
+        return truth(a <= b);
+    case Operation::truth_and:
+        return truth(a != 0.0 && b != 0.0);
+    case Operation::truth_or:
+        return truth(a != 0.0 || b != 0.0);
+    case Operation::truth_xor:
+        return truth((a != 0.0) != (b != 0.0));
+    case Operation::least:
+        return std::min(a, b);
+    case Operation::greatest:
+        return std::max(a, b);
+    default:
+        return of_bits(operation, a, b);
+    }
+}
+
+Operation with_bits(Operation operation) {
+    switch (operation) {
+    case Operation::truth_and:
+        return Operation::bits_and;
+    case Operation::truth_or:
+        return Operation::bits_or;
+    case Operation::truth_xor:
+        return Operation::bits_xor;
+    default:
+        return operation;
+    }
+}
+
+Operation with_amounts(Operation operation) {
+    if (operation == Operation::fix) return Operation::truncate;
+    return operation == Operation::fup ? Operation::away_from_zero : operation;
+}
+
+/// What the control does where the program has this operation.
+Operation done_for(Operation operation, const Arithmetic& arithmetic) {
+    if (arithmetic.bitwise_logic) operation = with_bits(operation);
+    return arithmetic.fix_is_to_zero ? with_amounts(operation) : operation;
+}
+
+bool is_angle_of_turn(Operation operation) {
+    return operation == Operation::arc_tangent || operation == Operation::arc_sine;
+}
+
+constexpr size_t deepest = 64;
+
+/// The values of an expression while it is worked out.
+class Stack {
+public:
+    Stack(const ExpressionPool& pool, uint32_t line, const ParameterReader& parameters,
+          const Arithmetic& arithmetic)
+        : pool_(pool), line_(line), parameters_(parameters), arithmetic_(arithmetic) {}
+
+    core::Result<void> apply(const Instruction& step) {
+        const core::SourceSpan where{.line = line_, .column = step.column, .length = 1};
+        if (step.operation <= Operation::exists) return load(step, where);
+        const Operation operation = done_for(step.operation, arithmetic_);
+        const bool pair = operation >= Operation::arc_tangent;
+        const Value right = pair ? pop() : Value{};
+        const Value left = pop();
+        if (is_comparison_with_vacant(operation, left, right)) return {};
+        const double a = left.value_or(0.0), b = right.value_or(0.0);
+        if (const std::string_view why = objection_to(operation, a, b); !why.empty())
+            return core::fail(ErrorCode::invalid_value, fmt::format("this is {}", why), where);
+        double result = pair ? of_two(operation, a, b, arithmetic_.equality) : of_one(operation, a);
+        if (!std::isfinite(result))
+            return core::fail(ErrorCode::invalid_value, "this is beyond all numbers", where);
+        if (operation == Operation::round && arithmetic_.steps_in_one != 1.0)
+            result = std::round(a * arithmetic_.steps_in_one) / arithmetic_.steps_in_one;
+        if (arithmetic_.angles_have_no_sign && is_angle_of_turn(operation) && result < 0.0)
+            result += 360.0;
+        return push(result, where);
+    }
+
+    Value top() const { return values_[depth_ - 1]; }
+
+private:
+    Value pop() { return values_[--depth_]; }
+
+    core::Result<void> push(Value value, core::SourceSpan where) {
+        if (depth_ == deepest)
+            return core::fail(ErrorCode::invalid_value,
+                              "this expression is nested too deeply: break it into steps", where);
+        values_[depth_++] = value;
+        return {};
+    }
+
+    core::Result<void> load(const Instruction& step, core::SourceSpan where) {
+        if (step.operation == Operation::number) return push(step.number, where);
+        if (step.operation == Operation::exists)
+            return push(truth(parameters_.exists(pool_.names[step.name])), where);
+        if (step.operation == Operation::named) {
+            FEELER_TRY(const Value value, parameters_.named(pool_.names[step.name], where));
+            return push(value, where);
+        }
+        FEELER_TRY(const Value value, parameters_.numbered(pop().value_or(0.0), where));
+        return push(value, where);
+    }
+
+    /// Fanuc: a vacant variable equals another vacant one only, not 0.
+    bool is_comparison_with_vacant(Operation operation, Value left, Value right) {
+        if (operation != Operation::equal && operation != Operation::not_equal) return false;
+        if (left && right) return false;
+        const bool same = !left && !right;
+        values_[depth_++] = truth(same == (operation == Operation::equal));
+        return true;
+    }
+
+    const ExpressionPool& pool_;
+    const uint32_t line_;
+    const ParameterReader& parameters_;
+    const Arithmetic& arithmetic_;
+    std::array<Value, deepest> values_;
+    size_t depth_ = 0;
+};
+
+} // namespace
+
+core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
+                             const ParameterReader& parameters, const Arithmetic& arithmetic) {
+    Stack stack(pool, line, parameters, arithmetic);
+    for (uint32_t i = 0; i < expression.count; ++i)
+        if (auto done = stack.apply(pool.instructions[expression.first + i]); !done)
+            return tl::unexpected(std::move(done).error());
+    return stack.top();
+}
+
+} // namespace gcode

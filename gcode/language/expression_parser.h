@@ -1,0 +1,68 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "gcode/language/expression.h"
+#include "gcode/language/lexer.h"
+
+namespace gcode {
+
+/// The operators, functions and brackets of a family of controls.
+enum class ExpressionSyntax : uint8_t { rs274, fanuc, siemens, klartext };
+
+/// Reads what may stand for a number: a number, `#5`, `#<name>`, `[...]`, a function of brackets,
+/// each with a sign before it. `number` is set, and the result empty, for a plain number.
+///
+/// Effect: the instructions are added to the pool.
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
+                                     Number& number);
+
+/// Reads a value, or sums and products of values without brackets around them, as Fanuc and Siemens
+/// allow behind `=`.
+///
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
+                                   Number& number);
+
+/// Reads `[...]`.
+///
+/// Errors: syntax with the column at fault.
+core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
+                                         ExpressionPool& pool);
+
+/// Where Q0 and QR0 are kept among the numbered parameters; Q1 to Q1999 have their own numbers.
+constexpr int q_zero = 2000, first_kept_q = 2001;
+
+/// Reads `Q5` or `QR5`, and gives the number under which it is kept.
+///
+/// Errors: syntax without a number; unsupported for QL and QS; invalid_value when there is no such
+///         parameter.
+core::Result<int> parse_q_parameter(Lexer& lexer);
+
+/// Reads the name of a parameter between `<` and `>`: lower case, without blanks.
+///
+/// Errors: syntax when it has no end or no letters.
+core::Result<std::string> parse_name(Lexer& lexer);
+
+/// An operator between two values.
+struct Operator {
+    std::string_view spelling;
+    Operation operation;
+    int rank; // what binds tighter has the higher one
+};
+
+/// A function of one value.
+struct Function {
+    std::string_view name;
+    Operation operation;
+};
+
+/// The operators of a family of controls; of two that begin alike, the longer one comes first.
+std::span<const Operator> operators_of(ExpressionSyntax syntax);
+
+/// The functions of Klartext, or of all others.
+std::span<const Function> functions_of(ExpressionSyntax syntax);
+
+} // namespace gcode

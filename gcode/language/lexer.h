@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "gcode/language/block.h"
+
+namespace gcode {
+
+/// A number as it stands in a program.
+struct Number {
+    double value = 0.0;
+    bool has_point = false;
+};
+
+constexpr bool is_blank(char c) {
+    // Control characters that reach a line are the harmless ones of old tapes.
+    constexpr uint64_t blanks = uint64_t{1} << ' ' | uint64_t{1} << '\t' | uint64_t{1} << '\v'
+                                | uint64_t{1} << '\f' | uint64_t{1} << 0x1A;
+    return static_cast<unsigned char>(c) <= ' ' && (blanks >> c & 1);
+}
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+constexpr bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
+constexpr bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
+
+/// A place in a line that moves on as things are read. A plain value: copy it to look ahead.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, also inside numbers and
+///         names.
+struct Lexer {
+    std::string_view line;
+    uint32_t line_number = 1;
+    size_t at = 0;
+    bool blanks_end_numbers = false; // Klartext and Siemens
+    bool comma_is_point = false;     // Klartext: a comma may be the point as well
+    bool has_exponents = false;      // Siemens: 1.5EX-3
+
+    /// The next character that is no blank, which stays to be read; NUL at the end.
+    char peek() {
+        while (at < line.size() && is_blank(line[at])) ++at;
+        return at < line.size() ? line[at] : '\0';
+    }
+
+    /// Whether the next character is this one, which is read then.
+    bool accept(char wanted) {
+        if (peek() != wanted) return false;
+        ++at;
+        return true;
+    }
+
+    /// Whether these letters or signs come next, in any case, which are read then.
+    bool accept_word(std::string_view wanted);
+
+    /// The letters from here on, upper case, blanks left out; they stay to be read.
+    std::string letters();
+
+    /// What stands from a place up to here.
+    core::SourceSpan span_from(size_t begin) const { return span(begin, at); }
+    core::SourceSpan span(size_t begin, size_t end) const {
+        return {line_number, static_cast<uint32_t>(begin + 1), static_cast<uint32_t>(end - begin)};
+    }
+    std::string written_from(size_t begin) const {
+        return std::string(line.substr(begin, at - begin));
+    }
+
+    /// Whether a number stands here: a sign, a digit or a point.
+    bool is_at_number();
+
+    /// The number that stands here.
+    ///
+    /// Errors: syntax when there is none, or it has too many digits.
+    core::Result<Number> number();
+    tl::unexpected<core::Error> bad_exponent(size_t begin) const;
+
+    /// The comment in brackets that begins here, which ends at the bracket that matches.
+    ///
+    /// Errors: syntax when it has no end on the line.
+    core::Result<Comment> bracket_comment();
+
+    /// All that is left of the line behind the character here.
+    Comment line_comment();
+
+    /// That the character here has no meaning; says what it may have been.
+    tl::unexpected<core::Error> unexpected_character();
+};
+
+inline constexpr std::array powers_of_ten = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                             1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+/// Reads a number of at most 15 digits without blanks inside, as nearly all are; false when another
+/// kind stands there, and nothing has changed then.
+///
+/// The digits make a whole number below 2^53, and the power of ten is below 10^16: both are exact,
+/// so their quotient is rounded once, as the general way rounds it.
+inline bool read_short_number(std::string_view line, size_t& at, Number& number) {
+    const char* next = line.data() + at;
+    const char* const end = line.data() + line.size();
+    const bool negative = next < end && *next == '-';
+    next += next < end && (*next == '-' || *next == '+');
+    uint64_t digits = 0;
+    const char* const first = next;
+    for (; next < end && is_digit(*next); ++next)
+        digits = digits * 10 + static_cast<uint64_t>(*next - '0');
+    auto count = next - first;
+    size_t behind_point = 0;
+    const bool point = next < end && *next == '.';
+    if (point) {
+        const char* const fraction = ++next;
+        for (; next < end && is_digit(*next); ++next)
+            digits = digits * 10 + static_cast<uint64_t>(*next - '0');
+        behind_point = static_cast<size_t>(next - fraction);
+        count += next - fraction;
+    }
+    if (count == 0 || count > 15) return false;
+    const char* behind = next;
+    while (behind < end && is_blank(*behind)) ++behind;
+    // Blanks may stand inside of a number.
+    if (behind < end && (*behind == '.' || (behind > next && is_digit(*behind)))) return false;
+    const double size = static_cast<double>(digits) / powers_of_ten[behind_point];
+    number = {negative ? -size : size, point};
+    at = static_cast<size_t>(next - line.data());
+    return true;
+}
+
+} // namespace gcode

@@ -1,0 +1,239 @@
+#include "gcode/language/modal_state.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace gcode {
+namespace {
+
+/// A linear map of X, Y and Z. What depends on an axis that nobody knows is not known either.
+void map(const core::Mat3& linear, Position& position) {
+    const Position before = position;
+    for (int row = 0; row < 3; ++row) {
+        std::optional<double> sum = 0.0;
+        for (int column = 0; column < 3; ++column) {
+            const double factor = linear[column][row]; // by columns
+            if (factor == 0.0) continue;
+            const std::optional<double>& value = before[static_cast<size_t>(column)];
+            if (sum && value)
+                *sum += factor * *value;
+            else
+                sum.reset();
+        }
+        position[static_cast<size_t>(row)] = sum;
+    }
+}
+
+core::Mat3 turned_about_z(double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    core::Mat3 turn(1.0);
+    turn[0][0] = turn[1][1] = std::cos(angle);
+    turn[0][1] = std::sin(angle);
+    turn[1][0] = -turn[0][1];
+    return turn;
+}
+
+void add(Position& position, const AxisValues& values, double sign) {
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (position[axis]) *position[axis] += sign * values[axis];
+}
+
+void add(Position& position, const Position& values, double sign) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (position[axis] && values[axis])
+            *position[axis] += sign * *values[axis];
+        else
+            position[axis].reset();
+    }
+}
+
+AxisValues shift_of(const ProgramFrame& frame) {
+    return {frame.shift.x, frame.shift.y, frame.shift.z};
+}
+
+/// The machine with its rotary axes as the work offset has them: as the work lies in its
+/// coordinates.
+core::Transform machine_from_table(const Offsets& offsets) {
+    AxisValues rotary{};
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis)) rotary[axis] = offsets.work.origin[axis];
+    return core::machine_from_link(*offsets.machine, offsets.machine->table, rotary);
+}
+
+/// The values of a position as far as the machine has axes; empty if one of them is unknown.
+std::optional<AxisValues> known_values(const Offsets& offsets, const Position& position) {
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (offsets.machine->axes[axis].present && !position[axis]) return std::nullopt;
+        values[axis] = position[axis].value_or(0.0);
+    }
+    return values;
+}
+
+void forget_linear(Position& position) {
+    for (size_t axis = 0; axis < 3; ++axis) position[axis].reset();
+}
+
+/// From places of the tip in the coordinates of the work to the axes that bring it there.
+void reach_from_work(const Offsets& offsets, Position& place) {
+    const auto values = known_values(offsets, place);
+    std::optional<AxisValues> reached;
+    if (values)
+        reached = core::reach_tip(
+            *offsets.machine, *values,
+            table_from_work(offsets, {(*values)[0], (*values)[1], (*values)[2]}), offsets.tool[2]);
+    if (!reached) return forget_linear(place);
+    for (size_t axis = 0; axis < 3; ++axis) place[axis] = (*reached)[axis];
+}
+
+/// The other way.
+void place_in_work(const Offsets& offsets, Position& place) {
+    const auto values = known_values(offsets, place);
+    if (!values) return forget_linear(place);
+    const core::Vec3 tip =
+        machine_from_table(offsets) * core::tip_place(*offsets.machine, *values, offsets.tool[2]);
+    for (size_t axis = 0; axis < 3; ++axis)
+        place[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
+}
+
+/// What a tool adds beside its length, where that counts along the tool.
+AxisValues without_length(AxisValues tool) {
+    tool[2] = 0.0;
+    return tool;
+}
+
+} // namespace
+
+core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work) {
+    return machine_from_table(offsets).inverse() * offsets.machine->place({work.x, work.y, work.z});
+}
+
+Position machine_minus_program(const Offsets& offsets) {
+    Position total = offsets.axis;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (total[axis])
+            *total[axis] += offsets.work.origin[axis] + offsets.local[axis] + offsets.tool[axis];
+    return total;
+}
+
+Position machine_from_program(const Offsets& offsets, const Position& program) {
+    Position place = program;
+    if (!mixes_axes(offsets)) {
+        add(place, machine_minus_program(offsets), +1.0);
+        return place;
+    }
+    if (offsets.has_frame) {
+        map(offsets.frame.linear, place);
+        add(place, shift_of(offsets.frame), +1.0);
+    }
+    add(place, offsets.axis, +1.0);
+    add(place, offsets.local, +1.0);
+    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(offsets.work.rotation_deg), place);
+    add(place, offsets.work.origin, +1.0);
+    if (is_fixed_to_work(offsets)) {
+        add(place, without_length(offsets.tool), +1.0);
+        reach_from_work(offsets, place);
+    } else {
+        add(place, offsets.tool, +1.0);
+    }
+    return place;
+}
+
+Position program_from_machine(const Offsets& offsets, const Position& machine) {
+    Position place = machine;
+    if (!mixes_axes(offsets)) {
+        add(place, machine_minus_program(offsets), -1.0);
+        return place;
+    }
+    if (is_fixed_to_work(offsets)) {
+        place_in_work(offsets, place);
+        add(place, without_length(offsets.tool), -1.0);
+    } else {
+        add(place, offsets.tool, -1.0);
+    }
+    add(place, offsets.work.origin, -1.0);
+    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(-offsets.work.rotation_deg), place);
+    add(place, offsets.local, -1.0);
+    add(place, offsets.axis, -1.0);
+    if (offsets.has_frame) {
+        add(place, shift_of(offsets.frame), -1.0);
+        map(glm::inverse(offsets.frame.linear), place);
+    }
+    return place;
+}
+
+Offsets without_rotary_tool(Offsets offsets) {
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis)) offsets.tool[axis] = 0.0;
+    return offsets;
+}
+
+namespace {
+
+struct Direction {
+    double cosine, sine;
+};
+
+Direction direction_of(double degrees) {
+    const double quarters = degrees / 90.0;
+    if (quarters == std::floor(quarters)) {
+        constexpr Direction exact[] = {{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}};
+        const double turn = quarters - 4.0 * std::floor(quarters / 4.0);
+        return exact[static_cast<size_t>(turn)];
+    }
+    const double angle = degrees * std::numbers::pi / 180.0;
+    return {std::cos(angle), std::sin(angle)};
+}
+
+/// Lets a map that keeps one place follow what is there already.
+void add_about(ProgramFrame& frame, const core::Mat3& linear, const core::Vec3& kept) {
+    frame.linear = linear * frame.linear;
+    frame.shift = linear * (frame.shift - kept) + kept;
+}
+
+void add_mirror_and_scaling(ProgramFrame& frame, const ProgramTransforms& transforms) {
+    core::Mat3 reflected(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (transforms.mirror.axes[static_cast<size_t>(axis)]) reflected[axis][axis] = -1.0;
+    if (reflected != core::Mat3(1.0)) add_about(frame, reflected, transforms.mirror.place);
+    if (!transforms.scaling) return;
+    core::Mat3 stretched(1.0);
+    for (int axis = 0; axis < 3; ++axis) stretched[axis][axis] = transforms.scaling->factors[axis];
+    add_about(frame, stretched, transforms.scaling->centre);
+}
+
+} // namespace
+
+core::Mat3 turned_about(int axis, double degrees) {
+    const Direction direction = direction_of(degrees);
+    const int first = (axis + 1) % 3, second = (axis + 2) % 3;
+    core::Mat3 turn(1.0);
+    turn[first][first] = turn[second][second] = direction.cosine;
+    turn[first][second] = direction.sine;
+    turn[second][first] = -direction.sine;
+    return turn;
+}
+
+ProgramFrame frame_of(const ProgramTransforms& transforms) {
+    ProgramFrame frame;
+    add_mirror_and_scaling(frame, transforms);
+    if (const auto& rotation = transforms.rotation) {
+        const double degrees = rotation->is_reversed ? -rotation->degrees : rotation->degrees;
+        add_about(frame, turned_about(rotation->normal, degrees), rotation->centre);
+    }
+    if (const auto& tilt = transforms.tilt) {
+        frame.linear = tilt->axes * frame.linear;
+        frame.shift = tilt->axes * frame.shift + tilt->origin;
+        frame.tilts_tool = tilt->axes[2] != core::Vec3(0.0, 0.0, 1.0);
+    }
+    frame.tilts_tool |= transforms.follows_vectors;
+    return frame;
+}
+
+core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place) {
+    ProgramFrame frame;
+    add_mirror_and_scaling(frame, transforms);
+    return frame.linear * place + frame.shift;
+}
+
+} // namespace gcode

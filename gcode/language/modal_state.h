@@ -1,0 +1,263 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+#include "core/base/ids.h"
+#include "core/base/transform.h"
+#include "core/motion/event.h"
+#include "core/motion/kinematics.h"
+
+namespace gcode {
+
+using core::axis_count;
+using core::axis_letters;
+using core::AxisValues;
+using core::is_rotary;
+using core::is_secondary;
+
+/// mm and degrees, axis by axis; empty where nobody knows.
+using Position = core::AxisPosition;
+
+constexpr Position zero_position = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+
+/// G54 to G59, G59.1 to G59.3; behind them the numbered ones, G54.1 P1 and on.
+constexpr size_t plain_offset_count = 9;
+constexpr size_t extended_offset_count = 300;
+constexpr size_t work_offset_count = plain_offset_count + extended_offset_count;
+constexpr size_t no_work_offset = work_offset_count; // Siemens: G500
+
+/// The origin of a work offset in machine coordinates, and how far it is turned about Z.
+struct WorkOffset {
+    AxisValues origin{};
+    double rotation_deg = 0.0;
+
+    bool operator==(const WorkOffset&) const = default;
+};
+
+/// What a program does to its coordinates by itself: scaling, mirror images, rotations, tilted
+/// planes. Maps the coordinates of the program to those of the work offset.
+struct ProgramFrame {
+    core::Mat3 linear = core::Mat3(1.0);
+    core::Vec3 shift = core::Vec3(0.0);
+    bool tilts_tool = false; // the tool is meant to leave the direction of Z
+
+    bool operator==(const ProgramFrame&) const = default;
+};
+
+/// Everything that stands between program and machine coordinates, as it is in effect:
+/// machine = work + turned(frame(program) + axis + local) + tool.
+struct Offsets {
+    size_t active = 0; // 0 is G54
+    WorkOffset work;
+    AxisValues local{};            // G52
+    Position axis = zero_position; // G92; empty when set from an unknown place
+    AxisValues tool{};             // length along Z, and along the other axes
+    ProgramFrame frame;
+    bool has_frame = false;    // whether `frame` is more than the identity
+    bool tilted_plane = false; // G68.2
+    bool follows_tip = false;  // G43.4, G43.5: the tip goes straight, seen from the work
+    const core::Machine* machine = nullptr; // where the rotary axes are known; outlives all states
+
+    bool operator==(const Offsets&) const = default;
+};
+
+/// Whether coordinates are those of the work as it is turned by the rotary axes, and the tool's
+/// length counts along the tool.
+inline bool is_fixed_to_work(const Offsets& offsets) {
+    return offsets.machine && (offsets.follows_tip || offsets.tilted_plane);
+}
+
+/// Whether a coordinate of the machine depends on more than one of the program.
+inline bool mixes_axes(const Offsets& offsets) {
+    return offsets.has_frame || offsets.work.rotation_deg != 0.0 || is_fixed_to_work(offsets);
+}
+
+/// Where the tip stands, in the frame of the table's link; the coordinates of work offsets, mm.
+core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work);
+
+/// What to add to program coordinates to reach machine coordinates of the gauge line, where nothing
+/// is turned.
+Position machine_minus_program(const Offsets& offsets);
+
+Position machine_from_program(const Offsets& offsets, const Position& program);
+Position program_from_machine(const Offsets& offsets, const Position& machine);
+
+/// The offsets that G28, G30 and G53 count: what a tool is offset by along rotary axes does not
+/// shift where these go.
+Offsets without_rotary_tool(Offsets offsets);
+
+/// G51: every coordinate is stretched from a centre.
+struct Scaling {
+    core::Vec3 factors = core::Vec3(1.0);
+    core::Vec3 centre = core::Vec3(0.0);
+
+    bool operator==(const Scaling&) const = default;
+};
+
+/// G51.1: coordinates are reflected at a place, axis by axis.
+struct MirrorImage {
+    std::array<bool, 3> axes{};
+    core::Vec3 place = core::Vec3(0.0);
+
+    bool operator==(const MirrorImage&) const = default;
+};
+
+/// G68: a rotation in a plane, named by the axis it is about.
+struct PlaneRotation {
+    int normal = 2;
+    core::Vec3 centre = core::Vec3(0.0); // scaled and reflected already
+    double degrees = 0.0;
+    bool is_reversed = false; // one axis of the plane was reflected before
+
+    bool operator==(const PlaneRotation&) const = default;
+};
+
+/// G68.2: coordinates of a plane that stands anywhere in the work coordinates.
+struct TiltedPlane {
+    core::Mat3 axes = core::Mat3(1.0); // its directions as columns
+    core::Vec3 origin = core::Vec3(0.0);
+
+    bool operator==(const TiltedPlane&) const = default;
+};
+
+/// G16: positions in the plane are a radius and an angle.
+struct PolarPositions {
+    std::array<double, 2> origin{};
+    std::optional<double> radius, angle_deg; // empty until the program says them
+
+    bool operator==(const PolarPositions&) const = default;
+};
+
+/// What a program has said about its own coordinates, each until it is cancelled.
+struct ProgramTransforms {
+    std::optional<Scaling> scaling;
+    MirrorImage mirror;
+    std::optional<PlaneRotation> rotation;
+    std::optional<TiltedPlane> tilt;
+    bool follows_vectors = false; // G43.5: motions say where the tool points to
+    std::optional<PolarPositions> polar;
+    std::optional<Position> before_rotation; // what the program called the place where G68 stood
+
+    bool operator==(const ProgramTransforms&) const = default;
+};
+
+/// The rotation about a principal axis, 0 X to 2 Z; exact at multiples of 90 degrees.
+core::Mat3 turned_about(int axis, double degrees);
+
+/// All transforms as one map from program to work coordinates: first the mirror image, then the
+/// scaling, the rotation, the tilted plane.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, 6, "Scaling and coordinate system rotation" and
+///         "Programmable mirror image": the order, and that a mirror image of one axis of the plane
+///         reverses the angle of G68.
+ProgramFrame frame_of(const ProgramTransforms& transforms);
+
+/// Where mirror image and scaling put a place.
+core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place);
+
+enum class LengthUnit : uint8_t { inch, mm };                         // G20, G21
+enum class DistanceMode : uint8_t { absolute, incremental };          // G90, G91
+enum class FeedMode : uint8_t { per_minute, inverse_time, per_turn }; // G94, G93, G95
+enum class RetractMode : uint8_t { initial_level, r_level };          // G98, G99
+enum class Plane : uint8_t { xy, zx, yz, uv, wu, vw };                // G17 G18 G19, G17.1 ...
+enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G61.1, G64
+enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
+
+/// What a block without a motion code goes on with: the code in tenths, 10 for G1, 385 for G38.5.
+using MotionCode = int;
+
+/// The only place where program units become mm.
+constexpr double to_mm(double programmed, LengthUnit unit) {
+    return unit == LengthUnit::inch ? programmed * 25.4 : programmed;
+}
+constexpr double from_mm(double length, LengthUnit unit) {
+    return unit == LengthUnit::inch ? length / 25.4 : length;
+}
+
+/// The axes of a plane, as indices: the first two turn about the third.
+struct PlaneAxes {
+    size_t first, second, normal;
+};
+
+constexpr PlaneAxes axes_of(Plane plane) {
+    constexpr PlaneAxes axes[] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}, {6, 7, 8}, {8, 6, 7}, {7, 8, 6}};
+    return axes[static_cast<size_t>(plane)];
+}
+
+/// What a canned cycle keeps for the blocks after it; lengths as programmed, in mm.
+struct CannedCycle {
+    int code = 0;                        // tenths: 810 for G81
+    std::optional<double> bottom, r;     // Z and R in the XY plane
+    std::optional<double> dwell;         // s
+    std::optional<double> peck;          // Q
+    std::array<double, 3> shift{};       // I, J, K of G76 and G87
+    std::optional<double> initial_level; // where the axis was before the first of the cycles
+    bool r_is_way = false;               // R was said under G91: counts from there
+    bool bottom_is_way = false;          // Z was said under G91: counts from R
+
+    bool operator==(const CannedCycle&) const = default;
+};
+
+/// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
+///
+/// Lengths are stored in mm whatever G20/G21 says. What the program has not yet defined is empty,
+/// never zero.
+struct ModalState {
+    LengthUnit unit = LengthUnit::mm;
+    bool unit_said = false;
+    std::optional<MotionCode> motion;
+    std::optional<CannedCycle> cycle; // takes the axis words while it is there
+    Plane plane = Plane::xy;
+    DistanceMode distance = DistanceMode::absolute;
+    DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
+    FeedMode feed_mode = FeedMode::per_minute;
+    RetractMode retract = RetractMode::initial_level;
+    PathMode path = PathMode::continuous;
+    double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
+    Side compensation = Side::none;
+    double compensation_radius = 0.0; // mm; below zero it is on the other side
+    int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 is a mill
+    bool leaves_contour = false;      // since G40 no straight move was made
+    bool diameter_mode = false;       // G7: X words are diameters
+    bool surface_speed = false;       // G96
+    double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
+    bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
+
+    Position position;                       // tool tip, program coordinates
+    Position home, second_home;              // G28, G30: machine coordinates
+    Position suspended_axis = zero_position; // kept by G92.2 for G92.3
+    bool axis_offset_on = false;             // G92 or G52 holds, be it zero
+
+    std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
+    double speed = 0.0;         // rev/min, or m/min under G96
+    core::SpindleDirection spindle = core::SpindleDirection::stopped;
+    bool mist = false, flood = false;
+
+    std::optional<core::ToolNumber> selected_tool; // T
+    std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
+    std::optional<core::OffsetNumber> length_number;
+    int radius_number = 0;    // the D said last, where it stays
+    double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
+    Offsets offsets;
+    std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
+    ProgramTransforms transforms;     // `offsets.frame` is made of them
+    // Siemens: in which the last motion of the plane ended; 0, 0 when that is not known.
+    std::array<double, 2> direction{};
+
+    /// Whether the length offset that is on is that of the tool in the spindle.
+    bool length_is_tools() const {
+        return length_sign != 0.0 && tool && length_number
+               && core::value_of(*length_number) == core::value_of(*tool);
+    }
+    double cycle_dwell = 0.0; // s, P of the last canned cycle
+
+    bool operator==(const ModalState&) const = default;
+};
+
+// It is copied at every block.
+static_assert(std::is_trivially_copyable_v<ModalState>);
+
+} // namespace gcode

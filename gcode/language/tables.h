@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "gcode/language/modal_state.h"
+
+namespace gcode {
+
+/// An entry of the control's offset table.
+struct LengthOffset {
+    double length = 0.0;   // mm along Z
+    double wear = 0.0;     // mm, added to the length
+    double diameter = 0.0; // mm
+    double radius_wear = 0.0;
+    AxisValues shift{};                     // mm and degrees along the other axes; Z is not used
+    double front_deg = 0.0, back_deg = 0.0; // of a turning tool
+    int orientation = 0;                    // of a turning tool, 0 to 9
+
+    bool operator==(const LengthOffset&) const = default;
+};
+
+/// What a program reads and writes in the control beside its parameters.
+struct Tables {
+    std::vector<WorkOffset> work{plain_offset_count}; // grows when a later one is written
+    AxisValues external{}; // Fanuc's work offset that is added to all others
+    std::map<core::OffsetNumber, LengthOffset> lengths;
+    std::map<core::ToolNumber, double> tool_lengths, tool_diameters; // for numbers without one
+
+    bool operator==(const Tables&) const = default;
+};
+
+/// The work offset of an index; that of one never written is zero.
+WorkOffset work_offset(const Tables& tables, size_t index);
+WorkOffset& writable_work_offset(Tables& tables, size_t index);
+
+/// The length under a number: the table's entry, else that of the tool of that number; empty when
+/// there is neither.
+std::optional<double> length_under(const Tables& tables, int number);
+
+/// The diameter under a number; likewise.
+std::optional<double> diameter_under(const Tables& tables, int number);
+
+} // namespace gcode

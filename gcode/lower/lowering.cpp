@@ -1,0 +1,251 @@
+#include "gcode/lower/lowering.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gcode/exec/arcs.h"
+
+namespace gcode {
+namespace {
+
+bool is_known(const core::AxisPosition& position) {
+    return position[0] && position[1] && position[2];
+}
+
+/// How far a chord may be from the arc that it stands for.
+constexpr double chord_error = 0.001;
+
+/// An arc's axis in the machine: 0 X, 1 Y, 2 Z, and whether it keeps its direction; empty when the
+/// offsets turn it out of these.
+struct ArcAxis {
+    int normal;
+    bool is_mirrored;
+};
+
+std::optional<ArcAxis> arc_axis(const Offsets& offsets, const PlaneAxes& axes) {
+    if (axes.first >= 3 || is_fixed_to_work(offsets)) return std::nullopt;
+    const auto normal = static_cast<int>(axes.normal);
+    if (!offsets.has_frame && (offsets.work.rotation_deg == 0.0 || normal == 2))
+        return ArcAxis{normal, false};
+    if (offsets.work.rotation_deg != 0.0 && normal != 2) return std::nullopt;
+    const core::Mat3& linear = offsets.frame.linear;
+    const int first = static_cast<int>(axes.first), second = static_cast<int>(axes.second);
+    for (const int axis : {first, second})
+        if (linear[axis][normal] != 0.0 || linear[normal][axis] != 0.0) return std::nullopt;
+    const double a = linear[first][first], b = linear[second][first];
+    const double c = linear[first][second], d = linear[second][second];
+    // A circle stays one where both directions keep their angle and are stretched alike.
+    if (std::abs(a * b + c * d) > 1e-12 || std::abs(a * a + c * c - b * b - d * d) > 1e-12)
+        return std::nullopt;
+    return ArcAxis{normal, a * d - b * c < 0.0};
+}
+
+/// The arc of a command in program coordinates.
+double angle_of(const ArcFeed& command, const Position& from) {
+    const PlaneAxes axes = axes_of(command.plane);
+    const double start[2] = {*from[axes.first], *from[axes.second]};
+    const double end[2] = {*command.end[axes.first], *command.end[axes.second]};
+    return arc_angle(start, end, command.centre, command.turns);
+}
+
+core::ArcPath arc_path(const ArcFeed& command, const Offsets& offsets, ArcAxis axis,
+                       const Position& from) {
+    const PlaneAxes axes = axes_of(command.plane);
+    Position centre = from;
+    centre[axes.first] = command.centre[0];
+    centre[axes.second] = command.centre[1];
+    const Position there = machine_from_program(offsets, centre);
+    core::ArcPath path{.normal = axis.normal};
+    path.centre[static_cast<int>(axes.first)] = *there[axes.first];
+    path.centre[static_cast<int>(axes.second)] = *there[axes.second];
+    path.angle = angle_of(command, from) * (axis.is_mirrored ? -1.0 : 1.0);
+    return path;
+}
+
+/// The ends of chords that follow an arc within `chord_error`, in program coordinates.
+std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
+    const PlaneAxes axes = axes_of(command.plane);
+    const double angle = angle_of(command, from);
+    const double u = *from[axes.first] - command.centre[0];
+    const double v = *from[axes.second] - command.centre[1];
+    const double radius = std::hypot(u, v);
+    const double end_radius = std::hypot(*command.end[axes.first] - command.centre[0],
+                                         *command.end[axes.second] - command.centre[1]);
+    const double step = std::sqrt(8.0 * chord_error / std::max({radius, end_radius, chord_error}));
+    const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
+    std::vector<Position> ends;
+    for (int i = 1; i < count; ++i) {
+        const double share = static_cast<double>(i) / count;
+        const double turn = angle * share;
+        const double reach = (radius + share * (end_radius - radius)) / radius;
+        Position place = command.end;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (from[axis] && place[axis])
+                *place[axis] = *from[axis] + share * (*command.end[axis] - *from[axis]);
+        place[axes.first] = command.centre[0] + reach * (u * std::cos(turn) - v * std::sin(turn));
+        place[axes.second] = command.centre[1] + reach * (u * std::sin(turn) + v * std::cos(turn));
+        ends.push_back(place);
+    }
+    ends.push_back(command.end);
+    return ends;
+}
+
+/// One overload per command that does something to the machine or to the offsets.
+struct Visitor {
+    Lowering& lowering;
+    std::vector<core::Event> events;
+
+    void note_axis(size_t axis) {
+        const core::Machine* machine = lowering.offsets.machine;
+        const bool is_there = machine ? machine->axes[axis].present : axis < 3;
+        if (!is_there && !lowering.other_axis) lowering.other_axis = axis;
+    }
+
+    void turn_the_short_way(Position& there) const {
+        if (!lowering.offsets.machine) return;
+        for (size_t axis = 3; axis < 6; ++axis) {
+            if (!lowering.offsets.machine->axes[axis].shortest_way) continue;
+            const auto& here = lowering.machine[axis];
+            if (here && there[axis])
+                there[axis] = *here + std::remainder(*there[axis] - *here, 360.0);
+        }
+    }
+
+    /// The way of the tip seen from the work, where both of its ends are known.
+    void follow_tip(core::Motion& motion) const {
+        const Offsets& offsets = lowering.offsets;
+        if (!offsets.machine) return;
+        AxisValues from{}, to{};
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            if (offsets.machine->axes[axis].present && (!motion.from[axis] || !motion.to[axis]))
+                return;
+            from[axis] = motion.from[axis].value_or(0.0);
+            to[axis] = motion.to[axis].value_or(0.0);
+        }
+        const double length = offsets.tool[2];
+        motion.tip = core::TipPath{core::tip_place(*offsets.machine, from, length),
+                                   core::tip_place(*offsets.machine, to, length), length};
+    }
+
+    core::Motion motion_to(const Position& end, core::MotionKind kind, double feed) {
+        core::Motion motion;
+        motion.kind = kind;
+        motion.from = lowering.machine;
+        Position there = machine_from_program(lowering.offsets, end);
+        // An axis that was not told to move is where it was, to the last bit.
+        const Position here = program_from_machine(lowering.offsets, lowering.machine);
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            const bool stays = here[axis] == end[axis] || is_fixed_to_work(lowering.offsets);
+            if (stays && here[axis] && there[axis]
+                && std::abs(*there[axis] - *lowering.machine[axis]) < 1e-9)
+                there[axis] = lowering.machine[axis];
+            if (there[axis] != lowering.machine[axis]) note_axis(axis);
+        }
+        turn_the_short_way(there);
+        lowering.moved_tilted |=
+            lowering.offsets.frame.tilts_tool && !is_fixed_to_work(lowering.offsets);
+        motion.to = there;
+        motion.feed = feed;
+        if (lowering.offsets.follows_tip) follow_tip(motion);
+        lowering.machine = there;
+        return motion;
+    }
+
+    void operator()(const StraightTraverse& command) {
+        events.emplace_back(motion_to(command.end, core::MotionKind::rapid, 0.0));
+    }
+    void operator()(const StraightFeed& command) {
+        events.emplace_back(motion_to(command.end, core::MotionKind::feed, command.feed));
+    }
+    void operator()(const ArcFeed& command) {
+        const Position from = program_from_machine(lowering.offsets, lowering.machine);
+        const PlaneAxes axes = axes_of(command.plane);
+        const bool known =
+            is_known(from) && is_known(command.end) && from[axes.first] && from[axes.second];
+        const auto axis = arc_axis(lowering.offsets, axes);
+        if (known && !axis) {
+            for (const Position& end : chords_of(command, from))
+                events.emplace_back(motion_to(end, core::MotionKind::feed, command.feed));
+            return;
+        }
+        core::Motion motion = motion_to(command.end, core::MotionKind::feed, command.feed);
+        if (known) {
+            motion.kind = core::MotionKind::arc;
+            motion.arc = arc_path(command, lowering.offsets, *axis, from);
+        }
+        events.emplace_back(motion);
+    }
+    void operator()(const StraightProbe& command) {
+        events.emplace_back(motion_to(command.end, core::MotionKind::feed, command.feed));
+    }
+    void operator()(const ThreadFeed& command) {
+        const Position from = program_from_machine(lowering.offsets, lowering.machine);
+        const double feed = command.pitch * lowering.spindle_speed;
+        events.emplace_back(motion_to(command.end, core::MotionKind::feed, feed));
+        if (command.back_again) events.emplace_back(motion_to(from, core::MotionKind::feed, feed));
+    }
+    void operator()(const Dwell& command) { events.emplace_back(core::Dwell{command.seconds}); }
+    void operator()(const ChangeTool& command) {
+        events.emplace_back(core::ToolChange{command.tool});
+    }
+    void operator()(const NameTool& command) {
+        events.emplace_back(core::ToolChange{command.tool});
+    }
+    void operator()(const Spindle& command) {
+        lowering.spindle_speed = command.speed;
+        events.emplace_back(core::SpindleChange{command.direction, command.speed});
+    }
+    void operator()(const UseToolLengthOffset& command) {
+        lowering.offsets.tool = command.offset;
+        lowering.offsets.follows_tip = command.follows_tip;
+        events.emplace_back(core::LengthOffsetChange{command.number, command.offset[2]});
+    }
+    void operator()(const SetOffset& command) { lowering.offsets = command.offsets; }
+    void operator()(const SelectTool&) {}
+    void operator()(const Coolant&) {}
+    void operator()(const SelectPlane&) {}
+    void operator()(const UseSpindleMode&) {}
+    void operator()(const SetPathMode& command) {
+        core::PathModeChange change;
+        if (command.mode == PathMode::exact_path) change.blending = core::Blending::exact_path;
+        if (command.mode == PathMode::exact_stop) change.blending = core::Blending::exact_stop;
+        if (command.tolerance > 0.0) change.tolerance = command.tolerance;
+        change.joining = command.naive_tolerance;
+        events.emplace_back(change);
+    }
+    void operator()(const EnableOverride&) {}
+    void operator()(const SetOutput&) {}
+    void operator()(const WaitForInput&) {}
+    void operator()(const Message&) {}
+    void operator()(const ProgramStop&) { events.emplace_back(core::Dwell{}); }
+    void operator()(const OptionalStop&) {}
+    void operator()(const ProgramEnd&) {}
+};
+
+} // namespace
+
+std::vector<core::Event> Lowering::lower(const CanonicalCommand& command) {
+    Visitor visitor{*this, {}};
+    std::visit(visitor, command);
+    return std::move(visitor.events);
+}
+
+Lowering initial_lowering(const InterpreterState& state) {
+    Lowering lowering;
+    lowering.offsets = state.modal.offsets;
+    lowering.machine = machine_from_program(state.modal.offsets, state.modal.position);
+    return lowering;
+}
+
+Lowering initial_lowering(const Environment& environment) {
+    return initial_lowering(initial_state(environment));
+}
+
+std::vector<core::Event> lower(const BlockResult& block, Lowering& lowering) {
+    std::vector<core::Event> events;
+    for (const CanonicalCommand& command : block.commands)
+        for (core::Event& event : lowering.lower(command)) events.push_back(event);
+    return events;
+}
+
+} // namespace gcode

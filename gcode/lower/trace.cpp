@@ -1,0 +1,178 @@
+#include "gcode/lower/trace.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/language/lexer.h"
+
+namespace gcode {
+namespace {
+
+/// To a millionth, without trailing zeros and without a negative zero.
+std::string number(double value) {
+    std::string text = fmt::format("{:.6f}", value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text == "-0" ? "0" : text;
+}
+
+std::string place(const Position& position) {
+    std::string text;
+    // Axes beyond X, Y and Z that stand at zero are mostly not there.
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (position[axis] && (axis < 3 || *position[axis] != 0.0))
+            text += fmt::format(" {}={}", lower(axis_letters[axis]), number(*position[axis]));
+        else if (!position[axis] && axis >= 3)
+            text += fmt::format(" {}=?", lower(axis_letters[axis]));
+    return text;
+}
+
+} // namespace
+
+std::string_view name_of(Plane plane) {
+    constexpr std::string_view names[] = {"XY", "ZX", "YZ", "UV", "WU", "VW"};
+    return names[static_cast<size_t>(plane)];
+}
+
+std::string name_of_offset(size_t index) {
+    if (index == no_work_offset) return "G500";
+    if (index < 6) return fmt::format("G{}", 54 + index);
+    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
+    return fmt::format("P{}", index - plain_offset_count + 1);
+}
+
+namespace {
+
+std::string_view name_of(core::SpindleDirection direction) {
+    if (direction == core::SpindleDirection::stopped) return "stopped";
+    return direction == core::SpindleDirection::clockwise ? "clockwise" : "counterclockwise";
+}
+
+std::string frame(const ProgramFrame& frame) {
+    std::string text = " frame=";
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) text += number(frame.linear[column][row]) + ",";
+    return text + number(frame.shift.x) + "," + number(frame.shift.y) + "," + number(frame.shift.z);
+}
+
+/// What stands behind the name of a command.
+struct Details {
+    std::string operator()(const StraightTraverse& command) const { return place(command.end); }
+    std::string operator()(const StraightFeed& command) const {
+        return place(command.end) + " feed=" + number(command.feed);
+    }
+    std::string operator()(const ArcFeed& command) const {
+        return fmt::format("{} plane={} centre={},{} turns={} feed={}", place(command.end),
+                           name_of(command.plane), number(command.centre[0]),
+                           number(command.centre[1]), command.turns, number(command.feed));
+    }
+    std::string operator()(const Dwell& command) const {
+        return " seconds=" + number(command.seconds);
+    }
+    std::string operator()(const SelectTool& command) const {
+        return fmt::format(" tool={}", value_of(command.tool));
+    }
+    std::string operator()(const ChangeTool& command) const {
+        return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
+    }
+    std::string operator()(const NameTool& command) const {
+        return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
+    }
+    std::string operator()(const Spindle& command) const {
+        return fmt::format(" direction={} speed={}", name_of(command.direction),
+                           number(command.speed));
+    }
+    std::string operator()(const Coolant& command) const {
+        return fmt::format(" mist={} flood={}", int(command.mist), int(command.flood));
+    }
+    std::string operator()(const SelectPlane& command) const {
+        return fmt::format(" plane={}", name_of(command.plane));
+    }
+    std::string operator()(const SetOffset& command) const {
+        const Offsets& offsets = command.offsets;
+        Position sum;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (offsets.axis[axis])
+                sum[axis] = offsets.work.origin[axis] + offsets.local[axis] + *offsets.axis[axis];
+        const std::string turn = offsets.work.rotation_deg == 0.0
+                                     ? std::string()
+                                     : " rotation=" + number(offsets.work.rotation_deg);
+        return " offset=" + name_of_offset(offsets.active) + place(sum) + turn
+               + (offsets.has_frame ? frame(offsets.frame) : std::string());
+    }
+    std::string operator()(const UseToolLengthOffset& command) const {
+        const std::string name =
+            command.number ? fmt::format(" number={}", value_of(*command.number)) : "";
+        std::string others;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (axis != 2 && command.offset[axis] != 0.0)
+                others +=
+                    fmt::format(" {}={}", lower(axis_letters[axis]), number(command.offset[axis]));
+        if (command.follows_tip) others += " follows_tip";
+        return name + " length=" + number(command.offset[2]) + others;
+    }
+    std::string operator()(const UseSpindleMode& command) const {
+        return fmt::format(" surface_speed={} speed={} fastest_speed={}",
+                           int(command.surface_speed), number(command.speed),
+                           number(command.fastest_speed));
+    }
+    std::string operator()(const SetPathMode& command) const {
+        constexpr std::string_view names[] = {"exact_path", "exact_stop", "continuous"};
+        return fmt::format(" mode={} tolerance={} naive_tolerance={}",
+                           names[static_cast<size_t>(command.mode)], number(command.tolerance),
+                           number(command.naive_tolerance));
+    }
+    std::string operator()(const EnableOverride& command) const {
+        constexpr std::string_view names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};
+        return fmt::format(" kind={} enabled={}", names[static_cast<size_t>(command.kind)],
+                           int(command.enabled));
+    }
+    std::string operator()(const SetOutput& command) const {
+        return fmt::format(" number={} value={} analog={} with_motion={}", command.number,
+                           number(command.value), int(command.is_analog), int(command.with_motion));
+    }
+    std::string operator()(const WaitForInput& command) const {
+        return fmt::format(" number={} analog={} seconds={}", command.number,
+                           int(command.is_analog), number(command.seconds));
+    }
+    std::string operator()(const Message& command) const { return " text=" + command.text; }
+    std::string operator()(const StraightProbe& command) const {
+        return fmt::format("{} feed={} towards={} must_succeed={}", place(command.end),
+                           number(command.feed), int(command.towards), int(command.must_succeed));
+    }
+    std::string operator()(const ThreadFeed& command) const {
+        return fmt::format("{} pitch={} back_again={}", place(command.end), number(command.pitch),
+                           int(command.back_again));
+    }
+    std::string operator()(const ProgramStop&) const { return {}; }
+    std::string operator()(const OptionalStop&) const { return {}; }
+    std::string operator()(const ProgramEnd&) const { return {}; }
+};
+
+std::string to_text(const Warning& warning) {
+    return fmt::format("{}:{}: {}: {}\n", warning.where.line, warning.where.column,
+                       warning.severity == Severity::note ? "note" : "warning", warning.message);
+}
+
+} // namespace
+
+std::string to_text(const CanonicalCommand& command) {
+    return std::string(command_name(command)) + std::visit(Details{}, command);
+}
+
+std::string to_text(const Run& run) {
+    std::string text;
+    for (const BlockResult& block : run.blocks) {
+        for (const CanonicalCommand& command : block.commands)
+            text += fmt::format("{}: {}\n", block.line, to_text(command));
+        for (const Warning& warning : block.warnings) text += to_text(warning);
+    }
+    if (run.ending) text += to_text(*run.ending);
+    if (run.error)
+        text += fmt::format("{}:{}: error: {}\n", run.error->where.line, run.error->where.column,
+                            run.error->message);
+    return text;
+}
+
+} // namespace gcode

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "gcode/exec/interpreter.h"
+
+namespace gcode {
+
+/// A command on one line without a line end, as `straight_feed x=10 y=0 z=-1 feed=200`. Numbers to
+/// a millionth; coordinates that nobody knows are left out.
+std::string to_text(const CanonicalCommand& command);
+
+/// G54 to G59.3, P1 and on, or G500 without an offset.
+std::string name_of_offset(size_t index);
+
+/// XY, ZX, YZ, UV, WU or VW.
+std::string_view name_of(Plane plane);
+
+/// The commands of a program, one a line behind the line they come from, then the warnings of each
+/// block, and the error that stopped it: what golden files hold.
+std::string to_text(const Run& run);
+
+} // namespace gcode

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/siemens/siemens.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using enum SiemensAction;
+
+bool is_frame(SiemensAction action) { return action >= shift && action <= add_mirror; }
+
+bool is_additive(SiemensAction action) {
+    return action == add_shift || action == add_turn || action == add_scale || action == add_mirror;
+}
+
+core::Mat3 rotation_of_words(const Execution& execution) {
+    if (const Word* word = execution.statement.word('Q'))
+        return turned_about(static_cast<int>(axes_of(execution.modal().plane).normal), word->value);
+    // RPY, as delivered: about Z, then the new Y, then the new X.
+    core::Mat3 turn(1.0);
+    for (int axis = 2; axis >= 0; --axis)
+        if (const Word* word = execution.statement.word(axis_letters[static_cast<size_t>(axis)]))
+            turn = turn * turned_about(axis, word->value);
+    return turn;
+}
+
+/// What one statement does to coordinates; of TRANS along the axes beyond Z as well.
+core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction action,
+                                   AxisValues& others) {
+    ProgramFrame step;
+    if (action == turn || action == add_turn) {
+        step.linear = rotation_of_words(execution);
+        return step;
+    }
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word) continue;
+        const auto index = static_cast<int>(axis);
+        const bool shifts = action == shift || action == add_shift;
+        if (shifts && axis >= 3) {
+            others[axis] += axis_value(execution, axis, *word);
+        } else if (axis >= 3) {
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("{}: only X, Y and Z can be scaled or mirrored here", written(*word)),
+                word->span);
+        } else if (shifts) {
+            step.shift[index] = axis_value(execution, axis, *word);
+        } else if (action == SiemensAction::mirror || action == add_mirror) {
+            step.linear[index][index] = -1.0;
+        } else if (word->value == 0.0) {
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: a scale is not 0", written(*word)), word->span);
+        } else {
+            step.linear[index][index] = word->value;
+        }
+    }
+    return step;
+}
+
+/// Puts the frame into effect. A shift alone is the local offset, which asks for no frame.
+void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues& others) {
+    execution.state.siemens.write().frame = frame;
+    Offsets offsets = execution.modal().offsets;
+    offsets.local = others;
+    const bool shifts_alone = frame.linear == core::Mat3(1.0);
+    offsets.has_frame = !shifts_alone;
+    offsets.frame = shifts_alone ? ProgramFrame{} : frame;
+    if (shifts_alone)
+        for (int axis = 0; axis < 3; ++axis)
+            offsets.local[static_cast<size_t>(axis)] = frame.shift[axis];
+    if (offsets == execution.modal().offsets) return;
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+}
+
+} // namespace
+
+core::Result<void> change_siemens_frame(Execution& execution) {
+    for (const SiemensKeywordUse& use : execution.block.siemens.keywords) {
+        const SiemensAction action = use.keyword->action;
+        if (!is_frame(action)) continue;
+        if (execution.modal().compensation != Side::none)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{} between G41 or G42 and G40 is not supported yet: "
+                                          "switch cutter radius compensation off before",
+                                          use.keyword->name),
+                              use.span);
+        if (execution.statement.of(ModalGroup::motion))
+            return core::fail(ErrorCode::syntax,
+                              fmt::format("{} needs a block of its own: its axis words are no "
+                                          "places",
+                                          use.keyword->name),
+                              use.span);
+        execution.column = use.span.column;
+        const bool adds = is_additive(action);
+        AxisValues others = adds ? execution.modal().offsets.local : AxisValues{};
+        others[0] = others[1] = others[2] = 0.0;
+        FEELER_TRY(const ProgramFrame step, step_of(execution, action, others));
+        ProgramFrame frame = adds ? execution.state.siemens->frame : ProgramFrame{};
+        frame.shift += frame.linear * step.shift;
+        frame.linear = frame.linear * step.linear;
+        const core::Vec3& tool_axis = frame.linear[2];
+        frame.tilts_tool = std::abs(tool_axis.x) > 1e-12 || std::abs(tool_axis.y) > 1e-12;
+        use_frame(execution, frame, others);
+    }
+    return {};
+}
+
+} // namespace gcode

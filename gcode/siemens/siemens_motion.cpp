@@ -1,0 +1,397 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/base/units.h"
+#include "gcode/exec/arcs.h"
+#include "gcode/language/error_rules.h"
+#include "gcode/siemens/siemens.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+using Point = std::array<double, 2>;
+
+// Motions that keywords begin and that stay on, as G codes do.
+constexpr MotionCode by_point = 9010;   // CIP
+constexpr MotionCode by_tangent = 9020; // CT
+
+tl::unexpected<core::Error> refuse(const Execution& execution, std::string_view why,
+                                   ErrorCode code = ErrorCode::invalid_value) {
+    const Word& mover = moving_word(execution);
+    const std::string_view word =
+        execution.block.text.substr(mover.span.column - 1, mover.span.length);
+    return core::fail(code, fmt::format("{}: {}", word, why), mover.span);
+}
+
+core::Result<Point> plane_point(const Execution& execution, const Position& place) {
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    for (const size_t axis : {axes.first, axes.second})
+        if (!place[axis])
+            return refuse(execution,
+                          fmt::format("where the tool is along {} is not known: move there first, "
+                                      "or say where the machine starts",
+                                      axis_letters[axis]),
+                          ErrorCode::missing_value);
+    return Point{*place[axes.first], *place[axes.second]};
+}
+
+/// Emits an arc of the plane and goes there.
+core::Result<void> go_along_arc(Execution& execution, const Position& end, const Point& centre,
+                                int turns) {
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    FEELER_TRY(const Point from, plane_point(execution, modal.position));
+    FEELER_TRY(const Point to, plane_point(execution, end));
+    const double start_point[2] = {from[0], from[1]}, end_point[2] = {to[0], to[1]};
+    const double centre_point[2] = {centre[0], centre[1]};
+    const double radius = std::hypot(from[0] - centre[0], from[1] - centre[1]);
+    const double difference = std::abs(radius - std::hypot(to[0] - centre[0], to[1] - centre[1]));
+    const ArcTolerance& allowed = execution.dialect.arc;
+    if (radius < 1e-9 || difference > std::max(allowed.absolute_mm, allowed.relative * radius))
+        return refuse(execution,
+                      fmt::format("the arc's radius is {:.4f} mm at its start and {:.4f} mm off "
+                                  "that at its end",
+                                  radius, difference),
+                      wrong_arc);
+    const double angle = arc_angle(start_point, end_point, centre_point, turns);
+    std::optional<double> path;
+    const auto &rise_from = modal.position[axes.normal], &rise_to = end[axes.normal];
+    if (rise_from && rise_to) path = std::hypot(radius * angle, *rise_to - *rise_from);
+    FEELER_TRY(const double feed, feed_rate(execution, path));
+    modal.position = end;
+    modal.leaves_contour = false;
+    execution.emit(ArcFeed{.end = end,
+                           .plane = modal.plane,
+                           .centre = {centre[0], centre[1]},
+                           .turns = turns,
+                           .feed = feed});
+    return {};
+}
+
+core::Result<void> go_straight(Execution& execution, const Position& end) {
+    if (execution.modal().motion == tenths(0)) {
+        execution.traverse(end);
+        return {};
+    }
+    FEELER_TRY(const double rate,
+               feed_rate(execution, way_between(execution.modal().position, end)));
+    execution.feed(end, rate);
+    return {};
+}
+
+/// The place of RP and AP about the pole; what is not said is as it was said last.
+core::Result<Position> polar_target(Execution& execution) {
+    const Statement& statement = execution.statement;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    if (statement.word(axis_letters[axes.first]) || statement.word(axis_letters[axes.second]))
+        return refuse(execution,
+                      "a place is given with RP= and AP= or with the axes of the plane, "
+                      "not with both",
+                      ErrorCode::syntax);
+    SiemensState& siemens = execution.state.siemens.write();
+    const bool incremental = execution.modal().distance == DistanceMode::incremental;
+    const auto take = [&](const Word* word, std::optional<double>& value, double scale) {
+        if (!word) return;
+        const bool adds = word->addressing == Addressing::incremental
+                          || (word->addressing == Addressing::modal && incremental);
+        value = word->value * scale + (adds ? value.value_or(0.0) : 0.0);
+    };
+    const bool known = siemens.radius && siemens.angle_deg;
+    if (!known && execution.modal().position[axes.first]
+        && execution.modal().position[axes.second]) {
+        const double along = *execution.modal().position[axes.first] - siemens.pole[0];
+        const double across = *execution.modal().position[axes.second] - siemens.pole[1];
+        if (!siemens.radius) siemens.radius = std::hypot(along, across);
+        if (!siemens.angle_deg)
+            siemens.angle_deg = std::atan2(across, along) * core::degrees_per_radian;
+    }
+    take(statement.polar_radius, siemens.radius, to_mm(1.0, execution.modal().unit));
+    take(statement.polar_angle, siemens.angle_deg, 1.0);
+    if (!siemens.radius || !siemens.angle_deg)
+        return refuse(execution, "RP= or AP= is missing, and no place is known to take it from",
+                      ErrorCode::missing_value);
+    if (*siemens.radius < 0.0) return refuse(execution, "RP= is a distance and not negative");
+    Statement without = statement;
+    without.polar_radius = without.polar_angle = nullptr;
+    const Execution shared{
+        execution.library, execution.environment, execution.dialect, execution.block,
+        without,           execution.state,       execution.result,  execution.column};
+    FEELER_TRY(Position target, target_of(shared));
+    target[axes.first] =
+        siemens.pole[0] + *siemens.radius * std::cos(*siemens.angle_deg / core::degrees_per_radian);
+    target[axes.second] =
+        siemens.pole[1] + *siemens.radius * std::sin(*siemens.angle_deg / core::degrees_per_radian);
+    return target;
+}
+
+core::Result<void> move_polar(Execution& execution) {
+    FEELER_TRY(const Position end, polar_target(execution));
+    const auto motion = execution.modal().motion;
+    if (motion == tenths(0) || motion == tenths(1)) return go_straight(execution, end);
+    if (motion != tenths(2) && motion != tenths(3))
+        return refuse(execution, "RP= and AP= go with G0 to G3", ErrorCode::syntax);
+    const Word* word = execution.statement.word('P');
+    const int turns = word ? static_cast<int>(std::clamp(word->value, 1.0, 1000.0)) : 1;
+    return go_along_arc(execution, end, execution.state.siemens->pole,
+                        motion == tenths(2) ? -turns : turns);
+}
+
+const Word* between_word(const Execution& execution, size_t axis) {
+    for (const Word& word : execution.block.words)
+        if (word.letter == "ijk"[axis]) return &word;
+    return nullptr;
+}
+
+/// CIP: the circle through where the tool is, the point of I1, J1, K1 and the end.
+core::Result<void> move_by_point(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    FEELER_TRY(const Position end, target_of(execution));
+    Position between = modal.position;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const Word* word = between_word(execution, axis);
+        if (!word) continue;
+        if (axis == axes.normal)
+            return refuse(execution,
+                          "arcs out of the plane are not supported yet: leave the third "
+                          "of I1=, J1= and K1= out",
+                          ErrorCode::unsupported);
+        const double value = to_mm(word->value, modal.unit);
+        const bool absolute = word->addressing == Addressing::modal
+                                  ? modal.distance == DistanceMode::absolute
+                                  : word->addressing == Addressing::absolute;
+        between[axis] = value + (absolute ? 0.0 : between[axis].value_or(0.0));
+    }
+    FEELER_TRY(const Point a, plane_point(execution, modal.position));
+    FEELER_TRY(const Point b, plane_point(execution, between));
+    FEELER_TRY(const Point c, plane_point(execution, end));
+    const double bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
+    const double cross = bx * cy - by * cx;
+    if (std::abs(cross) < 1e-9)
+        return refuse(execution, "CIP needs three points that are not on one line: its point "
+                                 "between is given with I1=, J1= and K1=");
+    const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+    const Point centre = {a[0] + (cy * b2 - by * c2) / (2.0 * cross),
+                          a[1] + (bx * c2 - cx * b2) / (2.0 * cross)};
+    return go_along_arc(execution, end, centre, cross > 0.0 ? 1 : -1);
+}
+
+/// CT: the arc that goes on in the direction of the motion before it.
+core::Result<void> move_tangentially(Execution& execution) {
+    FEELER_TRY(const Position end, target_of(execution));
+    const Point& direction = execution.modal().direction;
+    if (direction == Point{})
+        return refuse(execution, "no motion in the plane came before CT whose direction it could "
+                                 "go on in");
+    FEELER_TRY(const Point from, plane_point(execution, execution.modal().position));
+    FEELER_TRY(const Point to, plane_point(execution, end));
+    const double way[2] = {to[0] - from[0], to[1] - from[1]};
+    const double left[2] = {-direction[1], direction[0]};
+    const double aside = way[0] * left[0] + way[1] * left[1];
+    const double ahead = way[0] * direction[0] + way[1] * direction[1];
+    const double squared = way[0] * way[0] + way[1] * way[1];
+    if (std::abs(aside) <= 1e-9 * std::sqrt(squared)) {
+        if (ahead <= 0.0)
+            return refuse(execution, "no arc goes on in that direction and ends there");
+        FEELER_TRY(const double rate, feed_rate(execution, std::sqrt(squared)));
+        execution.feed(end, rate);
+        return {};
+    }
+    const double radius = squared / (2.0 * aside);
+    const Point centre = {from[0] + radius * left[0], from[1] + radius * left[1]};
+    return go_along_arc(execution, end, centre, radius > 0.0 ? 1 : -1);
+}
+
+/// AR=: the angle that the arc opens, with its end or with its centre.
+core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
+    const ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const Statement& statement = execution.statement;
+    const double angle = opening.value / core::degrees_per_radian;
+    if (!(opening.value > 0.0 && opening.value < 360.0))
+        return refuse(execution, "AR= is an angle between 0 and 360 degrees");
+    const double sign = modal.motion == tenths(2) ? -1.0 : 1.0;
+    FEELER_TRY(Position end, target_of(execution));
+    FEELER_TRY(const Point from, plane_point(execution, modal.position));
+    const Word* words[] = {statement.word("IJK"[axes.first]), statement.word("IJK"[axes.second])};
+    if (words[0] || words[1]) {
+        Point centre = from;
+        for (size_t i = 0; i < 2; ++i)
+            if (words[i])
+                centre[i] = length_of(execution, *words[i])
+                            + (words[i]->addressing == Addressing::absolute ? 0.0 : from[i]);
+        const double along = from[0] - centre[0], across = from[1] - centre[1];
+        const double turn = sign * angle;
+        end[axes.first] = centre[0] + along * std::cos(turn) - across * std::sin(turn);
+        end[axes.second] = centre[1] + along * std::sin(turn) + across * std::cos(turn);
+        return go_along_arc(execution, end, centre, static_cast<int>(sign));
+    }
+    FEELER_TRY(const Point to, plane_point(execution, end));
+    const double chord[2] = {to[0] - from[0], to[1] - from[1]};
+    if (std::hypot(chord[0], chord[1]) < 1e-9)
+        return refuse(execution, "an arc with AR= needs an end that is not its start, or a centre");
+    const double height = sign / (2.0 * std::tan(angle / 2.0));
+    const Point centre = {0.5 * (from[0] + to[0]) - height * chord[1],
+                          0.5 * (from[1] + to[1]) + height * chord[0]};
+    return go_along_arc(execution, end, centre, static_cast<int>(sign));
+}
+
+/// G331 and G332: with the spindle into the hole and back, the pitch along the tool.
+core::Result<void> read_tapping(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    const Word* pitch = execution.statement.word("IJK"[axes.normal]);
+    if (!pitch)
+        return refuse(execution, fmt::format("the pitch {} is missing", "IJK"[axes.normal]),
+                      ErrorCode::missing_value);
+    FEELER_TRY(const Position end, target_of(execution));
+    const double rate = std::abs(length_of(execution, *pitch)) * modal.speed;
+    if (!(rate > 0.0))
+        return refuse(execution, "the spindle has no speed S", ErrorCode::missing_value);
+    execution.feed(end, rate);
+    return {};
+}
+
+/// G33: the pitch is said for the axis that moves farther.
+core::Result<void> cut_thread(Execution& execution) {
+    const Statement& statement = execution.statement;
+    const Word* pitch = nullptr;
+    for (const char letter : {'I', 'J', 'K'})
+        if (const Word* word = statement.word(letter)) pitch = word;
+    if (!pitch)
+        return refuse(execution, "the pitch I, J or K is missing", ErrorCode::missing_value);
+    FEELER_TRY(const Position end, target_of(execution));
+    execution.emit(ThreadFeed{end, length_of(execution, *pitch), false});
+    execution.modal().position = end;
+    return {};
+}
+
+/// Remembers the direction in which the block's last motion ends.
+void remember_direction(Execution& execution, const Position& start) {
+    if (execution.result.commands.empty()) return;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    const Position& end = execution.modal().position;
+    const auto known = [&](const Position& place) {
+        return place[axes.first] && place[axes.second];
+    };
+    Point& direction = execution.modal().direction;
+    if (!known(start) || !known(end)) {
+        direction = {};
+    } else {
+        Point way = {*end[axes.first] - *start[axes.first],
+                     *end[axes.second] - *start[axes.second]};
+        if (const auto* arc = std::get_if<ArcFeed>(&execution.result.commands.back())) {
+            const double turn = arc->turns > 0 ? 1.0 : -1.0;
+            way = {-turn * (*end[axes.second] - arc->centre[1]),
+                   turn * (*end[axes.first] - arc->centre[0])};
+        }
+        const double length = std::hypot(way[0], way[1]);
+        if (length > 1e-9) direction = {way[0] / length, way[1] / length};
+    }
+}
+
+core::Result<void> check_scaled_arc(const Execution& execution) {
+    const ProgramFrame& frame = execution.state.siemens->frame;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    if (!execution.modal().offsets.has_frame || axes.first > 2) return {};
+    const double first = glm::length(frame.linear[static_cast<int>(axes.first)]);
+    const double second = glm::length(frame.linear[static_cast<int>(axes.second)]);
+    if (std::abs(first - second) < 1e-12) return {};
+    return refuse(execution,
+                  "SCALE stretches the axes of the plane unequally, which is no arc any "
+                  "more: scale both alike",
+                  ErrorCode::unsupported);
+}
+
+core::Result<void> move_by_mode(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    const Statement& statement = execution.statement;
+    const MotionCode motion = modal.motion.value_or(tenths(1));
+    const bool arc =
+        motion == tenths(2) || motion == tenths(3) || motion == by_point || motion == by_tangent;
+    if (arc)
+        if (auto checked = check_scaled_arc(execution); !checked) return checked;
+    if (statement.polar_radius || statement.polar_angle) return move_polar(execution);
+    if (motion == by_point) return move_by_point(execution);
+    if (motion == by_tangent) return move_tangentially(execution);
+    if (motion == tenths(331) || motion == tenths(332)) return read_tapping(execution);
+    if (motion == tenths(33)) return cut_thread(execution);
+    if (motion == tenths(63)) {
+        FEELER_TRY(const Position end, target_of(execution));
+        return go_straight(execution, end);
+    }
+    if (const Word* opening = statement.word('E'); opening && arc)
+        return move_by_angle(execution, *opening);
+    return move(execution);
+}
+
+bool has_frame_words(const Execution& execution) {
+    for (const SiemensKeywordUse& use : execution.block.siemens.keywords)
+        if (use.keyword->action >= SiemensAction::shift
+            && use.keyword->action <= SiemensAction::add_mirror)
+            return true;
+    return false;
+}
+
+} // namespace
+
+core::Result<void> move_in_siemens(Execution& execution) {
+    const Statement& statement = execution.statement;
+    ModalState& modal = execution.modal();
+    const CodeWord* code = statement.of(ModalGroup::motion);
+    if (code) modal.motion = code->code->tenths;
+    if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
+    if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
+    if (has_frame_words(execution) || statement.taker_of_axis_words()) return {};
+    const bool circles = modal.motion == tenths(2) || modal.motion == tenths(3);
+    const bool moves =
+        statement.has_axis_word()
+        || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
+    if (!moves) return {};
+    if (!modal.motion) modal.motion = tenths(1); // as delivered: G1 is on at the start
+    const Position start = modal.position;
+    if (auto moved = move_by_mode(execution); !moved) return moved;
+    remember_direction(execution, start);
+    // G63 is of its block alone.
+    if (modal.motion == tenths(63)) modal.motion = tenths(1);
+    return {};
+}
+
+core::Result<void> set_pole(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    ModalState& modal = execution.modal();
+    const PlaneAxes axes = axes_of(modal.plane);
+    SiemensState& siemens = execution.state.siemens.write();
+    const int code = entry.code->tenths / 10;
+    std::array<double, 2> pole{};
+    const size_t plane_axes[] = {axes.first, axes.second};
+    for (size_t i = 0; i < 2; ++i) {
+        // G110 counts from where the tool is, G111 from the program's zero, G112 from the last
+        // pole.
+        if (code == 110 && !modal.position[plane_axes[i]])
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("G110: where the tool is along {} is not known: use G111",
+                                          axis_letters[plane_axes[i]]),
+                              entry.word->span);
+        pole[i] = code == 110   ? *modal.position[plane_axes[i]]
+                  : code == 112 ? siemens.pole[i]
+                                : 0.0;
+        if (const Word* word = execution.statement.word(axis_letters[plane_axes[i]]))
+            pole[i] += length_of(execution, *word);
+    }
+    if (execution.statement.polar_radius && execution.statement.polar_angle) {
+        const double radius = length_of(execution, *execution.statement.polar_radius);
+        const double angle = execution.statement.polar_angle->value / core::degrees_per_radian;
+        pole[0] += radius * std::cos(angle);
+        pole[1] += radius * std::sin(angle);
+    }
+    siemens.pole = pole;
+    siemens.radius.reset();
+    siemens.angle_deg.reset();
+    return {};
+}
+
+} // namespace gcode

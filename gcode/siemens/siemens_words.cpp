@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "gcode/lower/trace.h"
+#include "gcode/siemens/siemens.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+constexpr std::string_view siemens_length_letters = "XYZIJKF";
+
+/// Whether a word other than those of axes, modes and tools has a use in its block.
+bool is_used(const Execution& execution, const Word& word) {
+    const auto* motion = execution.statement.of(ModalGroup::motion);
+    const int code = motion ? motion->code->tenths : execution.modal().motion.value_or(tenths(1));
+    const bool by_point = use_of(execution, SiemensAction::arc_by_point) || code > tenths(900);
+    const bool straight = code == tenths(0) || code == tenths(1);
+    switch (word.letter) {
+    case 'Q':
+        return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn);
+    case 'i':
+    case 'j':
+    case 'k':
+        return by_point;
+    case 'I':
+    case 'J':
+    case 'K':
+    case 'R':
+    case 'P':
+    case 'E':
+        return !straight || by_point;
+    default:
+        return word.letter != 'H'; // which goes to the machine's logic
+    }
+}
+
+void warn_of_unused(Execution& execution) {
+    for (const Word& word : execution.block.words) {
+        if (is_used(execution, word)) continue;
+        const std::string_view written =
+            execution.block.text.substr(word.span.column - 1, word.span.length);
+        execution.warn(word.span, fmt::format("{}: nothing in this block uses it", written));
+    }
+}
+
+void note_assumed_siemens_units(Execution& execution) {
+    ModalState& modal = execution.modal();
+    if (modal.unit_said || execution.state.said_unit) return;
+    for (const Word& word : execution.block.words) {
+        if (siemens_length_letters.find(word.letter) == std::string_view::npos) continue;
+        execution.state.said_unit = true;
+        execution.warn(word.span,
+                       fmt::format("units not said (G70, G71, G700 or G710) before {}, taken as "
+                                   "millimetres",
+                                   written(word)),
+                       Severity::note);
+        return;
+    }
+}
+
+/// G70 and G71 are of lengths alone; G700 and G710 of feeds as well, which are in mm otherwise.
+core::Result<void> set_siemens_feed(Execution& execution) {
+    const CodeWord* units = execution.statement.of(ModalGroup::units);
+    ModalState& modal = execution.modal();
+    if (units) {
+        const int code = units->code->tenths;
+        const bool inch = code == tenths(70) || code == tenths(700);
+        modal.unit = inch ? LengthUnit::inch : LengthUnit::mm;
+        modal.unit_said = true;
+        if (code == tenths(700) || code == tenths(710))
+            execution.state.siemens.write().feeds_in_inches = code == tenths(700);
+    }
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const Word* word = execution.statement.word('F');
+    if (!word || (action && action->code->tenths == tenths(4))) return {};
+    if (word->value < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a feed rate is not negative", written(*word)),
+                          word->span);
+    const LengthUnit unit =
+        execution.state.siemens->feeds_in_inches ? LengthUnit::inch : LengthUnit::mm;
+    modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
+    return {};
+}
+
+/// The feed mode that a code of the spindle's surface speed brings along: G96 G95, G961 G94.
+void set_mode_of_surface_speed(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
+    if (!entry) return;
+    const int code = entry->code->tenths;
+    ModalState& modal = execution.modal();
+    const FeedMode before = modal.feed_mode;
+    if (code == tenths(96) || code == tenths(97)) modal.feed_mode = FeedMode::per_turn;
+    if (code == tenths(961) || code == tenths(971)) modal.feed_mode = FeedMode::per_minute;
+    if (modal.feed_mode != before) modal.feed.reset();
+    modal.surface_speed = code == tenths(96) || code == tenths(961) || code == tenths(962);
+    execution.column = entry->word->span.column;
+    execution.emit(UseSpindleMode{modal.surface_speed, modal.speed, 0.0});
+}
+
+core::Result<void> set_siemens_speed(Execution& execution) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const bool others = action
+                        && (action->code->tenths == tenths(4) || action->code->tenths == tenths(25)
+                            || action->code->tenths == tenths(26));
+    return others ? core::Result<void>{} : set_speed(execution);
+}
+
+/// CYCLE800: what leaves the plane as it is, is read; a plane that is tilted is not.
+core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
+    FEELER_TRY(const auto values, cycle_values(execution, use));
+    // FR, TC, ST, MODE, X0 Y0 Z0, A B C, X1 Y1 Z1, DIR, FR_I, DMODE; the name of TC is no value.
+    for (size_t i = 4; i < std::min<size_t>(values.size(), 13); ++i)
+        if (values[i].value_or(0.0) != 0.0)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("CYCLE800: its value {} is {:.12g}: planes that are "
+                                          "shifted or tilted by it are not supported yet: use "
+                                          "TRANS and ROT",
+                                          i + 1, *values[i]),
+                              use.span);
+    if (!values.empty() && values[0].value_or(0.0) != 0.0)
+        execution.warn(use.span, "CYCLE800: where the tool is retracted to before the swivel is "
+                                 "not known here; that move is not looked at");
+    return {};
+}
+
+} // namespace
+
+core::Result<void> use_siemens_words(Execution& execution) {
+    for (const Word* word : execution.statement.unknown_m_codes)
+        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
+                                               "builder; it is passed over",
+                                               written(*word)));
+    warn_of_unused(execution);
+    if (auto done = set_feed_mode(execution); !done) return done;
+    set_mode_of_surface_speed(execution);
+    if (auto done = set_siemens_feed(execution); !done) return done;
+    note_assumed_siemens_units(execution);
+    return set_siemens_speed(execution);
+}
+
+core::Result<void> select_siemens_offset(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
+    if (!entry) return {};
+    const int code = static_cast<int>(std::lround(entry->word->value));
+    Offsets offsets = execution.modal().offsets;
+    // G505 is the fifth of the settable offsets; G54 to G57 are the first four.
+    offsets.active = code == 500  ? no_work_offset
+                     : code <= 57 ? static_cast<size_t>(code - 54)
+                                  : static_cast<size_t>(code - 505 + 4);
+    offsets.work = offsets.active == no_work_offset
+                       ? WorkOffset{}
+                       : work_offset(*execution.state.tables, offsets.active);
+    execution.column = entry->word->span.column;
+    if (code >= 505)
+        execution.warn(
+            entry->word->span,
+            code - 505 + 4 < static_cast<int>(plain_offset_count)
+                ? fmt::format("G{} is the offset that the set-up calls {}", code,
+                              name_of_offset(offsets.active))
+                : fmt::format("G{}: nothing is known about this offset, taken as zero", code),
+            code - 505 + 4 < static_cast<int>(plain_offset_count) ? Severity::note
+                                                                  : Severity::warning);
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+    return {};
+}
+
+core::Result<void> go_to_fixed_place(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    ModalState& modal = execution.modal();
+    const bool reference = entry.code->tenths == tenths(74);
+    const Position& place = reference ? modal.home : modal.second_home;
+    if (!execution.statement.has_axis_word())
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} names no axis: it needs words such as X1=0 Y1=0 Z1=0",
+                                      written(*entry.word)),
+                          entry.word->span);
+    if (!(place[0] && place[1] && place[2]) && !execution.state.said_home) {
+        execution.state.said_home = true;
+        execution.warn(entry.word->span,
+                       fmt::format("{}: where the {} is was not said, taken as machine zero",
+                                   written(*entry.word),
+                                   reference ? "reference point" : "fixed point"));
+    }
+    Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (execution.statement.word(axis_letters[axis])) machine[axis] = place[axis].value_or(0.0);
+    const Position end = program_from_machine(modal.offsets, machine);
+    Position target = modal.position;
+    const bool turned = mixes_axes(modal.offsets);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
+            target[axis] = end[axis];
+    execution.column = entry.word->span.column;
+    execution.traverse(target);
+    return {};
+}
+
+core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordUse& use) {
+    if (use.keyword->action == SiemensAction::swivel) return swivel(execution, use);
+    return run_hole_cycle(execution, use);
+}
+
+} // namespace gcode

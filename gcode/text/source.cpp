@@ -1,0 +1,361 @@
+#include "gcode/text/source.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/base/file_reads.h"
+#include "gcode/text/program_text.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// Enough for a loop across the border of two stretches that calls subprograms elsewhere.
+constexpr size_t window_count = 4;
+
+/// How much of a text are whole lines: up to behind its last line end. A CR at the very end may be
+/// half of one.
+size_t whole_lines(std::string_view text) {
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    const size_t last = text.find_last_of("\r\n");
+    return last == std::string_view::npos ? 0 : last + 1;
+}
+
+} // namespace
+
+std::string_view LineWindows::Window::line(uint64_t number) const {
+    const auto at = static_cast<size_t>(number - first_line);
+    const size_t end = at + 1 < starts.size() ? starts[at + 1] : text.size();
+    return without_line_end(std::string_view(text).substr(starts[at], end - starts[at]));
+}
+
+LineWindows::LineWindows(std::string path, int file, size_t size)
+    : path_(std::move(path)), file_(file), size_(size), windows_(window_count) {}
+
+LineWindows::~LineWindows() { ::close(file_); }
+
+core::Error LineWindows::refusal(ErrorCode code, std::string_view what, uint64_t line) const {
+    return {code, {.line = static_cast<uint32_t>(line)}, fmt::format("{} {}", path_, what), path_};
+}
+
+core::Result<std::shared_ptr<LineWindows>> LineWindows::open(const std::string& path,
+                                                             size_t window) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return core::fail(ErrorCode::io,
+                          fmt::format("cannot read {}: {}", path,
+                                      std::error_code(errno, std::generic_category()).message()));
+    return std::shared_ptr<LineWindows>(new LineWindows(path, file, window));
+}
+
+core::Result<std::optional<std::string_view>> LineWindows::line(size_t number) {
+    if (number == 0) return std::nullopt;
+    if (!windows_[current_].holds(number)) {
+        if (auto there = go_to(number); !there) return tl::unexpected(std::move(there).error());
+        if (!windows_[current_].holds(number)) return std::nullopt;
+    }
+    return windows_[current_].line(number);
+}
+
+/// Makes the window with a line the current one, as far as there is such a line.
+core::Result<void> LineWindows::go_to(uint64_t number) {
+    if (end_ && number >= end_->first_line) return {};
+    for (size_t i = 0; i < windows_.size(); ++i) {
+        if (windows_[i].last_use == 0 || !windows_[i].holds(number)) continue;
+        current_ = i;
+        windows_[i].last_use = ++uses_;
+        return {};
+    }
+    auto behind =
+        std::upper_bound(marks_.begin(), marks_.end(), number,
+                         [](uint64_t line, const Mark& mark) { return line < mark.first_line; });
+    auto stretch = static_cast<size_t>(behind - marks_.begin()) - 1;
+    while (true) {
+        if (auto loaded = load(stretch); !loaded) return loaded;
+        if (windows_[current_].holds(number) || ++stretch >= marks_.size()) return {};
+    }
+}
+
+/// Reads whole lines from an offset on; true when they reach to the end of the file.
+core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text) const {
+    text.clear();
+    while (true) {
+        const size_t wanted = text.size() + size_;
+        bool at_end = false;
+        while (text.size() < wanted && !at_end) {
+            const size_t before = text.size();
+            text.resize(wanted);
+            const ssize_t count = ::pread(file_, text.data() + before, wanted - before,
+                                          static_cast<off_t>(offset + before));
+            text.resize(before + static_cast<size_t>(std::max<ssize_t>(count, 0)));
+            if (count < 0 && errno != EINTR)
+                return tl::unexpected(
+                    refusal(ErrorCode::io, "cannot be read: the file system reports an error"));
+            at_end = count == 0;
+        }
+        if (at_end) return true;
+        const size_t whole = whole_lines(text);
+        if (whole == 0 && text.size() <= longest_line) continue;
+        if (whole > 0) text.resize(whole);
+        return false;
+    }
+}
+
+/// Whether a stretch can be part of an NC program.
+core::Result<void> LineWindows::check(const Window& window) const {
+    const std::string_view text = window.text;
+    for (size_t i = 0; i < window.starts.size(); ++i) {
+        const size_t end = i + 1 < window.starts.size() ? window.starts[i + 1] : text.size();
+        if (end - window.starts[i] <= longest_line) continue;
+        const uint64_t line = window.first_line + i;
+        if (window.line(line).size() > longest_line)
+            return tl::unexpected(refusal(
+                ErrorCode::syntax,
+                fmt::format("has a line {} of more than {} characters; break it into blocks", line,
+                            longest_line),
+                line));
+    }
+    if (const size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        const auto behind = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
+        return tl::unexpected(
+            refusal(ErrorCode::syntax, what_has_nuls(text),
+                    window.first_line + static_cast<uint64_t>(behind - window.starts.begin()) - 1));
+    }
+    const size_t controls = count_stray_controls(text);
+    if (looks_binary(controls, window.text.size()))
+        return tl::unexpected(
+            refusal(ErrorCode::syntax, "is a binary file, not an NC program", window.first_line));
+    return {};
+}
+
+/// Remembers where a stretch ends, or sees whether that is where it ended before.
+core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, bool is_last) {
+    const Mark behind{offset, window.first_line + window.starts.size()};
+    if (behind.first_line > std::numeric_limits<uint32_t>::max())
+        return tl::unexpected(refusal(ErrorCode::syntax, "has more lines than can be counted"));
+    const bool is_known = window.stretch + 1 < marks_.size() || end_;
+    if (!is_known) {
+        if (is_last && !has_block_)
+            return tl::unexpected(
+                refusal(ErrorCode::syntax, "has no blocks: there is nothing to run in it"));
+        if (is_last)
+            end_ = behind;
+        else
+            marks_.push_back(behind);
+        return {};
+    }
+    const bool was_last = window.stretch + 1 == marks_.size();
+    const Mark& known = was_last ? *end_ : marks_[window.stretch + 1];
+    if (was_last == is_last && known.offset == behind.offset
+        && known.first_line == behind.first_line)
+        return {};
+    return tl::unexpected(refusal(ErrorCode::io, "has changed while it was read"));
+}
+
+/// Reads a stretch into the window that was not used for longest.
+core::Result<void> LineWindows::load(size_t stretch) {
+    Window& window =
+        *std::min_element(windows_.begin(), windows_.end(),
+                          [](const Window& a, const Window& b) { return a.last_use < b.last_use; });
+    current_ = static_cast<size_t>(&window - windows_.data());
+    window.last_use = 0;
+    window.starts.clear();
+    const Mark mark = marks_[stretch];
+    FEELER_TRY(const bool is_last, read_stretch(mark.offset, window.text));
+    const uint64_t end = mark.offset + window.text.size();
+    if (mark.offset == 0 && window.text.starts_with(byte_order_mark))
+        window.text.erase(0, byte_order_mark.size());
+    window.stretch = stretch;
+    window.first_line = mark.first_line;
+    window.starts = starts_of_lines(window.text);
+    auto good = check(window);
+    has_block_ = has_block_ || (good && has_a_block(window.text));
+    if (good) good = note_end(window, end, is_last);
+    if (!good) {
+        window.starts.clear();
+        return good;
+    }
+    window.last_use = ++uses_;
+    return {};
+}
+
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+constexpr size_t chunk_size = 65536;
+constexpr size_t longest_program = size_t(1) << 30;
+
+/// Collects a text piece by piece, and stops as soon as it cannot be an NC program.
+class Collector {
+public:
+    explicit Collector(std::string file) { program_.file = std::move(file); }
+
+    std::optional<Error> add(std::string_view text) {
+        for (size_t at = 0; at < text.size(); at += chunk_size)
+            if (auto error = add_piece(text.substr(at, chunk_size))) return error;
+        return std::nullopt;
+    }
+
+    /// Of the whole file, byte for byte.
+    std::string_view text() const { return program_.text; }
+
+    core::Result<Program> finish() &&;
+
+private:
+    std::optional<Error> add_piece(std::string_view piece);
+    void strip_byte_order_mark();
+
+    Error refusal(std::string_view what, size_t line) const {
+        const std::string name = program_.file.empty() ? "the program" : program_.file;
+        return {ErrorCode::syntax,
+                {.line = static_cast<uint32_t>(line)},
+                fmt::format("{} {}", name, what),
+                program_.file};
+    }
+
+    Program program_;
+    size_t line_length_ = 0; // of the line at the end, so far
+    size_t controls_ = 0;
+};
+
+std::optional<Error> Collector::add_piece(std::string_view piece) {
+    // A line that is too long is longer than a piece, so that its end need not be looked for inside
+    // of one.
+    static_assert(chunk_size <= longest_line);
+    if (program_.text.size() + piece.size() > longest_program)
+        return refusal("is longer than 1 GiB; split it into several programs", 0);
+    const size_t nul = piece.find('\0');
+    if (nul != std::string_view::npos) piece = piece.substr(0, nul);
+    const size_t first_end = std::min(piece.find_first_of("\r\n"), piece.size());
+    program_.text += piece.substr(0, first_end);
+    if (line_length_ + first_end > longest_line) {
+        const size_t line = starts_of_lines(program_.text).size();
+        return refusal(fmt::format("has a line {} of more than {} characters; break it into blocks",
+                                   line, longest_line),
+                       line);
+    }
+    program_.text += piece.substr(first_end);
+    if (nul != std::string_view::npos)
+        return refusal(what_has_nuls(program_.text), starts_of_lines(program_.text + ' ').size());
+    const size_t last_end = piece.find_last_of("\r\n");
+    line_length_ = last_end == std::string_view::npos ? line_length_ + piece.size()
+                                                      : piece.size() - last_end - 1;
+    controls_ += count_stray_controls(piece);
+    return std::nullopt;
+}
+
+void Collector::strip_byte_order_mark() {
+    if (program_.text.starts_with(byte_order_mark)) program_.text.erase(0, byte_order_mark.size());
+}
+
+core::Result<Program> Collector::finish() && {
+    strip_byte_order_mark();
+    // A stray control character is a damaged line, which the lexer names; many are another format.
+    if (looks_binary(controls_, program_.text.size()))
+        return tl::unexpected(refusal("is a binary file, not an NC program", 0));
+    if (!has_a_block(program_.text))
+        return tl::unexpected(refusal("has no blocks: there is nothing to run in it", 0));
+    program_.line_starts = starts_of_lines(program_.text);
+    return std::move(program_);
+}
+
+core::Error cannot_read(const std::string& path, std::string_view why) {
+    return {ErrorCode::io, {}, fmt::format("cannot read {}: {}", path, why), path};
+}
+
+} // namespace
+
+std::string_view Program::line(size_t number) const {
+    if (windows) {
+        const auto found = windows->line(number);
+        return found && *found ? **found : std::string_view();
+    }
+    const size_t begin = line_starts[number - 1];
+    const size_t end = number < line_starts.size() ? line_starts[number] : text.size();
+    return without_line_end(std::string_view(text).substr(begin, end - begin));
+}
+
+core::Result<bool> Program::has_line(size_t number) const {
+    if (!windows) return number >= 1 && number <= line_starts.size();
+    FEELER_TRY(const auto found, windows->line(number));
+    return found.has_value();
+}
+
+core::Result<std::optional<std::string_view>> Program::find_line(size_t number) const {
+    if (windows) return windows->line(number);
+    if (number < 1 || number > line_starts.size()) return std::nullopt;
+    return line(number);
+}
+
+namespace {
+
+/// All of a file, as far as it can be an NC program.
+core::Result<Collector> collected(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        return tl::unexpected(cannot_read(path, "it is a directory; name an NC program in it"));
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream)
+        return tl::unexpected(
+            cannot_read(path, std::error_code(errno, std::generic_category()).message()));
+
+    Collector collector(path);
+    std::array<char, chunk_size> chunk;
+    while (stream) {
+        stream.read(chunk.data(), chunk.size());
+        const auto count = static_cast<size_t>(stream.gcount());
+        if (auto error = collector.add(std::string_view(chunk.data(), count)))
+            return tl::unexpected(std::move(*error));
+    }
+    if (stream.bad()) return tl::unexpected(cannot_read(path, "the file system reports an error"));
+    return collector;
+}
+
+} // namespace
+
+core::Result<Program> read_program(const std::string& path) {
+    auto collector = collected(path);
+    core::note_look(
+        {core::FileQuestion::content,
+         path,
+         {},
+         collector ? std::optional<std::string_view>(collector->text()) : std::nullopt});
+    if (!collector) return tl::unexpected(std::move(collector).error());
+    return std::move(*collector).finish();
+}
+
+core::Result<Program> open_program(const std::string& path, size_t window) {
+    std::error_code failure;
+    // What cannot be read twice, as a pipe, is held whole.
+    const bool is_file = std::filesystem::is_regular_file(path, failure);
+    if (!is_file || std::filesystem::file_size(path, failure) <= 4 * window || failure)
+        return read_program(path);
+    Program program;
+    program.file = path;
+    FEELER_TRY(program.windows, LineWindows::open(path, window));
+    FEELER_TRY(const bool has_lines, program.has_line(1));
+    (void)has_lines;
+    return program;
+}
+
+core::Result<Program> program_from_text(std::string_view text, std::string file) {
+    Collector collector(std::move(file));
+    if (auto error = collector.add(text)) return tl::unexpected(std::move(*error));
+    return std::move(collector).finish();
+}
+
+} // namespace gcode
