@@ -1,6 +1,8 @@
 #include <atomic>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "app/batch/database.h"
 #include "app/bench/bench_means.h"
 #include "tests/app/checked.h"
