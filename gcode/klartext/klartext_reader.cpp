@@ -272,14 +272,14 @@ struct ArithmeticFunction {
 };
 
 constexpr ArithmeticFunction arithmetic[] = {{1, "+", "", Operation::add},
-                                   {2, "-", "", Operation::subtract},
-                                   {3, "*", "", Operation::multiply},
-                                   {4, "DIV", "", Operation::divide},
-                                   {5, "", "SQRT", Operation::square_root},
-                                   {6, "", "SIN", Operation::sine},
-                                   {7, "", "COS", Operation::cosine},
-                                   {8, "LEN", "", Operation::hypotenuse},
-                                   {13, "ANG", "", Operation::arc_tangent}};
+                                             {2, "-", "", Operation::subtract},
+                                             {3, "*", "", Operation::multiply},
+                                             {4, "DIV", "", Operation::divide},
+                                             {5, "", "SQRT", Operation::square_root},
+                                             {6, "", "SIN", Operation::sine},
+                                             {7, "", "COS", Operation::cosine},
+                                             {8, "LEN", "", Operation::hypotenuse},
+                                             {13, "ANG", "", Operation::arc_tangent}};
 
 core::Result<void> read_arithmetic(KlartextReader& reader, const ArithmeticFunction& function) {
     FEELER_TRY(const int target, read_target(reader));

@@ -3,6 +3,7 @@
 
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
+#include "tests/support/signalled.h"
 #include "tests/support/usage.h"
 
 namespace app_test {
@@ -13,6 +14,7 @@ using nlohmann::json;
 using test_support::bytes_of;
 using test_support::program;
 using test_support::Ran;
+using test_support::RunningProgram;
 using test_support::ScopedFolder;
 using testing::HasSubstr;
 using testing::Not;
@@ -121,12 +123,12 @@ TEST_F(BatchSurvival, ReplacesItsOwnOldReportBesideThePrograms) {
 
 TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
     folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
-    for (const std::string signal : {"TERM", "HUP"}) {
-        const Ran ran = feeler({"check", folder / "lib/other.nc", folder / "long.nc", "--jobs", "2",
-                                "--format", "json", "-o", folder / "report.json"},
-                               "timeout --foreground --preserve-status -s " + signal
-                                   + " 1 env --default-signal=" + signal);
-        EXPECT_EQ(ran.status, 2) << signal;
+    for (const int signal : {SIGTERM, SIGHUP}) {
+        RunningProgram running({FEELER_BINARY, "check", folder / "lib/other.nc", folder / "long.nc",
+                                "--jobs", "2", "--format", "json", "-o", folder / "report.json"});
+        EXPECT_TRUE(running.wait_for_output({"other.nc"}));
+        running.send(signal);
+        EXPECT_EQ(running.result().status, 2) << signal;
         EXPECT_EQ(json::parse(bytes_of(folder / "report.json"))["unchecked"],
                   json({folder / "long.nc"}));
     }
@@ -134,11 +136,14 @@ TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
 
 TEST_F(BatchSurvival, TakesASignalThatComesTwiceAtOnceForOne) {
     folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
-    for (int i = 0; i < 5; ++i) { // without --foreground it goes to the process and to its group
+    for (int i = 0; i < 5; ++i) {
         fs::remove(folder / "report.json");
-        const Ran ran = feeler({"check", folder / "long.nc", folder / "lib/other.nc", "--format",
-                                "json", "-o", folder / "report.json"},
-                               "timeout -s TERM 0.5");
+        RunningProgram running({FEELER_BINARY, "check", folder / "long.nc", folder / "lib/other.nc",
+                                "--jobs", "2", "--format", "json", "-o", folder / "report.json"});
+        EXPECT_TRUE(running.wait_for_output({"other.nc"}));
+        running.send(SIGTERM); // as `timeout` does: to the process and to its group
+        running.send(SIGTERM);
+        EXPECT_EQ(running.result().status, 2) << i;
         EXPECT_TRUE(fs::exists(folder / "report.json")) << i;
     }
 }

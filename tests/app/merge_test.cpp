@@ -6,6 +6,7 @@
 #include "app/library/shard/shard.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
+#include "tests/support/signalled.h"
 
 namespace app_test {
 namespace {
@@ -15,6 +16,7 @@ using nlohmann::json;
 using test_support::bytes_of;
 using test_support::program;
 using test_support::Ran;
+using test_support::RunningProgram;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 using testing::HasSubstr;
@@ -79,20 +81,32 @@ protected:
 
     std::string share(int i) const { return folder / (std::to_string(i) + ".share"); }
 
-    Ran check(const Words& more, const std::string& before = "") const {
+    Ran check(const Words& more) const {
         Words all = {"check"};
         all.insert(all.end(), words.begin(), words.end());
         all.insert(all.end(), more.begin(), more.end());
-        return feeler(all, before);
+        return feeler(all);
     }
 
-    Ran check_share(int i, int n, Words more = {"--no-cache"},
-                    const std::string& before = "") const {
+    Words share_words(int i, int n, Words more) const {
         for (const std::string& word :
              {std::string("--shard"), std::to_string(i) + "/" + std::to_string(n),
               std::string("--format"), std::string("shard"), std::string("-o"), share(i)})
             more.push_back(word);
-        return check(more, before);
+        return more;
+    }
+
+    Ran check_share(int i, int n, const Words& more = {"--no-cache"}) const {
+        return check(share_words(i, n, more));
+    }
+
+    /// The first of two shares, which runs beside the test.
+    Words first_share() const {
+        Words all = {FEELER_BINARY, "check"};
+        const Words more = share_words(1, 2, {"--no-cache"});
+        all.insert(all.end(), words.begin(), words.end());
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
     }
 
     Ran merge(int n, Words more = {}) const {
@@ -184,9 +198,10 @@ TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
 
 TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
     write("long.nc", long_program());
-    const Ran cut =
-        check_share(1, 2, {"--no-cache"}, "timeout --foreground --preserve-status -s INT 1");
-    EXPECT_EQ(cut.status, 2);
+    RunningProgram running(first_share());
+    EXPECT_TRUE(running.wait_until_it_catches(SIGINT));
+    running.send(SIGINT);
+    EXPECT_EQ(running.result().status, 2);
     check_share(2, 2);
     const Ran merged =
         merge(2, {"--format", "json", "-o", folder / "merged.json", "--format", "text"});
@@ -201,7 +216,10 @@ TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
 TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     write("long.nc", long_program());
-    EXPECT_EQ(check_share(1, 2, {"--no-cache"}, "timeout --foreground -s KILL 1").status, 137);
+    RunningProgram running(first_share());
+    EXPECT_TRUE(running.wait_for([&] { return !fs::exists(share(1)); }));
+    running.send(SIGKILL);
+    EXPECT_EQ(running.result().status, 128 + SIGKILL);
     EXPECT_FALSE(fs::exists(share(1)));
     const Ran merged = merge(2);
     EXPECT_EQ(merged.status, 2);
@@ -244,10 +262,11 @@ TEST_F(Merge, FindsNoOldShareBehindALink) {
 TEST_F(Merge, WritesItsFilesThoughNobodyReadsTheScreen) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     const std::string all = folder / "all.json";
-    // Whoever reads the screen has gone before there is anything on it.
+    // The reader of the pipe ends before the program starts.
     const Ran ran = test_support::run(
-        {"bash", "-c", "(sleep 0.3; \"$@\") | true; exit ${PIPESTATUS[0]}", "_", FEELER_BINARY,
-         "merge", "--format", "json", "-o", all, "--format", "text", share(1), share(2)});
+        {"bash", "-c", "mkfifo \"$0\"; (: <\"$0\") & exec 4>\"$0\"; wait; \"$@\" >&4",
+         folder / "pipe", FEELER_BINARY, "merge", "--format", "json", "-o", all, "--format", "text",
+         share(1), share(2)});
     EXPECT_EQ(ran.status, 2);
     EXPECT_TRUE(fs::exists(all));
 }

@@ -23,7 +23,6 @@ using app::CheckJob;
 using app::CheckRun;
 using app::ProgramResult;
 using app::ResultStore;
-using Clock = std::chrono::steady_clock;
 using core::FileQuestion;
 using test_support::ScopedFolder;
 
@@ -70,30 +69,30 @@ TEST_F(OneResult, IsThereAtOnceForWhoeverWaitsForIt) {
     EXPECT_EQ(*store.find(each.job), each.result);
 }
 
-TEST_F(OneResult, IsThereSoonAlsoIfNobodyWaits) {
+TEST_F(OneResult, IsWrittenAlsoIfNobodyWaits) {
     ResultStore store = opened(path);
-    const Clock::time_point begin = Clock::now();
     ASSERT_TRUE(store.keep(each.job, each.run, each.result));
-    while (found() != each.result && Clock::now() - begin < 5s) std::this_thread::sleep_for(10ms);
+    const auto end = std::chrono::steady_clock::now() + 60s;
+    while (found() != each.result && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(10ms);
     EXPECT_EQ(found(), each.result);
-    EXPECT_LT(Clock::now() - begin, 1s);
 }
 
-TEST_F(OneResult, IsRefusedWithinTenSecondsInAllWhileSomebodyHasTheDatabase) {
+TEST_F(OneResult, IsRefusedWhileSomebodyHasTheDatabase) {
     std::atomic<bool> is_stopped = false;
-    auto store = ResultStore::open(
-        path, "1", std::make_shared<app::Patience>([&] { return is_stopped.load(); }));
+    std::atomic<int> attempts = 0;
+    auto store = ResultStore::open(path, "1", std::make_shared<app::Patience>([&] {
+                                       ++attempts;
+                                       return is_stopped.load();
+                                   }));
     ASSERT_TRUE(store);
     auto other = app::Database::open(path, app::Database::Access::read_write);
     ASSERT_TRUE(other && other->run("BEGIN EXCLUSIVE"));
     ASSERT_TRUE(store->keep(each.job, each.run, each.result)) << "nobody waits yet";
-    const Clock::time_point begin = Clock::now();
     EXPECT_EQ(store->find(each.job).error().message, "database is locked");
     EXPECT_EQ(store->flush().error().message, "database is locked");
     EXPECT_FALSE(store->keep(each.job, each.run, each.result));
-    const auto taken = Clock::now() - begin;
-    EXPECT_GT(taken, 3s);
-    EXPECT_LT(taken, 12s);
+    EXPECT_GT(attempts, 100) << "it gives up before others can end";
     ASSERT_TRUE(other->run("COMMIT"));
     EXPECT_EQ(*store->find(each.job), std::nullopt);
     store->try_again();
@@ -102,9 +101,9 @@ TEST_F(OneResult, IsRefusedWithinTenSecondsInAllWhileSomebodyHasTheDatabase) {
     EXPECT_EQ(*store->find(each.job), each.result);
     is_stopped = true;
     ASSERT_TRUE(other->run("BEGIN EXCLUSIVE"));
-    const Clock::time_point stop = Clock::now();
+    const int before = attempts.exchange(0);
     EXPECT_FALSE(store->find(each.job));
-    EXPECT_LT(Clock::now() - stop, 2s);
+    EXPECT_LT(2 * attempts, before) << "who is to stop waits as long as before";
 }
 
 TEST(ResultStore, OfAnOlderFormatIsTakenOver) {

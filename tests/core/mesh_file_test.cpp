@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 #include "core/geom/mesh_file.h"
 #include "tests/support/meshes.h"
+#include "tests/support/scoped_folder.h"
 #include "tests/support/stl_writer.h"
 
 namespace core {
@@ -25,17 +25,13 @@ using ::testing::HasSubstr;
 class TemporaryFile {
 public:
     TemporaryFile(const std::string& name, const std::string& bytes)
-        : path_(std::filesystem::path(::testing::TempDir())
-                / (::testing::UnitTest::GetInstance()->current_test_info()->name() + name)) {
-        std::ofstream(path_, std::ios::binary) << bytes;
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() { std::filesystem::remove(path_); }
+        : path_(folder_.write(
+            ::testing::UnitTest::GetInstance()->current_test_info()->name() + name, bytes)) {}
     const std::filesystem::path& path() const { return path_; }
 
 private:
-    std::filesystem::path path_;
+    const test_support::ScopedFolder folder_;
+    const std::filesystem::path path_;
 };
 
 Result<MeshFile> read(const std::string& name, const std::string& bytes) {

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/gcode/klartext_programs.h"
+#include "tests/support/scoped_folder.h"
 
 namespace gcode {
 namespace {
@@ -108,26 +108,17 @@ TEST(KlartextFlow, ReadsPositionsOfTheSystem) {
 
 class KlartextFiles : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ =
-            std::filesystem::temp_directory_path()
-            / ("feeler_klartext_" + std::to_string(testing::UnitTest::GetInstance()->random_seed())
-               + testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     void write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name) << text;
+        folder_.write(name, text);
     }
     Ran ran(std::string_view text) const {
         Environment environment = known_environment(DialectId::heidenhain);
-        environment.search_path = {folder_.string()};
+        environment.search_path = {folder_.path().string()};
         environment.length_offsets[core::OffsetNumber(1)] = {.length = 100.0, .diameter = 50.0};
         return run_text(text, environment);
     }
 
-    std::filesystem::path folder_;
+    const test_support::ScopedFolder folder_;
 };
 
 TEST_F(KlartextFiles, CallsProgramsOfTheSearchPath) {

@@ -4,10 +4,11 @@
 # where there is no Chromium, node or npm's packages.
 set -euo pipefail
 feeler=$1 large_page=$2 assets=$3 work=$4
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 # shellcheck source=tests/support/npm_test.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../support/npm_test.sh"
+source "$here/../support/npm_test.sh"
 need chromium node npm
-install_packages
+install_packages "$here"
 
 # A shop with programs of every kind, with names that a browser must not take for more than text.
 rm -rf shop

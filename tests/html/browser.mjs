@@ -5,12 +5,18 @@ import { chromium } from "playwright-core";
 
 const flags = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
+/** How many ms anything may take before a test gives up: enough for a machine that is busy with other work. */
+const patience = 180_000;
+
 export function launch(more = []) {
-  return chromium.launch({ executablePath: "/usr/bin/chromium", args: [...flags, ...more] });
+  return chromium.launch({ executablePath: "/usr/bin/chromium", args: [...flags, ...more], timeout: patience });
 }
 
-/** A report in a window of its own; `wrong` gets a line for every error and every request. */
-export async function openReport(browser, file, { width = 1400, height = 1000, colorScheme = "light", ...more } = {}) {
+/**
+ * A report in a window of its own; `wrong` gets a line for every error and every request. `beforeOpening` is called with
+ * the empty page.
+ */
+export async function openReport(browser, file, { width = 1400, height = 1000, colorScheme = "light", beforeOpening = async () => {}, ...more } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, ...more });
   const page = await context.newPage(), wrong = [], url = pathToFileURL(file).href;
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) wrong.push("console: " + message.text()); });
@@ -19,6 +25,8 @@ export async function openReport(browser, file, { width = 1400, height = 1000, c
     if (request.url() !== url && !/^(data|blob):/.test(request.url())) wrong.push("request: " + request.url());
   });
   page.on("dialog", (dialog) => { wrong.push("dialog: " + dialog.message()); dialog.dismiss(); });
+  page.setDefaultTimeout(patience);
+  await beforeOpening(page);
   await page.goto(url);
   await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
   return { page, wrong };

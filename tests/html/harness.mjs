@@ -31,31 +31,6 @@ export const isWide = (page) => page.evaluate(() => document.documentElement.scr
 export const lightness = (page) =>
   page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b));
 
-async function frameTime(act, argument) {
-  const begin = performance.now();
-  act(argument);
-  await new Promise((done) => requestAnimationFrame(done));
-  return performance.now() - begin;
-}
-
-/** How many ms pass in a page from `act(argument)` to the next frame. */
-export const timeToFrame = (page, act, argument) => page.evaluate(`(${frameTime})(${act}, ${JSON.stringify(argument)})`);
-
-/**
- * The most ms to a frame on the way of a table from its first row to its last. It goes there three times,
- * and of each place the quickest counts: what else a busy machine does in between is no work of the page.
- */
-export async function timeToScroll(page, places = 40) {
-  const times = new Array(places + 1).fill(Infinity);
-  const scroll = (part) => {
-    const grid = document.getElementById("grid");
-    grid.scrollTop = part * grid.scrollHeight;
-  };
-  for (let round = 0; round < 3; ++round)
-    for (let i = 0; i <= places; ++i) times[i] = Math.min(times[i], await timeToFrame(page, scroll, i / places));
-  return Math.max(...times);
-}
-
 /** Keeps a picture of a page. A browser on a busy machine now and then has none at the first time. */
 export async function keepPicture(page, path, more = {}) {
   for (let left = 2; ; --left) {

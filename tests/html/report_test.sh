@@ -4,10 +4,11 @@
 # skipped.
 set -euo pipefail
 feeler=$1 assets=$2 work=$3
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 # shellcheck source=tests/support/npm_test.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../support/npm_test.sh"
+source "$here/../support/npm_test.sh"
 need chromium node npm
-install_packages
+install_packages "$here"
 
 make_report any "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/clamped_plate.toml" \
     --format html -o findings.html
@@ -53,11 +54,7 @@ box = [[40, 104, 0], [60, 130, 42]]
 END
 make_report 1 one_of_many.nc --setup one_of_many.toml --format html -o one_of_many.html
 
-# A hundred thousand blocks, in the air.
-awk 'BEGIN {
-    print "%\nG21 G90 G54\nT1 M6\nG43 H1 Z100.\nS3000 M3\nG0 X0. Y0. Z60.";
-    for (i = 0; i < 100000; ++i) printf "G1 X%.3f Y%.3f F900.\n", i % 150, (i * 7) % 143 + i * 0.0001;
-    print "M30\n%" }' >long.nc
+"$here/long_program.sh" >long.nc
 make_report any long.nc --setup "$assets/setups/clamped_plate.toml" --format html -o long.html
 
 exec node report_test.mjs "$work"

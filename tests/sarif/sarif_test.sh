@@ -4,10 +4,11 @@
 # node or npm's packages.
 set -euo pipefail
 feeler=$1 odd_batches=$2 assets=$3 work=$4
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 # shellcheck source=tests/support/npm_test.sh
-source "$(dirname "${BASH_SOURCE[0]}")/../support/npm_test.sh"
+source "$here/../support/npm_test.sh"
 need node npm
-install_packages
+install_packages "$here"
 rm -f ./*.sarif
 
 make_report 1 "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/clamped_plate.toml" \

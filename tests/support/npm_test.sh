@@ -15,16 +15,18 @@ need() {
     done
 }
 
-# Goes into the folder of the test, with the scripts and the packages that stand in the lock file beside
-# the script that asks.
+# install_packages FOLDER...: goes into the folder of the test, with the scripts (.mjs) of these folders and
+# the packages of their lock file.
 install_packages() {
-    local here
-    here=$(cd "$(dirname "${BASH_SOURCE[1]}")" && pwd -P)
+    local folder
     mkdir -p "$work"
-    cp "$here"/package.json "$here"/package-lock.json "$here"/*.mjs "$work"
+    for folder in "$@"; do cp "$folder"/*.mjs "$work"; done
+    for folder in "$@"; do
+        [[ ! -e $folder/package.json ]] || cp "$folder"/package.json "$folder"/package-lock.json "$work"
+    done
     cd "$work" || exit 1
-    timeout 120 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=0 \
-        --fetch-timeout=20000 >npm.log 2>&1 || skip 'npm could not get its packages'
+    timeout 600 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=0 \
+        --fetch-timeout=60000 >npm.log 2>&1 || skip 'npm could not get its packages'
 }
 
 # A report of `feeler check`, which must end with this status, or with less than 2 for `any`.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,15 @@ public:
         }
     }
 
+    /// Runs an action while the program is stopped, so that the program sees all changes together.
+    template <typename Action>
+    void while_stopped(const Action& action) const {
+        ::kill(child_, SIGSTOP);
+        ::waitpid(child_, nullptr, WUNTRACED);
+        action();
+        ::kill(child_, SIGCONT);
+    }
+
     /// What is on the screen up to and with this text; all of it where that does not come in time.
     std::string until(const std::string& text) {
         const auto end = Clock::now() + patience;
@@ -82,7 +92,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr std::chrono::seconds patience{60};
+    static constexpr std::chrono::seconds patience{120};
 
     /// Reads what there is; false when the program has closed its side.
     bool more() {

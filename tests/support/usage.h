@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/io_counts.h"
+
 namespace test_support {
 
 /// What a program used, and how it ended.
@@ -15,6 +18,7 @@ struct Usage {
     int status = -1;          // of exit
     double cpu_seconds = 0.0; // of all threads
     long kib = 0;             // the most memory that it had at one time
+    std::optional<IoCounts> io{};
 };
 
 /// Runs a program without a shell; its standard output goes to the file that is named.
@@ -29,6 +33,9 @@ inline Usage usage_of(const std::vector<std::string>& words, const std::string& 
         ::execv(arguments[0], arguments.data());
         ::_exit(127);
     }
+    siginfo_t ended{};
+    ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+    const std::optional<IoCounts> io = io_counts(child);
     int status = 0;
     struct rusage usage = {};
     ::wait4(child, &status, 0, &usage);
@@ -36,7 +43,7 @@ inline Usage usage_of(const std::vector<std::string>& words, const std::string& 
         return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
     };
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            seconds(usage.ru_utime) + seconds(usage.ru_stime), usage.ru_maxrss};
+            seconds(usage.ru_utime) + seconds(usage.ru_stime), usage.ru_maxrss, io};
 }
 
 } // namespace test_support

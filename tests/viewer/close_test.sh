@@ -2,9 +2,9 @@
 # Closes the real window at many moments of a long check: it ends at once, with status 0, and
 # nothing is said. Under the address sanitizer that also means that nothing is used after its end and
 # nothing of ours leaks. Arguments: the program feeler, the folder of assets, a folder for pictures
-# (kept), drop_files. FEELER_CLOSE_BLOCKS: length of the program.
+# (kept), the folder of drop_files and await_frames. FEELER_CLOSE_BLOCKS: length of the program.
 set -euo pipefail
-feeler=$1 assets=$2 pictures=$3 drop_files=$4
+feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
 source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
 
@@ -92,9 +92,9 @@ close 'after the file has changed'
 
 open_raster
 expect 'is open' 'block 0 of'
-"$drop_files" "$window" 700 400 "$work/short.nc" "$work/raster.toml"
+"$tools/drop_files" "$window" 700 400 "$work/short.nc" "$work/raster.toml"
 expect 'another program takes the place of one that is checked' 'short.nc, line .* of 30[0-9]\)'
-"$drop_files" "$window" 700 400 "$work/raster.nc" "$work/raster.toml"
+"$tools/drop_files" "$window" 700 400 "$work/raster.nc" "$work/raster.toml"
 close 'after two drops'
 
 printf 'passed\n'

@@ -42,7 +42,7 @@ public:
     /// Takes in news until something is true; whether it came to be.
     template <typename Condition>
     bool wait_for(const Condition& condition) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(3);
         while (true) {
             send();
             take_in(model, worker_.take());

@@ -49,10 +49,11 @@ void give(const Source& source, const XSelectionRequestEvent& asked) {
     XFlush(source.display);
 }
 
-/// Serves the target until it sends a message of this kind; false where none comes within 10 s.
+/// Serves the target until it sends a message of this kind; false where none comes within two
+/// minutes.
 bool wait_for(const Source& source, const char* kind) {
     using namespace std::chrono_literals;
-    const auto end = std::chrono::steady_clock::now() + 10s;
+    const auto end = std::chrono::steady_clock::now() + 120s;
     while (std::chrono::steady_clock::now() < end) {
         if (XPending(source.display) == 0) {
             std::this_thread::sleep_for(5ms);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/view/model/file_watch.h"
+#include "tests/support/scoped_folder.h"
 
 namespace {
 
@@ -15,10 +16,10 @@ using testing::UnorderedElementsAre;
 class FileWatchTest : public testing::Test {
 protected:
     void SetUp() override { write("G1 X1\n"); }
-    void TearDown() override { std::filesystem::remove(path_); }
     void write(const std::string& text) { std::ofstream(path_) << text; }
 
-    std::string path_ = testing::TempDir() + "feeler_watched.nc";
+    const test_support::ScopedFolder folder_;
+    const std::string path_ = folder_ / "watched.nc";
 };
 
 TEST_F(FileWatchTest, TellsOfAChangeOnceAndWhenItRests) {
@@ -60,21 +61,19 @@ TEST_F(FileWatchTest, IsNotHeldUpByAFileThatWasNeverThere) {
     std::ofstream(path_ + ".none") << "it comes";
     EXPECT_FALSE(watch.has_changed());
     EXPECT_TRUE(watch.has_changed());
-    std::filesystem::remove(path_ + ".none");
 }
 
 TEST(FilesOfSetup, AreAllThatItAndItsMachineName) {
-    const std::string folder = testing::TempDir();
-    std::ofstream(folder + "feeler_watched.toml")
-        << "frame = \"G54\"\n[machine]\nfile = 'feeler_machine.toml'\n"
-           "[[fixture]]\nmesh = \"a/clamp.stl\" # not \"b.nc\"\n[[[broken\nmesh = \"C.STL\"\n";
-    std::ofstream(folder + "feeler_machine.toml") << "mesh = \"table.obj\"\n";
-    EXPECT_THAT(files_of_setup(folder + "feeler_watched.toml"),
+    const test_support::ScopedFolder folder;
+    const std::string setup = folder.write(
+        "feeler_watched.toml",
+        "frame = \"G54\"\n[machine]\nfile = 'feeler_machine.toml'\n"
+        "[[fixture]]\nmesh = \"a/clamp.stl\" # not \"b.nc\"\n[[[broken\nmesh = \"C.STL\"\n");
+    folder.write("feeler_machine.toml", "mesh = \"table.obj\"\n");
+    EXPECT_THAT(files_of_setup(setup),
                 UnorderedElementsAre(EndsWith("feeler_watched.toml"),
                                      EndsWith("feeler_machine.toml"), EndsWith("a/clamp.stl"),
                                      EndsWith("C.STL"), EndsWith("table.obj")));
-    std::filesystem::remove(folder + "feeler_watched.toml");
-    std::filesystem::remove(folder + "feeler_machine.toml");
 }
 
 } // namespace

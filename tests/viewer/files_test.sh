@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Files that change under the real window, and files that cannot be read: a program, a set-up and a
 # mesh, each explained, each opened again once it is mended. Arguments: the program feeler, the folder
-# of assets, a folder for pictures (kept).
+# of assets, a folder for pictures (kept), the folder of await_frames.
 set -euo pipefail
-feeler=$1 assets=$2 pictures=$3
+feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
 source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
 
@@ -15,8 +15,7 @@ for file in "$program" "$setup" "$mesh"; do cp "$file" "$file.good"; done
 # broken FILE WHAT PICTURE: the file has just been spoilt; it is mended when that was explained.
 broken() {
     expect "$2 is explained" 'could not be opened'
-    picture "$3"
-    (($(of_color "$3" '#FF5A36') > 20)) || die "$2 is explained in the colour of violations"
+    shows "$3" "$2 is explained in the colour of violations" has_color "$3" '#FF5A36' 20
     cp "$1.good" "$1"
     expect "$2 is opened again when it is mended" 'clamped_plate_low.nc, line'
 }
@@ -26,7 +25,7 @@ expect 'opens' 'line 2 \(block 0 of 45'
 press n
 expect 'N' 'line 44 \(block 38'
 press g
-sleep 0.5
+frames
 xdotool type 30
 press Return
 expect 'G goes to a line' 'line 30 \(block 25'
@@ -37,20 +36,19 @@ press n
 expect 'N again' 'line 44 \(block 38'
 press 2
 xdotool mousemove 720 30
-picture 01-before
+shows 01-before 'what collides is marked in the view' has_color 01-before '#FF5A36' 2800
+still 01-before
 
 # The last line but one changes: place, camera and breakpoint stay.
 sed -i 's/^M30$/G4 P0.2\nM30/' "$program"
 expect 'a saved program is read again, at the same place' 'line 44 \(block 38 of 46, violation\)'
 convert "$pictures/01-before.png" -crop 760x600+380+110 "$work/before.png"
-moved=
-for _ in $(seq 40); do # until the check has come there, and the message is gone
-    picture 02-after
+# Once the check has come there and the message is gone.
+is_as_before() {
     convert "$pictures/02-after.png" -crop 760x600+380+110 "$work/after.png"
-    moved=$(compare -metric AE "$work/before.png" "$work/after.png" null: 2>&1 || true)
-    ((moved > 2000)) || break
-done
-((moved <= 2000)) || die 'the camera stays'
+    (($(compare -metric AE "$work/before.png" "$work/after.png" null: 2>&1 || true) <= 2000))
+}
+shows 02-after 'the camera stays' is_as_before
 press Home
 expect 'Home' 'block 0 of'
 press F5
@@ -62,8 +60,7 @@ expect 'and again' 'block [0-9]+ of 45'
 
 printf 'G21\nG0 X1\nG1 [[[\n' >"$program"
 expect 'a program that stops half way says so' 'of 1\), stopped at line 3'
-picture 03-stopped
-(($(of_color 03-stopped '#FF5A36') > 5000)) || die 'where the program stops is shown loudly'
+shows 03-stopped 'where the program stops is shown loudly' has_color 03-stopped '#FF5A36' 5000
 printf 'GARBAGE[[[' >"$program"
 broken "$program" 'a corrupted program' 03-program
 head -c 4000 /dev/urandom >"$program"
@@ -82,8 +79,7 @@ cp "$program.good" "$program"
 expect 'a program that was away for a while is back' 'clamped_plate_low.nc, line'
 rm "$program"
 expect 'that what is shown is of a file that is gone is said' 'gone or empty'
-picture 09-gone
-(($(of_color 09-gone '#FF5A36') > 5000)) || die 'and loudly'
+shows 09-gone 'and loudly' has_color 09-gone '#FF5A36' 5000
 cp "$program.good" "$program"
 expect 'and taken back' 'clamped_plate_low.nc, line [0-9]+ \(block [^)]*\) - feeler'
 

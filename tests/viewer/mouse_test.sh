@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # What the mouse does in the real window: files dropped through the window system, breakpoints set in
 # the gutter, the timeline dragged, lines found by clicks on the path and on what was cut, a section.
-# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), drop_files.
+# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), the folder of drop_files
+# and await_frames.
 set -euo pipefail
-feeler=$1 assets=$2 pictures=$3 drop_files=$4
+feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
 source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
 
@@ -43,14 +44,14 @@ shank = [[14, 14, 23]]
 holder = [[32, 40, 30]]
 TOML
 
-drop() { "$drop_files" "$window" 700 400 "$@" || die "a drop of $* is taken"; }
+drop() { "$tools/drop_files" "$window" 700 400 "$@" || die "a drop of $* is taken"; }
 
 # shellcheck disable=SC2119
 open_window
 picture 01-welcome
 drop "$work/grooves.nc" "$work/grooves.toml"
 expect 'a program and its set-up are opened by a drop' 'grooves.nc, line 1 \(block 0 of 16'
-picture 02-dropped
+still 02-dropped
 
 # The list: rows of 20 pixels from y = 114 on; the gutter is left of x = 34.
 row_y() { printf '%s' $((104 + 20 * $1)); }
@@ -78,9 +79,9 @@ for block in 5 11; do
     expect 'and to the right' "block $block of"
 done
 xdotool mouseup 1
-sleep 0.3
+frames
 xdotool mousemove "$(bar_x 2)" 830
-sleep 0.5
+frames
 [[ $(title) =~ 'block 11 of' ]] || die 'the timeline stays when the button is up'
 
 # The view: from the top, without perspective, tool and machine.
@@ -92,7 +93,7 @@ press p
 press shift+h
 press shift+m
 press a
-picture 04-top
+still 04-top
 
 click 425 213
 expect 'a click on the path goes to its line' 'line 15 '
@@ -100,14 +101,17 @@ click 425 582
 expect 'and on another stretch of it' 'line 7 '
 press End
 press shift+p
+still 05-whole
 click 800 425
 expect 'a click on the floor of a groove goes to the line that cut it' 'line 11 '
 picture 05-cut-by
 press End
+still 05-whole
 click 800 605
 expect 'and in another groove' 'line 7 '
 press End
 expect 'End' 'block 16 of'
+still 05-whole
 click 800 310
 picture 06-raw
 [[ $(title) =~ 'block 16 of' ]] || die 'a click on raw stock goes nowhere'
@@ -117,27 +121,34 @@ face='#99A3AE'
 press 0
 press a
 xdotool mousemove 720 30
-picture 07-whole
+shows 07-whole 'there is no face without a section' has_no_color 07-whole "$face"
 press x
-picture 08-section
-[[ $(of_color 07-whole "$face") == 0 ]] || die 'there is no face without a section'
-(($(of_color 08-section "$face") > 10000)) || die 'a section shows a face'
+shows 08-section 'a section shows a face' has_color 08-section "$face" 10000
 click 1000 500
 [[ $(title) =~ 'block 16 of' ]] || die 'what the section has taken away is not clicked'
 xdotool mousemove 720 30
 press Escape
-picture 09-whole
-[[ $(of_color 09-whole "$face") == 0 ]] || die 'Escape ends the section'
+shows 09-whole 'Escape ends the section' has_no_color 09-whole "$face"
 
 # The camera: a drag turns, the wheel goes nearer, and neither moves the place.
-xdotool mousemove 900 600 mousedown 2
-for x in 850 800 750; do xdotool mousemove "$x" 560 sleep 0.05; done
-xdotool mouseup 2 mousemove 720 30
-picture 10-turned
-(($(differing 09-whole 10-turned) > 20000)) || die 'a drag turns the view'
-xdotool mousemove 760 500 click 4 click 4 mousemove 720 30
-picture 11-nearer
-(($(differing 10-turned 11-nearer) > 20000)) || die 'the wheel goes nearer'
+xdotool mousemove 900 600
+frames
+xdotool mousedown 2
+for x in 850 800 750; do
+    frames
+    xdotool mousemove "$x" 560
+done
+frames
+xdotool mouseup 2
+frames
+xdotool mousemove 720 30
+shows 10-turned 'a drag turns the view' differ 09-whole 10-turned 20000
+xdotool mousemove 760 500
+frames
+xdotool click 4 click 4
+frames
+xdotool mousemove 720 30
+shows 11-nearer 'the wheel goes nearer' differ 10-turned 11-nearer 20000
 [[ $(title) =~ 'block 16 of' ]] || die 'the camera does not move the place'
 
 # Another program by a drop, and what is dropped in vain.
