@@ -86,7 +86,7 @@ constexpr int shard_format = 1;
 constexpr std::string_view beginning = "{\"feeler_shard\"";
 constexpr double longest = 1e10; // seconds, three centuries
 
-std::string text_of(const Json& json) {
+std::string json_text(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -176,13 +176,13 @@ bool is_newer(const std::string& text) {
 std::string sealed(std::string text) { return text + seal_of(text); }
 
 std::string json_of(const Shard& shard) {
-    const auto line = [](const auto& entry) { return text_of(json_of(entry)); };
+    const auto line = [](const auto& entry) { return json_text(json_of(entry)); };
     const auto result_line = [](const ProgramResult& result) { return json_of(result); };
     std::string json = fmt::format(
         "{{\"feeler_shard\": {}, \"version\": {}, \"share\": [{}, {}], \"seconds\": {},\n"
         "\"places\": [{}],\n\"unchecked\": [{}]",
-        shard_format, text_of(shard.version), shard.share.i, shard.share.n, text_of(shard.seconds),
-        fmt::join(shard.places, ","), fmt::join(shard.unchecked, ","));
+        shard_format, json_text(shard.version), shard.share.i, shard.share.n,
+        json_text(shard.seconds), fmt::join(shard.places, ","), fmt::join(shard.unchecked, ","));
     json += list_text("programs", shard.programs, line);
     json += list_text("skipped", shard.skipped, line);
     json += list_text("failures", shard.failures, result_line);
