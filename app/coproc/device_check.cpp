@@ -115,9 +115,6 @@ void DeviceModels::use_tool(hwsim::Driver& driver, const core::ToolAssembly* too
 
 namespace {
 
-using core::Result;
-using hwsim::SlotNumber;
-
 /// Who tells a person why a motion is not asked.
 enum class Teller : uint8_t { permit, run };
 

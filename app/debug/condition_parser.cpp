@@ -12,6 +12,7 @@
 #include "app/debug/inspected_value.h"
 #include "core/base/text.h"
 #include "core/sim/finding.h"
+#include "gcode/language/lexer.h"
 
 namespace app {
 namespace {
@@ -20,7 +21,6 @@ using Kind = ConditionToken::Kind;
 
 constexpr size_t longest = 4000; // of a text; nobody writes more by hand
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
 /// Longer signs stand before those that they begin with.
@@ -76,7 +76,7 @@ private:
     core::Result<ConditionToken> next() {
         if (at_ >= text_.size()) return token(Kind::end, text_.size());
         const char c = text_[at_];
-        if (is_digit(c) || (c == '.' && is_digit(ahead(1)))) return number();
+        if (gcode::is_digit(c) || (c == '.' && gcode::is_digit(ahead(1)))) return number();
         if (c == '"' || c == '\'') return quoted();
         if (c == '#') return parameter();
         if (is_letter(c) || c == '$') return name();
@@ -123,10 +123,10 @@ private:
                 return refuse(begin, "a named parameter is written as #<_name>");
             at_ = end + 1;
         } else {
-            if (!is_digit(ahead(0)))
+            if (!gcode::is_digit(ahead(0)))
                 return refuse(begin, "behind # belongs a number, as in #100, or a name, as in "
                                      "#<_name>");
-            while (is_digit(ahead(0))) ++at_;
+            while (gcode::is_digit(ahead(0))) ++at_;
         }
         return token(Kind::name, begin, lowered(text_.substr(begin, at_ - begin)));
     }
@@ -134,8 +134,8 @@ private:
     /// Also `machine.x`, `G59.1.x` and `$AA_IM[X]`.
     core::Result<ConditionToken> name() {
         const size_t begin = at_++;
-        while (is_letter(ahead(0)) || is_digit(ahead(0))
-               || (ahead(0) == '.' && (is_letter(ahead(1)) || is_digit(ahead(1)))))
+        while (is_letter(ahead(0)) || gcode::is_digit(ahead(0))
+               || (ahead(0) == '.' && (is_letter(ahead(1)) || gcode::is_digit(ahead(1)))))
             ++at_;
         if (text_[begin] == '$' && ahead(0) == '[') {
             const size_t end = text_.find(']', at_);
@@ -296,9 +296,6 @@ std::vector<std::string> condition_names_beginning(const std::string& text) {
 }
 
 namespace {
-
-using Node = Condition::Node;
-using Kind = ConditionToken::Kind;
 
 constexpr int deepest = 100; // brackets within brackets
 

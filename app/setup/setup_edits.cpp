@@ -14,13 +14,12 @@
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"
+#include "core/sim/clearance.h"
 
 namespace app {
 namespace {
 
-constexpr double largest_stock = 20000.0;           // mm; more is a slip of the finger
-constexpr double largest_edited_allowance = 1000.0; // mm
-
+constexpr double largest_stock = 20000.0; // mm; more is a slip of the finger
 bool is_place(const core::Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -87,11 +86,11 @@ std::vector<EditRefusal> refusals_of(const SetupEdits& edits) {
     if (edits.stock) check_stock(*edits.stock, refused);
     for (const auto& [number, stated] : edits.tools) check_tool(stated.tool, refused);
     if (edits.allowance
-        && !(*edits.allowance >= 0.0 && *edits.allowance <= largest_edited_allowance))
+        && !(*edits.allowance >= 0.0 && *edits.allowance <= core::largest_allowance))
         refused.push_back(
             {{},
              "allowance",
-             fmt::format("an allowance lies between 0 and {:g} mm", largest_edited_allowance)});
+             fmt::format("an allowance lies between 0 and {:g} mm", core::largest_allowance)});
     return refused;
 }
 

@@ -198,8 +198,6 @@ constexpr const char* axis_keys[] = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
-constexpr double largest_allowance = 1000.0; // mm; more is a slip of the finger
-
 core::Result<toml::table> parse(const std::string& path) {
     auto parsed = read_toml(path);
     if (!parsed && parsed.error().message.find("'allowance'") != std::string::npos)
@@ -254,7 +252,7 @@ void read_allowance(TableReader& table, core::Setup& setup) {
     if (!distance) return table.need("distance");
     rule.distance = *distance;
     rule.contact = table.number_or("contact", 0.0);
-    if (!(rule.distance >= 0.0 && rule.distance <= largest_allowance))
+    if (!(rule.distance >= 0.0 && rule.distance <= core::largest_allowance))
         table.refuse("distance", "must lie between 0 and 1000 mm");
     if (rule.contact < 0.0) table.refuse("contact", "must not be negative");
     if (const auto names = table.strings("between", 2)) {
@@ -273,7 +271,8 @@ void read_allowances(TableReader& root, core::Setup& setup) {
         return;
     }
     setup.allowance = root.number("allowance");
-    if (setup.allowance && !(*setup.allowance >= 0.0 && *setup.allowance <= largest_allowance))
+    if (setup.allowance
+        && !(*setup.allowance >= 0.0 && *setup.allowance <= core::largest_allowance))
         root.refuse("allowance", "must lie between 0 and 1000 mm");
 }
 

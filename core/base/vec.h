@@ -32,6 +32,8 @@ struct Aabb {
     bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
     Vec3 center() const { return 0.5 * (min + max); }
     Vec3 size() const { return max - min; }
+    /// How far the corner farthest from the origin may lie from it, at most.
+    double reach() const { return glm::length(glm::max(glm::abs(min), glm::abs(max))); }
     Aabb grown(double by) const { return {min - Vec3(by), max + Vec3(by)}; }
 };
 

@@ -8,12 +8,6 @@ constexpr double bytes_per_tile_box =
 
 double tiles_for(double lines) { return std::ceil(lines / ScanLines::tile_side); }
 
-/// Lines across a body, as scan_grid counts them; in floating point, as a hopeless mesh size
-/// gives more than an integer holds.
-double line_estimate(double size, double spacing) {
-    return 2.0 * std::max(1.0, std::ceil(0.5 * size / spacing - 0.5));
-}
-
 double bytes_of(const ScanLines& lines) {
     double bytes = 0.0;
     for (size_t i = 0; i < lines.tile_count(); ++i) {
@@ -31,8 +25,8 @@ double cut_memory_estimate(const Aabb& bounds, double spacing, WithColumns with_
     double bytes = 0.0;
     const Vec3 size = bounds.size();
     const auto tiles = [&](int axis, double more) {
-        return tiles_for(line_estimate(size[u_axis(axis)], spacing) + more)
-               * tiles_for(line_estimate(size[v_axis(axis)], spacing) + more);
+        return tiles_for(lines_across(size[u_axis(axis)], spacing) + more)
+               * tiles_for(lines_across(size[v_axis(axis)], spacing) + more);
     };
     constexpr double marked = sizeof(ScanTile::Layer) + sizeof(ScanTile::Marks);
     for (int axis = 0; axis < 3; ++axis) bytes += tiles(axis, 0.0) * (marked + bytes_per_tile_box);

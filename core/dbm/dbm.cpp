@@ -18,11 +18,6 @@ void for_each_line(const Dbm& dbm, const Visit& visit) {
     }
 }
 
-/// As scan_grid counts, but in floating point: the count of a hopeless mesh size fits no integer.
-double lines_across(double size, double spacing) {
-    return 2.0 * std::max(1.0, std::ceil(0.5 * size / spacing - 0.5));
-}
-
 double lines_for(const Aabb& bounds, double spacing) {
     const double x = lines_across(bounds.size().x, spacing);
     const double y = lines_across(bounds.size().y, spacing);

@@ -26,4 +26,10 @@ struct ScanGrid {
 /// The grid of a body with these bounds. `spacing` must be positive and the box not empty.
 ScanGrid scan_grid(const Aabb& bounds, double spacing);
 
+/// The lines of such a grid along one axis of a body, in floating point: a mesh size far too small
+/// gives more than an integer holds.
+inline double lines_across(double size, double spacing) {
+    return 2.0 * std::max(1.0, std::ceil(0.5 * size / spacing - 0.5));
+}
+
 } // namespace core

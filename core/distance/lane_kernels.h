@@ -9,6 +9,10 @@ namespace core {
 
 using Float3 = std::array<float, 3>;
 
+inline Float3 single(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 /// How a body's directions and places become coordinates in the frame of a search.
 struct FrameView {
     std::array<Float3, 3> direction{}; // the frame's three directions, in the body's own frame

@@ -14,12 +14,8 @@ namespace {
 /// over the lines, and that over the boxes of an outer model.
 constexpr double exact_share = 3.5, scanned_share = 6.0, outer_share = 11.0;
 
-double reach_of(const Aabb& box) {
-    return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
-}
-
 Result<double> checked_reach(const Aabb& box) {
-    const double reach = reach_of(box);
+    const double reach = box.reach();
     if (reach <= farthest_coordinate) return reach;
     return fail(ErrorCode::invalid_value,
                 fmt::format("the body reaches {:.3g} mm from its origin, more than the {:.0e} mm "

@@ -10,10 +10,6 @@
 namespace core {
 namespace {
 
-double column_reach(const Aabb& box) {
-    return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
-}
-
 int cells_along(const OuterModel& model, int axis) { return model.grid.count(axis) + 1; }
 
 ScanLines empty_columns(const OuterModel& model, int axis) {
@@ -141,7 +137,7 @@ Interval cell_of(const OuterModel& model, int axis, int i) {
 OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFunction& column,
                        std::initializer_list<int> axes) {
     assert(axes.size() > 0);
-    const double error = scan_rounding(column_reach(bounds));
+    const double error = scan_rounding(bounds.reach());
     OuterModel model{grid, bounds.grown(error), {}};
     for (const int axis : axes) {
         ScanLines columns = empty_columns(model, axis);
@@ -160,7 +156,7 @@ OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFun
 }
 
 OuterModel outer_model(const CutModel& stock) {
-    const double error = scan_rounding(column_reach(stock.outer_box));
+    const double error = scan_rounding(stock.outer_box.reach());
     OuterModel model{stock.lines.grid, stock.outer_box, {}};
     ScanLines columns = empty_columns(model, 2);
     for (int j = 0; j < columns.v_count(); ++j)

@@ -88,10 +88,6 @@ float squared_above(double length) {
     return squared < 1e38 ? static_cast<float>(squared) : std::numeric_limits<float>::infinity();
 }
 
-Float3 as_single(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 Vec3 wide(const Float3& v) { return {v[0], v[1], v[2]}; }
 
 bool nearer(const BoxPair& x, const BoxPair& y) {
@@ -232,7 +228,7 @@ private:
     /// Begins afresh at the roots, in the best frame known by now.
     void start() {
         frame_ = next_frame();
-        sweep_ = as_single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
+        sweep_ = single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
         limit_squared_ = squared_above(std::max(worth(), 0.0));
         a_.begin(body_a_, frame_, nullptr);
         b_.begin(body_b_, frame_, &motion_);

@@ -45,10 +45,6 @@ constexpr uint32_t tile_width = PointTree::width;
 /// and sums take less than ten roundings.
 constexpr float rounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-Float3 single(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 /// The boxes round two rows of boxes.
 void extend(BoxLanes& boxes, const BoxLanes& by) {
     for (size_t k = 0; k < 3; ++k)

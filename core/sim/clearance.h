@@ -12,6 +12,9 @@
 
 namespace core {
 
+/// The largest allowance that may be asked for, mm; more is a typing error.
+inline constexpr double largest_allowance = 1000.0;
+
 struct Pair;
 
 /// What a pair must keep: a distance, and how much overlap is contact when the distance is 0.

@@ -92,8 +92,6 @@ void bore(Drilling& hole) {
 
 namespace {
 
-using core::SpindleDirection;
-
 /// Down to a level and out to R, the spindle reversed at the level.
 void thread_to(Drilling& hole, double level, SpindleDirection in, SpindleDirection out) {
     hole.feed(level);

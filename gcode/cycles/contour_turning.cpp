@@ -113,11 +113,6 @@ core::Result<void> Tracing::follow() {
     return {};
 }
 
-std::optional<double> length_word(const Execution& execution, char letter) {
-    const Word* word = execution.statement.word(letter);
-    return word ? std::optional(length_of(execution, *word)) : std::nullopt;
-}
-
 core::Result<TurningMoves> moves_along(const Execution& execution, int code, TurningPoint start,
                                        const TurningContour& contour) {
     const double mm_per_unit = to_mm(1.0, execution.modal().unit);

@@ -11,8 +11,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr size_t most_commands = 200000; // of one block
-
 bool pecks(int code) { return code == tenths(73) || code == tenths(83); }
 
 /// Haas: I is the first peck, each after it is smaller by J, and none smaller than K.
@@ -349,8 +347,6 @@ core::Result<void> run_canned_cycle(Execution& execution) {
 }
 
 namespace {
-
-using core::ErrorCode;
 
 core::Result<double> needed(const Execution& execution, const CodeWord& entry, char letter,
                             bool is_length) {

@@ -26,11 +26,6 @@ core::Result<SplinePoint> start_of(const Execution& execution) {
     return SplinePoint{*place[0], *place[1]};
 }
 
-std::optional<double> spline_length(const Execution& execution, char letter) {
-    const Word* word = execution.statement.word(letter);
-    return word ? std::optional(length_of(execution, *word)) : std::nullopt;
-}
-
 core::Result<void> refuse_compensation(const Execution& execution) {
     if (execution.modal().compensation == Side::none) return {};
     const Word& mover = moving_word(execution);
@@ -90,10 +85,10 @@ core::Result<void> follow(Execution& execution, const NurbsCurve& curve) {
 core::Result<void> cubic(Execution& execution) {
     FEELER_TRY(const SplinePoint start, start_of(execution));
     FEELER_TRY(const Position end, target_of(execution));
-    const CubicWords words = {spline_length(execution, 'I'),
-                              spline_length(execution, 'J'),
-                              spline_length(execution, 'P'),
-                              spline_length(execution, 'Q'),
+    const CubicWords words = {length_word(execution, 'I'),
+                              length_word(execution, 'J'),
+                              length_word(execution, 'P'),
+                              length_word(execution, 'Q'),
                               {*end[0], *end[1]}};
     FEELER_TRY(const CubicSpline spline,
                placed(cubic_spline(start, execution.state.spline->next_tangent, words),
@@ -106,8 +101,8 @@ core::Result<void> quadratic(Execution& execution) {
     FEELER_TRY(const SplinePoint start, start_of(execution));
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const NurbsCurve curve,
-               placed(quadratic_spline(start, spline_length(execution, 'I'),
-                                       spline_length(execution, 'J'), {*end[0], *end[1]}),
+               placed(quadratic_spline(start, length_word(execution, 'I'),
+                                       length_word(execution, 'J'), {*end[0], *end[1]}),
                       moving_word(execution).span));
     return follow(execution, curve);
 }

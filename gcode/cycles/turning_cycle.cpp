@@ -455,8 +455,6 @@ core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoin
 
 namespace {
 
-using core::ErrorCode;
-
 constexpr double vanishing = 1e-3;   // program units: pieces smaller than this are dropped
 constexpr double gap_for_arc = 1e-2; // likewise: a wider gap at a corner gets an arc
 

@@ -41,6 +41,12 @@ const Word& moving_word(const Execution& execution);
 /// The length a word gives, in mm.
 double length_of(const Execution& execution, const Word& word);
 
+/// The same of the word with this letter; empty where the statement has none.
+std::optional<double> length_word(const Execution& execution, char letter);
+
+/// More commands are not made of one block.
+inline constexpr size_t most_commands = 200000;
+
 /// Whether the block's H word stands without G43 and changes the length offset that is on.
 bool changes_length_alone(const Execution& execution);
 

@@ -392,8 +392,6 @@ std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, 
     return index.line_of_number(number, begin, from + 1);
 }
 
-using core::ErrorCode;
-
 core::Result<void> enter(InterpreterState& state, const Environment& environment, Frame frame,
                          core::SourceSpan where) {
     const size_t own = dialect(environment.dialect).deepest_calls;
@@ -430,8 +428,6 @@ void leave_to(InterpreterState& state, uint32_t line) {
     state.next = {frame.called_from.source, line};
     state.frames.pop_back();
 }
-
-using core::ErrorCode;
 
 core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
     constexpr uint64_t interval = 16; // jumps between two looks

@@ -227,8 +227,6 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
 
 namespace {
 
-using core::ErrorCode;
-
 /// The angles of I, J and K, degrees; 0 where a word is not there.
 core::Vec3 angles_of(const Execution& execution) {
     core::Vec3 angles(0.0);

@@ -68,8 +68,6 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
     return static_cast<double>(known.orientation);
 }
 
-double as_number(bool holds) { return holds ? 1.0 : 0.0; }
-
 /// The motion code in tenths as #<_motion_mode> has it.
 double motion_mode(const ModalState& modal) {
     if (modal.cycle) return modal.cycle->code;
@@ -99,64 +97,53 @@ constexpr Named named_values[] = {
          return codes[static_cast<size_t>(s.modal.plane)];
      }},
     {"_ccomp", [](const InterpreterState& s) { return compensation_code(s.modal); }},
-    {"_metric",
-     [](const InterpreterState& s) { return as_number(s.modal.unit == LengthUnit::mm); }},
+    {"_metric", [](const InterpreterState& s) { return truth(s.modal.unit == LengthUnit::mm); }},
     {"_imperial",
-     [](const InterpreterState& s) { return as_number(s.modal.unit == LengthUnit::inch); }},
+     [](const InterpreterState& s) { return truth(s.modal.unit == LengthUnit::inch); }},
     {"_absolute",
-     [](const InterpreterState& s) {
-         return as_number(s.modal.distance == DistanceMode::absolute);
-     }},
+     [](const InterpreterState& s) { return truth(s.modal.distance == DistanceMode::absolute); }},
     {"_incremental",
      [](const InterpreterState& s) {
-         return as_number(s.modal.distance == DistanceMode::incremental);
+         return truth(s.modal.distance == DistanceMode::incremental);
      }},
     {"_inverse_time",
-     [](const InterpreterState& s) {
-         return as_number(s.modal.feed_mode == FeedMode::inverse_time);
-     }},
+     [](const InterpreterState& s) { return truth(s.modal.feed_mode == FeedMode::inverse_time); }},
     {"_units_per_minute",
-     [](const InterpreterState& s) {
-         return as_number(s.modal.feed_mode == FeedMode::per_minute);
-     }},
+     [](const InterpreterState& s) { return truth(s.modal.feed_mode == FeedMode::per_minute); }},
     {"_units_per_rev",
-     [](const InterpreterState& s) { return as_number(s.modal.feed_mode == FeedMode::per_turn); }},
+     [](const InterpreterState& s) { return truth(s.modal.feed_mode == FeedMode::per_turn); }},
     {"_coord_system", [](const InterpreterState& s) { return coordinate_system(s.modal); }},
     {"_tool_offset",
-     [](const InterpreterState& s) { return as_number(s.modal.offsets.tool != AxisValues{}); }},
+     [](const InterpreterState& s) { return truth(s.modal.offsets.tool != AxisValues{}); }},
     {"_retract_r_plane",
-     [](const InterpreterState& s) { return as_number(s.modal.retract == RetractMode::r_level); }},
+     [](const InterpreterState& s) { return truth(s.modal.retract == RetractMode::r_level); }},
     {"_retract_old_z",
      [](const InterpreterState& s) {
-         return as_number(s.modal.retract == RetractMode::initial_level);
+         return truth(s.modal.retract == RetractMode::initial_level);
      }},
-    {"_spindle_rpm_mode",
-     [](const InterpreterState& s) { return as_number(!s.modal.surface_speed); }},
-    {"_spindle_css_mode",
-     [](const InterpreterState& s) { return as_number(s.modal.surface_speed); }},
+    {"_spindle_rpm_mode", [](const InterpreterState& s) { return truth(!s.modal.surface_speed); }},
+    {"_spindle_css_mode", [](const InterpreterState& s) { return truth(s.modal.surface_speed); }},
     {"_ijk_absolute_mode",
      [](const InterpreterState& s) {
-         return as_number(s.modal.arc_distance == DistanceMode::absolute);
+         return truth(s.modal.arc_distance == DistanceMode::absolute);
      }},
     {"_lathe_diameter_mode",
-     [](const InterpreterState& s) { return as_number(s.modal.diameter_mode); }},
-    {"_lathe_radius_mode",
-     [](const InterpreterState& s) { return as_number(!s.modal.diameter_mode); }},
+     [](const InterpreterState& s) { return truth(s.modal.diameter_mode); }},
+    {"_lathe_radius_mode", [](const InterpreterState& s) { return truth(!s.modal.diameter_mode); }},
     {"_spindle_on",
      [](const InterpreterState& s) {
-         return as_number(s.modal.spindle != core::SpindleDirection::stopped);
+         return truth(s.modal.spindle != core::SpindleDirection::stopped);
      }},
     {"_spindle_cw",
      [](const InterpreterState& s) {
-         return as_number(s.modal.spindle == core::SpindleDirection::clockwise);
+         return truth(s.modal.spindle == core::SpindleDirection::clockwise);
      }},
-    {"_mist", [](const InterpreterState& s) { return as_number(s.modal.mist); }},
-    {"_flood", [](const InterpreterState& s) { return as_number(s.modal.flood); }},
-    {"_speed_override",
-     [](const InterpreterState& s) { return as_number(s.modal.speed_override); }},
-    {"_feed_override", [](const InterpreterState& s) { return as_number(s.modal.feed_override); }},
-    {"_adaptive_feed", [](const InterpreterState& s) { return as_number(s.modal.adaptive_feed); }},
-    {"_feed_hold", [](const InterpreterState& s) { return as_number(s.modal.feed_hold); }},
+    {"_mist", [](const InterpreterState& s) { return truth(s.modal.mist); }},
+    {"_flood", [](const InterpreterState& s) { return truth(s.modal.flood); }},
+    {"_speed_override", [](const InterpreterState& s) { return truth(s.modal.speed_override); }},
+    {"_feed_override", [](const InterpreterState& s) { return truth(s.modal.feed_override); }},
+    {"_adaptive_feed", [](const InterpreterState& s) { return truth(s.modal.adaptive_feed); }},
+    {"_feed_hold", [](const InterpreterState& s) { return truth(s.modal.feed_hold); }},
     {"_feed",
      [](const InterpreterState& s) {
          const double feed = s.modal.feed.value_or(0.0);
@@ -193,7 +180,7 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     if (is_axis_of(number, first_home)) return of_position(modal.home, number, first_home, unit);
     if (is_axis_of(number, second_home))
         return of_position(modal.second_home, number, second_home, unit);
-    if (number == g92_is_on) return as_number(modal.axis_offset_on);
+    if (number == g92_is_on) return truth(modal.axis_offset_on);
     if (is_axis_of(number, first_g92))
         return of_position(modal.suspended_axis, number, first_g92, unit);
     if (number == active_offset) return static_cast<double>(modal.offsets.active + 1);

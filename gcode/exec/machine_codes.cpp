@@ -135,8 +135,6 @@ core::Result<void> set_overrides(Execution& execution) {
     return {};
 }
 
-using core::ErrorCode;
-
 core::Result<void> feed_with_spindle(Execution& execution) {
     ModalState& modal = execution.modal();
     const Word& mover = moving_word(execution);

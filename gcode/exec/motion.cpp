@@ -374,8 +374,6 @@ core::Result<void> move(Execution& execution) {
 
 namespace {
 
-using core::ErrorCode;
-
 tl::unexpected<core::Error> unknown_place(const Execution& execution, size_t axis) {
     const Word& mover = moving_word(execution);
     return core::fail(ErrorCode::missing_value,

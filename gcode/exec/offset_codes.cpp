@@ -324,7 +324,6 @@ core::Result<void> set_axis_offset(Execution& execution) {
 
 namespace {
 
-using core::ErrorCode;
 using core::OffsetNumber;
 
 /// Adds under G91, replaces under G90.

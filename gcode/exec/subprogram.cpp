@@ -291,8 +291,6 @@ core::Result<void> call_subprogram(Execution& execution) {
 
 namespace {
 
-using core::ErrorCode;
-
 // Fanuc B-64304, argument specification I, for A to Z. G, L, N, O and P have the places that are
 // left, which G66.1 and the variables of the block before (#4101 and on) use.
 constexpr size_t numbers[26] = {1,  2,  3,  7,  8,  9,  10, 11, 4,  5,  6,  12, 13,

@@ -210,10 +210,6 @@ core::Result<void> set_tool_length(Execution& execution) {
 
 namespace {
 
-using core::ErrorCode;
-using core::OffsetNumber;
-using core::ToolNumber;
-
 core::Result<int> tool_of_entry(const Execution& execution) {
     const Word* word = execution.statement.word('P');
     if (!word)

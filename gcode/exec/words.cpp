@@ -87,6 +87,11 @@ double length_of(const Execution& execution, const Word& word) {
     return to_mm(word.value, execution.modal().unit);
 }
 
+std::optional<double> length_word(const Execution& execution, char letter) {
+    const Word* word = execution.statement.word(letter);
+    return word ? std::optional(length_of(execution, *word)) : std::nullopt;
+}
+
 core::Result<void> check_words(Execution& execution) {
     if (auto checked = refuse_unknown_home(execution); !checked) return checked;
     for (const Word* word : execution.statement.unknown_m_codes)

@@ -150,7 +150,6 @@ double q_length(const Execution& execution, int number) {
 
 namespace {
 
-using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 

@@ -13,8 +13,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr size_t most_cycle_commands = 200000; // of one block
-
 /// A defined cycle at one hole. Heights are program coordinates along the tool axis.
 struct KlartextHole {
     Execution& execution;
@@ -85,8 +83,7 @@ void drill_universal(KlartextHole& hole) {
     double step = cycle.peck > 0.0 ? cycle.peck : start - hole.bottom;
     double level = start, since_break = 0.0;
     int breaks = 0;
-    while (level > hole.bottom + 1e-9
-           && hole.execution.result.commands.size() < most_cycle_commands) {
+    while (level > hole.bottom + 1e-9 && hole.execution.result.commands.size() < most_commands) {
         const double next = std::max(hole.bottom, level - step);
         since_break += level - next;
         level = next;
@@ -239,7 +236,7 @@ core::Result<void> check(const Execution& execution, const DefinedCycle& cycle) 
     const double step = cycle.number == 208     ? cycle.infeed
                         : cycle.decrement > 0.0 ? std::min(cycle.peck, least)
                                                 : cycle.peck;
-    if (step > 0.0 && -cycle.depth / step > most_cycle_commands / 4)
+    if (step > 0.0 && -cycle.depth / step > most_commands / 4)
         return refuse("it makes too many pecks");
     return {};
 }

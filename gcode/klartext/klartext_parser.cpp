@@ -224,8 +224,6 @@ FlowIndex klartext_index(const Program& program, const Dialect& dialect) {
 
 namespace {
 
-using core::ErrorCode;
-
 constexpr int first_new_cycle = 200; // whose parameters are Q parameters
 
 constexpr int cycles[] = {1,   7,   8,   9,   10,  11,  13,  19,  32,  200, 201,

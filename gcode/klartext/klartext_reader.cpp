@@ -235,8 +235,6 @@ core::Result<void> read_contour_word(KlartextReader& reader) {
     return reader.word(axis, from, incremental ? Addressing::incremental : Addressing::absolute);
 }
 
-using core::ErrorCode;
-
 core::Result<void> set_result(KlartextReader& reader, int target, Expression value) {
     Assignment entry;
     const auto at = static_cast<uint32_t>(reader.block.pool.instructions.size());

@@ -16,8 +16,6 @@ using core::ErrorCode;
 
 constexpr double largest_whole = 9007199254740992.0; // 2^53
 
-double truth(bool holds) { return holds ? 1.0 : 0.0; }
-
 /// The remainder with the sign of the divisor's size: never negative (RS274/NGC 3.3.2.3).
 double modulo(double a, double b) {
     const double rest = std::fmod(a, b);

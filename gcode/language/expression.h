@@ -125,4 +125,7 @@ struct Arithmetic {
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
                              const ParameterReader& parameters, const Arithmetic& arithmetic);
 
+/// How programs count what holds (1) and what does not (0).
+constexpr double truth(bool holds) { return holds ? 1.0 : 0.0; }
+
 } // namespace gcode

@@ -286,7 +286,6 @@ std::optional<Value> siemens_variable(const InterpreterState& state, std::string
 
 namespace {
 
-using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 

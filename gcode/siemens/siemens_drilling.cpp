@@ -13,8 +13,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr size_t most_commands = 200000; // of one block
-
 /// A cycle at one hole. Heights are program coordinates along the tool axis.
 struct SiemensHole {
     Execution& execution;

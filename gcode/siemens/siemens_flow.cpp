@@ -306,8 +306,6 @@ core::Result<void> run_siemens_flow(const FlowStep& step) {
 
 namespace {
 
-using core::ErrorCode;
-
 /// NAME of NAME, NAME.SPF, `/_N_SPF_DIR/_N_NAME_SPF`, in capitals.
 std::string plain_name(const std::string& written) {
     std::string name = written.substr(written.find_last_of("/\\:") + 1);

@@ -193,7 +193,6 @@ core::Result<void> LineWindows::load(size_t stretch) {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 
 constexpr size_t chunk_size = 65536;
 constexpr size_t longest_program = size_t(1) << 30;

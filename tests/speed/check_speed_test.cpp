@@ -3,18 +3,18 @@
 
 #include <fmt/format.h>
 
+#include "app/base/stopwatch.h"
 #include "app/bench/bench_table.h"
 #include "app/library/store/database.h"
 #include "tests/app/checked.h"
 #include "tests/app/many_files.h"
-#include "tests/speed/stopwatch.h"
 #include "tests/support/terminal.h"
 #include "tests/support/usage.h"
 
 namespace {
 
+using app::Stopwatch;
 using app_test::feeler;
-using speed_test::Stopwatch;
 using test_support::program;
 using test_support::ScopedFolder;
 

@@ -1,14 +1,14 @@
 #include <gtest/gtest.h>
 
+#include "app/base/stopwatch.h"
 #include "app/report/html/html_batch.h"
 #include "app/report/html/html_report.h"
-#include "tests/speed/stopwatch.h"
 #include "tests/support/large_batch.h"
 #include "tests/support/lengthened_run.h"
 
 namespace {
 
-using speed_test::Stopwatch;
+using app::Stopwatch;
 
 const std::string folder = std::string(FEELER_SOURCE_DIR) + "/assets/";
 

@@ -2,15 +2,15 @@
 #include <random>
 #include <thread>
 
+#include "app/base/stopwatch.h"
 #include "tests/app/store_life.h"
 #include "tests/app/thousand_results.h"
-#include "tests/speed/stopwatch.h"
 
 namespace {
 
 using namespace std::chrono_literals;
 using app::ResultStore;
-using speed_test::Stopwatch;
+using app::Stopwatch;
 using store_life::count_in;
 using store_life::expect_intact;
 using store_life::killed;

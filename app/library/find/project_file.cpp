@@ -7,11 +7,10 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/toml_file.h"
 #include "core/base/file_reads.h"
+#include "core/sim/clearance.h"
 
 namespace app {
 namespace {
-
-constexpr double largest_allowance = 1000.0; // mm; as in a set-up
 
 /// The keys that stand both under `[[program]]` and before all of them.
 ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder) {
@@ -24,7 +23,8 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
                                                  "siemens-iso", "heidenhain"}))
         terms.dialect = gcode::dialect_named(*name);
     terms.allowance = table.number("allowance");
-    if (terms.allowance && !(*terms.allowance >= 0.0 && *terms.allowance <= largest_allowance))
+    if (terms.allowance
+        && !(*terms.allowance >= 0.0 && *terms.allowance <= core::largest_allowance))
         table.refuse("allowance", "must lie between 0 and 1000 mm");
     terms.mesh_size = table.number("mesh_size");
     if (terms.mesh_size && !(*terms.mesh_size > 0.0)) table.refuse("mesh_size", "must be above 0");

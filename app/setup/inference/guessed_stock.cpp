@@ -141,9 +141,6 @@ core::Aabb stock_out_of_the_way() { return {{-5, -5, -100'010}, {5, 5, -100'000}
 
 namespace {
 
-using core::Aabb;
-using core::Vec3;
-
 constexpr double same_height = 0.05; // mm
 
 /// How deep feeds have been, in square cells over a box.

@@ -273,8 +273,6 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
 
 namespace {
 
-using core::ToolNumber;
-
 /// The size of a tool of which nothing is known.
 double usual_diameter(gcode::LengthUnit unit) {
     return unit == gcode::LengthUnit::inch ? 6.35 : 6.0;

@@ -182,8 +182,6 @@ void visit_events(const gcode::Program& program, const gcode::Environment& envir
 
 namespace {
 
-using core::Vec3;
-
 constexpr double sideways_from = 0.01; // mm
 
 std::optional<Vec3> known(const core::AxisPosition& position) {

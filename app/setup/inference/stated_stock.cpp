@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/program_tools.h"
+#include "gcode/language/lexer.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -180,8 +181,6 @@ namespace {
 
 bool is_number_part(char c) { return (c >= '0' && c <= '9') || c == '.' || c == ']'; }
 
-bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// A code that only turning has a use for: diameters or radii along X, a constant surface speed,
 /// and roughing and threading cycles by the words that they have there.
 std::optional<std::string> turning_code(const std::string& code) {
@@ -219,7 +218,7 @@ bool moves_axis(const std::string& code, char axis) {
     for (size_t at = code.find(axis); at != std::string::npos; at = code.find(axis, at + 1)) {
         const bool in_a_word = at > 0 && std::isalpha(static_cast<unsigned char>(code[at - 1]));
         if (at + 1 >= code.size() || (in_a_word && code[at - 1] != 'I')) continue;
-        if (is_decimal_digit(code[at + 1])
+        if (gcode::is_digit(code[at + 1])
             || std::string("+-.=[#").find(code[at + 1]) != std::string::npos)
             return true;
     }
@@ -229,7 +228,7 @@ bool moves_axis(const std::string& code, char axis) {
 bool changes_tool(const std::string& code) {
     for (const char* word : {"M6", "M06"}) {
         const size_t at = code.find(word), end = at + std::string(word).size();
-        if (at != std::string::npos && (end >= code.size() || !is_decimal_digit(code[end])))
+        if (at != std::string::npos && (end >= code.size() || !gcode::is_digit(code[end])))
             return true;
     }
     return false;

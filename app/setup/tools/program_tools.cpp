@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/tool_text.h"
+#include "gcode/language/lexer.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -17,8 +18,6 @@ namespace {
 
 using core::ToolNumber;
 using core::ToolShape;
-
-bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The whole number that begins at a place of a text.
 std::optional<int> whole_at(const std::string& text, size_t at) {
@@ -35,9 +34,9 @@ std::optional<int> tool_called(const std::string& code) {
         if (const size_t at = code.find(words); at != std::string::npos)
             return whole_at(code, at + std::string(words).size());
     for (size_t at = code.find('T'); at != std::string::npos; at = code.find('T', at + 1)) {
-        if (at > 0 && !is_decimal_digit(code[at - 1]) && code[at - 1] != '.') continue;
+        if (at > 0 && !gcode::is_digit(code[at - 1]) && code[at - 1] != '.') continue;
         const size_t value = at + 1 + (at + 1 < code.size() && code[at + 1] == '=');
-        if (value < code.size() && is_decimal_digit(code[value])) return whole_at(code, value);
+        if (value < code.size() && gcode::is_digit(code[value])) return whole_at(code, value);
     }
     return std::nullopt;
 }
@@ -196,7 +195,7 @@ void Scan::name(std::string_view text, size_t line) {
     if (at == std::string_view::npos || end == std::string_view::npos) return;
     if (text.substr(0, at).find(';') != std::string_view::npos) return;
     const std::string called(text.substr(at + 3, end - at - 3));
-    if (called.empty() || std::all_of(called.begin(), called.end(), is_decimal_digit)) return;
+    if (called.empty() || std::all_of(called.begin(), called.end(), gcode::is_digit)) return;
     if (std::find(names.begin(), names.end(), called) != names.end()) return;
     names.push_back(called);
     std::string words = called;
@@ -217,7 +216,7 @@ std::optional<gcode::LengthUnit> unit_in(const std::string& code) {
     if (code.find("BEGINPGM") != std::string::npos)
         return code.ends_with("INCH") ? LengthUnit::inch : LengthUnit::mm;
     for (size_t at = code.find('G'); at != std::string::npos; at = code.find('G', at + 1)) {
-        if (at > 0 && !is_decimal_digit(code[at - 1]) && code[at - 1] != '.') continue;
+        if (at > 0 && !gcode::is_digit(code[at - 1]) && code[at - 1] != '.') continue;
         const auto value = whole_at(code, at + 1);
         if (value == 20 || value == 70 || value == 700) return LengthUnit::inch;
         if (value == 21 || value == 71 || value == 710) return LengthUnit::mm;
@@ -250,7 +249,6 @@ ProgramTools tools_of_program(const gcode::Program& program, gcode::LengthUnit u
 
 namespace {
 
-using core::ToolShape;
 using gcode::LengthUnit;
 
 constexpr auto style = std::regex::ECMAScript | std::regex::optimize;

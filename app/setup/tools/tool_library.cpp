@@ -170,7 +170,6 @@ core::Result<std::map<ToolNumber, FoundTool>> read_tool_library(const std::strin
 
 namespace {
 
-using core::ErrorCode;
 using core::ToolDescription;
 using core::ToolShape;
 using nlohmann::json;
@@ -370,8 +369,6 @@ core::Result<ToolMap> tools_of_freecad_table(const json& table, const std::files
 
 namespace {
 
-using core::ToolDescription;
-using core::ToolShape;
 using nlohmann::json;
 
 std::optional<ToolShape> shape_of_type(const std::string& type) {

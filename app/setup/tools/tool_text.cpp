@@ -260,7 +260,6 @@ std::optional<double> numbered_drill(int number) {
 
 namespace {
 
-using core::ToolShape;
 using gcode::LengthUnit;
 
 bool is_one_of(const std::string& word, std::initializer_list<const char*> words) {

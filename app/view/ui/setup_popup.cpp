@@ -232,8 +232,6 @@ void SetupPopup::draw(Frame& frame) {
 
 namespace {
 
-using render::Role;
-
 constexpr double inch = 25.4;
 
 /// Three lengths in a row; whether one was changed.

@@ -77,8 +77,6 @@ void draw_slack(Frame& frame, const Area& area) {
 
 namespace {
 
-using render::Role;
-
 /// Pairs have allowances of their own. A bar stands for what is kept beyond its own one, so that
 /// all bars may be held against the one line.
 ///
