@@ -143,7 +143,7 @@ core::Result<BodyPass> BodyPass::make() {
 }
 
 BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_ghost) const {
-    const Theme theme = frame.options.theme;
+    const ColorScheme theme = frame.options.theme;
     Item made{&body, body.stock_from_body,        bounds(body), color(theme, color_role(body.role)),
               {},    is_ghost ? 0.28 : body.alpha};
     if (is_ghost) made.color = mixed(made.color, color(theme, Role::accent), 0.6);
@@ -156,7 +156,7 @@ BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_
 }
 
 BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
-    const Theme theme = frame.options.theme;
+    const ColorScheme theme = frame.options.theme;
     Item made;
     for (const auto& brick : frame.scene.stock) made.box.extend(brick->mesh.bounds);
     made.color = color(theme, Role::stock_raw);
@@ -173,7 +173,7 @@ void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& a
 }
 
 void BodyPass::set_material(const ViewFrame& frame, const Item& item, bool glass) const {
-    const bool dark = frame.options.theme == Theme::dark;
+    const bool dark = frame.options.theme == ColorScheme::dark;
     faces_.use();
     set_view(faces_, frame, item.pose);
     faces_.set("sky", sky_of(frame));

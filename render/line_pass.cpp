@@ -209,7 +209,7 @@ void LinePass::draw_visible(const ViewFrame& frame, const Level& level) const {
 }
 
 void LinePass::set_inks(const ViewFrame& frame) const {
-    const Theme theme = frame.options.theme;
+    const ColorScheme theme = frame.options.theme;
     const auto scale = static_cast<float>(frame.options.scale);
     lines_.use();
     lines_.set("view_from_scene", frame.view_from_scene);
@@ -281,7 +281,7 @@ void LinePass::draw_over(const ViewFrame& frame, const std::vector<Vec3>& points
     over_.fill(ends);
     set_inks(frame);
     glDisable(GL_CULL_FACE);
-    const bool dark = frame.options.theme == Theme::dark;
+    const bool dark = frame.options.theme == ColorScheme::dark;
     for (const bool seam : {true, false}) {
         lines_.set("ink",
                    seam ? (dark ? Color{12, 15, 19, 200} : Color{255, 255, 255, 220}) : color);

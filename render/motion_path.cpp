@@ -16,7 +16,7 @@ constexpr double joined = 1e-3;
 class PathMaker {
 public:
     PathMaker(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-              const MotionLook& look)
+              const MotionStyle& look)
         : points_(points), setup_(setup), tool_length_(tool_length), look_(look) {}
 
     void straight(const core::AxisValues& from, const core::AxisValues& to) {
@@ -47,13 +47,13 @@ private:
     std::vector<PathPoint>& points_;
     const core::Setup& setup_;
     double tool_length_;
-    const MotionLook& look_;
+    const MotionStyle& look_;
 };
 
 } // namespace
 
 void append_motion(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-                   const core::Path& path, const MotionLook& look) {
+                   const core::Path& path, const MotionStyle& look) {
     PathMaker maker(points, setup, tool_length, look);
     for (const core::Leg& leg : path.legs) {
         if (leg.straight && leg.start_known && leg.places.size() == 2) {

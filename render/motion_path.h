@@ -7,7 +7,7 @@
 namespace render {
 
 /// What is said of the pieces of a motion.
-struct MotionLook {
+struct MotionStyle {
     uint32_t block = 0;
     ClearanceState state = ClearanceState::none;
     bool rapid = false;
@@ -20,6 +20,6 @@ struct MotionLook {
 ///        that are certain. The path begins anew where a motion does not start where the last one
 ///        ended.
 void append_motion(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-                   const core::Path& path, const MotionLook& look);
+                   const core::Path& path, const MotionStyle& look);
 
 } // namespace render

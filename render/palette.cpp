@@ -44,8 +44,8 @@ Color mixed(Color a, Color b, double share) {
     return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share), mix(a.a, b.a, share)};
 }
 
-Color color(Theme theme, Role role) {
-    return (theme == Theme::dark ? dark : light)[static_cast<size_t>(role)];
+Color color(ColorScheme theme, Role role) {
+    return (theme == ColorScheme::dark ? dark : light)[static_cast<size_t>(role)];
 }
 
 ClearanceState clearance_state(std::optional<double> clearance, double allowance) {
@@ -54,7 +54,7 @@ ClearanceState clearance_state(std::optional<double> clearance, double allowance
     return *clearance <= 2.0 * allowance ? ClearanceState::near : ClearanceState::clear;
 }
 
-Color state_color(Theme theme, ClearanceState state) {
+Color state_color(ColorScheme theme, ClearanceState state) {
     switch (state) {
     case ClearanceState::violation:
         return color(theme, Role::violation);

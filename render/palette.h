@@ -25,7 +25,7 @@ Color with_alpha(Color color, double alpha);
 /// A mixture: `a` at share 0, `b` at share 1.
 Color mixed(Color a, Color b, double share);
 
-enum class Theme : uint8_t { dark, light };
+enum class ColorScheme : uint8_t { dark, light };
 
 /// What a colour is for.
 enum class Role : uint8_t {
@@ -58,7 +58,7 @@ enum class Role : uint8_t {
 };
 constexpr size_t role_count = static_cast<size_t>(Role::section) + 1;
 
-Color color(Theme theme, Role role);
+Color color(ColorScheme theme, Role role);
 
 /// How a clearance stands to its allowance; `none` as long as nobody knows it.
 enum class ClearanceState : uint8_t { none, clear, near, violation };
@@ -67,10 +67,10 @@ enum class ClearanceState : uint8_t { none, clear, near, violation };
 ClearanceState clearance_state(std::optional<double> clearance, double allowance);
 
 /// The colour that stands for a state, in lists, on the path and on the timeline.
-Color state_color(Theme theme, ClearanceState state);
+Color state_color(ColorScheme theme, ClearanceState state);
 
 /// The colour of a clearance in mm by the state that it is in.
-inline Color clearance_color(Theme theme, std::optional<double> clearance, double allowance) {
+inline Color clearance_color(ColorScheme theme, std::optional<double> clearance, double allowance) {
     return state_color(theme, clearance_state(clearance, allowance));
 }
 

@@ -125,12 +125,12 @@ struct Renderer::Parts {
     HollowPass hollows;
     GlVertexArray no_attributes;
 
-    void draw_background(Theme theme) const;
+    void draw_background(ColorScheme theme) const;
     void draw_witness(const ViewFrame& frame);
     void draw_measured(const ViewFrame& frame);
 };
 
-void Renderer::Parts::draw_background(Theme theme) const {
+void Renderer::Parts::draw_background(ColorScheme theme) const {
     background.use();
     background.set_rgb("top", color(theme, Role::view_top));
     background.set_rgb("bottom", color(theme, Role::view_bottom));

@@ -40,7 +40,7 @@ private:
 };
 
 struct DrawOptions {
-    Theme theme = Theme::dark;
+    ColorScheme theme = ColorScheme::dark;
     double scale = 1.0;       // of lines and points, for screens with many pixels
     bool hollows = false;     // darker corners; for pictures that stand still
     bool edges = true;        // lines along the edges of bodies and stock

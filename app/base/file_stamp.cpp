@@ -39,7 +39,7 @@ std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
     return has_whole_seconds ? 2500ms : 50ms;
 }
 
-bool is_fresh(const FileStamp& stamp) {
+bool may_change_unseen(const FileStamp& stamp) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     return stamp.is_there && last_change(stamp) > now - tick_of(stamp);
 }

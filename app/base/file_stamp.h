@@ -28,7 +28,7 @@ std::chrono::nanoseconds tick_of(const FileStamp& stamp);
 /// Whether it was written so short a time ago that it may have been written again without another
 /// time: what was read just now may be older than the stamp. Always of a time to come, as a clock
 /// that is ahead gives it: when that was nobody knows.
-bool is_fresh(const FileStamp& stamp);
+bool may_change_unseen(const FileStamp& stamp);
 
 /// Where a file is, or will be once it is written: whole, behind all links. Empty where nobody can
 /// know, as behind a loop of links.

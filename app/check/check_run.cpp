@@ -64,7 +64,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
             return tl::unexpected(named(begun.error(), job.program));
     runner.to_the_end();
     check.run.times.check = checking.seconds();
-    const std::vector<LengthDoubt> doubts = runner.length_doubts();
+    const std::vector<LengthMismatch> doubts = runner.length_doubts();
     conclude(check, std::move(runner.place_to_change().machine), doubts, job.needs_surface);
     check.run.inputs = recorder.inputs();
     return std::move(check.run);

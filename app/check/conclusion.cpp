@@ -64,7 +64,7 @@ void put_in_order(std::vector<core::Finding>& findings) {
 } // namespace
 
 void conclude(PreparedCheck& check, core::SimulatorState end,
-              const std::vector<LengthDoubt>& doubts, bool needs_surface) {
+              const std::vector<LengthMismatch>& doubts, bool needs_surface) {
     CheckRun& run = check.run;
     run.statistics = end.statistics;
     run.points = core::point_count(end.stock.lines);

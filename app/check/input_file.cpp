@@ -4,9 +4,9 @@
 
 namespace app {
 
-InputRecorder::InputRecorder() : listening_([this](const core::FileLook& look) { note(look); }) {}
+InputRecorder::InputRecorder() : listening_([this](const core::FileAccess& look) { note(look); }) {}
 
-void InputRecorder::note(const core::FileLook& look) {
+void InputRecorder::note(const core::FileAccess& look) {
     InputFile input{look.question, look.path, look.name, std::nullopt};
     if (look.answer)
         input.answer = look.question == core::FileQuestion::content ? sha256_of(*look.answer)

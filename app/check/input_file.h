@@ -30,10 +30,10 @@ public:
     std::vector<InputFile> inputs() const { return {inputs_.begin(), inputs_.end()}; }
 
 private:
-    void note(const core::FileLook& look);
+    void note(const core::FileAccess& look);
 
     std::set<InputFile> inputs_;
-    core::FileListening listening_;
+    core::FileAccessObserver listening_;
 };
 
 } // namespace app

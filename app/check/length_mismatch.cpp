@@ -60,7 +60,7 @@ bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
 }
 
 /// Whether a finding is gone with the right length, as far as that was tried.
-bool is_consequence(const LengthDoubt& doubt, const core::Finding& finding) {
+bool is_consequence(const LengthMismatch& doubt, const core::Finding& finding) {
     if (!finding.block || *finding.block < doubt.first || *finding.block > doubt.last) return false;
     if (!doubt.cured_to || *finding.block > *doubt.cured_to) return false;
     return may_come_of_length(finding)
@@ -119,7 +119,7 @@ std::string sentence(const CheckRun& run, const Consequences& all, double too_lo
                        all.collides ? "runs into" : "comes too near to", listed(all.bodies), where);
 }
 
-std::optional<core::Finding> cause_of(const CheckRun& run, const LengthDoubt& doubt) {
+std::optional<core::Finding> cause_of(const CheckRun& run, const LengthMismatch& doubt) {
     for (const core::Finding& finding : run.findings)
         if (finding.block == doubt.first && is_cause(finding.rule)) return finding;
     return std::nullopt;
@@ -181,8 +181,8 @@ void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
     state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
 }
 
-void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts) {
-    for (const LengthDoubt& doubt : doubts) {
+void gather_consequences(CheckRun& run, const std::vector<LengthMismatch>& doubts) {
+    for (const LengthMismatch& doubt : doubts) {
         const auto cause = cause_of(run, doubt);
         if (!cause) continue;
         const auto comes_of_it = [&](const core::Finding& finding) {

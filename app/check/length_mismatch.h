@@ -9,7 +9,7 @@ namespace app {
 
 /// Blocks in which the tool stands lower than meant, because the control counts with a shorter
 /// length than the tool has.
-struct LengthDoubt {
+struct LengthMismatch {
     core::BlockIndex first{}, last{};         // the first has the finding that says why
     double too_low = 0.0;                     // mm
     double length = 0.0;                      // that the tool has, mm
@@ -20,7 +20,7 @@ struct LengthDoubt {
 
 /// What is known of the lengths that a program counts with. A plain value.
 struct LengthWatch {
-    std::vector<LengthDoubt> doubts;
+    std::vector<LengthMismatch> doubts;
     bool is_open = false; // the last of them goes on
 };
 
@@ -41,6 +41,6 @@ void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
 /// how many blocks these are; where its severity is milder than theirs, one of them stays as well
 /// and says it. A rule that is switched off takes in nothing. Blocks keep their verdicts, and the
 /// run keeps what was taken in as `taken_in`.
-void gather_consequences(CheckRun& run, const std::vector<LengthDoubt>& doubts);
+void gather_consequences(CheckRun& run, const std::vector<LengthMismatch>& doubts);
 
 } // namespace app

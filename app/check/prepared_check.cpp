@@ -83,7 +83,7 @@ void take_tool_at_start(PreparedCheck& check) {
 
 /// A program, and the digest of the very bytes that it was read from: a pipe gives them only once.
 core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
-    const core::FileListening listening([&](const core::FileLook& look) {
+    const core::FileAccessObserver listening([&](const core::FileAccess& look) {
         if (look.question == core::FileQuestion::content && look.answer)
             sha256 = sha256_of(*look.answer);
     });

@@ -16,9 +16,9 @@
 
 namespace app {
 
-CuredRun::CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
-                   const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
-                   const LengthDoubt& doubt)
+CorrectedRun::CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
+                           const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
+                           const LengthMismatch& doubt)
     : setup_(setup),
       speed_by_hand_(speed_by_hand),
       length_(doubt.length),
@@ -33,7 +33,7 @@ CuredRun::CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& env
     entry.wear = 0.0;
 }
 
-void CuredRun::put_length_on() {
+void CorrectedRun::put_length_on() {
     const gcode::Offsets& offsets = place_.modal.offsets;
     if (offsets.tool[2] == length_) return;
     gcode::Offsets cured = offsets;
@@ -41,7 +41,7 @@ void CuredRun::put_length_on() {
     gcode::change_offsets(place_.modal, cured);
 }
 
-void CuredRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
+void CorrectedRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
     is_lost_ = is_lost_ || &setup != &setup_;
     if (is_lost_) return;
     put_length_on();
@@ -60,7 +60,7 @@ void CuredRun::follow(const gcode::BlockResult& real, const core::Setup& setup) 
     last_ = block.block;
 }
 
-void CuredRun::end(LengthDoubt& doubt) {
+void CorrectedRun::end(LengthMismatch& doubt) {
     const auto tool = state_.tool ? setup_.tools.find(*state_.tool) : setup_.tools.end();
     if (tool != setup_.tools.end())
         if (auto air = core::end_air(state_.watch.air, tool->second.description.diameter))
@@ -132,7 +132,7 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                        std::string(block.file)};
 }
 
-void BlockRunner::remark_on(const gcode::BlockResult& block, const RunPlace& place,
+void BlockRunner::remark_on(const gcode::BlockResult& block, const RunState& place,
                             std::vector<core::Finding>& findings) const {
     for (const gcode::Warning& warning : block.warnings) {
         // What the set-up states is stated, be it all zero.
@@ -145,7 +145,7 @@ void BlockRunner::remark_on(const gcode::BlockResult& block, const RunPlace& pla
     }
 }
 
-core::Result<std::optional<BlockStep>> BlockRunner::step(RunPlace& place) {
+core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& place) {
     before_ = place.control;
     const auto next = interpreter_.next(place.control);
     if (!next) return tl::unexpected(named(next.error(), check_.program->file));
@@ -243,7 +243,7 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
       run_(check.run),
       runner_(check),
       place_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
-    runner_.before_block = [this](const gcode::BlockResult& block, const ProgramPlace& before) {
+    runner_.before_block = [this](const gcode::BlockResult& block, const BlockContext& before) {
         follow_cure(block, before);
     };
 }
@@ -314,15 +314,15 @@ void ProgramRunner::stop(core::Error error) {
     run_.stopped = std::move(error);
 }
 
-void ProgramRunner::follow_cure(const gcode::BlockResult& block, const ProgramPlace& before) {
+void ProgramRunner::follow_cure(const gcode::BlockResult& block, const BlockContext& before) {
     const LengthWatch& lengths = before.lengths;
     const bool is_first = lengths.is_open && lengths.doubts.back().first == block.block;
     if (!lengths.is_open || is_first) end_cure();
     if (is_first) {
         followed_ = lengths.doubts.back();
-        cured_ =
-            std::make_unique<CuredRun>(*check_.library, check_.file.environment, runner_.setup(),
-                                       check_.file.speed_by_hand, before, lengths.doubts.back());
+        cured_ = std::make_unique<CorrectedRun>(*check_.library, check_.file.environment,
+                                                runner_.setup(), check_.file.speed_by_hand, before,
+                                                lengths.doubts.back());
     }
     if (cured_) cured_->follow(block, runner_.setup());
 }
@@ -334,10 +334,10 @@ void ProgramRunner::end_cure() {
     cured_.reset();
 }
 
-std::vector<LengthDoubt> ProgramRunner::length_doubts() const {
-    std::vector<LengthDoubt> doubts = place_.lengths.doubts;
-    for (LengthDoubt& doubt : doubts)
-        for (const LengthDoubt& cure : cures_) {
+std::vector<LengthMismatch> ProgramRunner::length_doubts() const {
+    std::vector<LengthMismatch> doubts = place_.lengths.doubts;
+    for (LengthMismatch& doubt : doubts)
+        for (const LengthMismatch& cure : cures_) {
             if (cure.first != doubt.first) continue;
             doubt.cured_to = cure.cured_to;
             doubt.left = cure.left;
@@ -407,13 +407,13 @@ CheckProgress ProgramRunner::progress() const {
             run_.findings.size()};
 }
 
-void ProgramRunner::go_back(const RunPlace& place, size_t blocks, size_t findings) {
+void ProgramRunner::go_back(const RunState& place, size_t blocks, size_t findings) {
     assert(!place.lengths.is_open);
     place_ = place;
     first_to_time_ = blocks;
     cured_.reset();
     std::erase_if(cures_,
-                  [&](const LengthDoubt& cure) { return core::value_of(cure.first) >= blocks; });
+                  [&](const LengthMismatch& cure) { return core::value_of(cure.first) >= blocks; });
     run_.blocks.resize(blocks);
     run_.findings.resize(findings);
     run_.stopped.reset();

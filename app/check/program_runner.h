@@ -12,7 +12,7 @@
 namespace app {
 
 /// What a program stands on between two blocks.
-struct ProgramPlace {
+struct BlockContext {
     const gcode::InterpreterState& at;
     const gcode::Lowering& lowering;
     const core::SimulatorState& state;
@@ -24,20 +24,20 @@ struct ProgramPlace {
 /// tool has. What is found there as well does not come of the length.
 ///
 /// Cost: that of the check itself, for these blocks.
-class CuredRun {
+class CorrectedRun {
 public:
     /// Begins before the first block of the doubt. Library, environment and set-up must outlive it;
     /// the library is that of the run.
-    CuredRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
-             const core::Setup& setup, bool speed_by_hand, const ProgramPlace& before,
-             const LengthDoubt& doubt);
+    CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
+                 const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
+                 const LengthMismatch& doubt);
 
     /// Runs the block that the program ran under a set-up. Does nothing any more once the cured
     /// program has taken another way, or the set-up is another one.
     void follow(const gcode::BlockResult& real, const core::Setup& setup);
 
     /// Writes what was found into the doubt.
-    void end(LengthDoubt& doubt);
+    void end(LengthMismatch& doubt);
 
 private:
     void put_length_on();
@@ -83,7 +83,7 @@ public:
     explicit BlockRunner(const PreparedCheck& check) : check_(check), setup_(&check.run.setup) {}
 
     // Told of a block before it is run, when the control has read it and nothing has moved.
-    std::function<void(const gcode::BlockResult&, const ProgramPlace&)> before_block;
+    std::function<void(const gcode::BlockResult&, const BlockContext&)> before_block;
     // Says of a block what the distance core would; empty: that is measured.
     std::function<core::Result<core::Judgement>(std::span<const core::Event>,
                                                 const core::SimulatorState&)>
@@ -98,7 +98,7 @@ public:
     /// Result: the same, to the last bit, from the same place.
     /// Errors: what the control would stop at, and blocks that the machine cannot carry out. The
     ///         place has not changed then.
-    core::Result<std::optional<BlockStep>> step(RunPlace& place);
+    core::Result<std::optional<BlockStep>> step(RunState& place);
 
     /// Shows the blocks that come after a place of the control and what they are about to do,
     /// without carrying them out, as long as `visit` wants more; up to the end or the first error.
@@ -109,7 +109,7 @@ private:
     std::optional<core::Error> refusal(const gcode::BlockResult& block,
                                        const gcode::Lowering& lowering) const;
     /// What the interpreter remarks of a block.
-    void remark_on(const gcode::BlockResult& block, const RunPlace& place,
+    void remark_on(const gcode::BlockResult& block, const RunState& place,
                    std::vector<core::Finding>& findings) const;
 
     const PreparedCheck& check_;
@@ -153,26 +153,26 @@ public:
     /// Runs the program to its end or to its first error.
     void to_the_end();
 
-    const RunPlace& place() const { return place_; }
+    const RunState& place() const { return place_; }
     CheckProgress progress() const;
 
     /// From the next block on. The set-up must outlive the runner.
     void use(const core::Setup& setup) { runner_.use(setup); }
     /// Where the run goes on.
-    RunPlace& place_to_change() { return place_; }
+    RunState& place_to_change() { return place_; }
 
     /// Goes back to a place from which the run was not long ago: what the run holds of the blocks
     /// from there on is dropped, and made again by advance(). The run must hold the first
     /// `findings` of its findings as they were told, and no block of a length doubt may be open at
     /// the place.
-    void go_back(const RunPlace& place, size_t blocks, size_t findings);
+    void go_back(const RunState& place, size_t blocks, size_t findings);
 
     /// Where the control counted with a wrong length.
-    std::vector<LengthDoubt> length_doubts() const;
+    std::vector<LengthMismatch> length_doubts() const;
 
 private:
     /// Runs the block of a length doubt with the right length, beside the program.
-    void follow_cure(const gcode::BlockResult& block, const ProgramPlace& before);
+    void follow_cure(const gcode::BlockResult& block, const BlockContext& before);
     void end_cure();
     /// A control stops with an alarm where this error is: a block of its own, and a finding if a
     /// rule has a name for it.
@@ -191,12 +191,12 @@ private:
     const PreparedCheck& check_;
     CheckRun& run_;
     BlockRunner runner_;
-    RunPlace place_;
+    RunState place_;
     uint32_t last_line_ = 0; // of the main program
-    std::unique_ptr<CuredRun> cured_ = {};
-    std::vector<LengthDoubt> cures_ = {}; // what came of it, by the first blocks of doubts
-    LengthDoubt followed_ = {};           // the doubt that it is about
-    size_t first_to_time_ = 0;            // blocks before it have their place in time
+    std::unique_ptr<CorrectedRun> cured_ = {};
+    std::vector<LengthMismatch> cures_ = {}; // what came of it, by the first blocks of doubts
+    LengthMismatch followed_ = {};           // the doubt that it is about
+    size_t first_to_time_ = 0;               // blocks before it have their place in time
 };
 
 } // namespace app

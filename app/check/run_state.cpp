@@ -50,13 +50,13 @@ void add(StateDigest& digest, const core::SimulatorState& machine) {
 
 } // namespace
 
-RunPlace start_of_program(const gcode::Environment& environment, const core::Setup& setup,
+RunState start_of_program(const gcode::Environment& environment, const core::Setup& setup,
                           core::SimulatorState machine) {
     return {gcode::initial_state(environment), gcode::initial_lowering(environment),
             std::move(machine), core::start_clock(setup.machine)};
 }
 
-uint64_t digest_of(const RunPlace& place) {
+uint64_t digest_of(const RunState& place) {
     StateDigest digest;
     digest.add(gcode::digest_of(place.control));
     digest.add(uint64_t(place.control.next_block));

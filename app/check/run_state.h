@@ -11,7 +11,7 @@ namespace app {
 
 /// Everything between two blocks of a run: the control, the machine, the stock, and what rules keep
 /// in mind. A plain value: copy it to come back; copies share what is large.
-struct RunPlace {
+struct RunState {
     gcode::InterpreterState control;
     gcode::Lowering lowering;
     core::SimulatorState machine;
@@ -23,13 +23,13 @@ struct RunPlace {
 };
 
 /// Before the first block, where the machine stands so.
-RunPlace start_of_program(const gcode::Environment& environment, const core::Setup& setup,
+RunState start_of_program(const gcode::Environment& environment, const core::Setup& setup,
                           core::SimulatorState machine);
 
 /// A number that follows from all that decides how a run goes on and what it looks like here: the
 /// control, every scan line with what cut it, the places of axes, tool, spindle and fixtures.
 ///
 /// Cost: reads every line of the stock.
-uint64_t digest_of(const RunPlace& place);
+uint64_t digest_of(const RunState& place);
 
 } // namespace app

@@ -409,8 +409,8 @@ ExitCode watch(const std::vector<std::string>& outputs,
         written.begin_pass();
         ExitCode code{};
         {
-            const core::FileListening listening(
-                [&files](const core::FileLook& look) { files.note(look); });
+            const core::FileAccessObserver listening(
+                [&files](const core::FileAccess& look) { files.note(look); });
             code = pass(files);
         }
         written.end_pass(files);

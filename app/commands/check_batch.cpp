@@ -54,7 +54,7 @@ private:
     std::optional<ProgramResult> find(const CheckJob& job);
 
     std::unique_ptr<ResultStore> store_;
-    std::unique_ptr<StoresBeside> beside_; // null if a database was asked for
+    std::unique_ptr<SiblingStores> beside_; // null if a database was asked for
     std::mutex guard_;
     bool is_told_ = false;
     std::atomic<bool> is_lost_ = false; // the database, for this run
@@ -86,14 +86,14 @@ BatchStore::BatchStore(const CheckOptions& options) {
     const std::string place = path_.empty() && options.watch ? Database::in_memory : path_;
     if (place.empty()) return;
     auto store =
-        ResultStore::open(place, build_version(), std::make_shared<Patience>(is_interrupted));
+        ResultStore::open(place, build_version(), std::make_shared<RetryBudget>(is_interrupted));
     if (!store) {
         give_up(store.error());
         return;
     }
     store_ = std::make_unique<ResultStore>(*std::move(store));
     if (options.cache.empty() && !path_.empty())
-        beside_ = std::make_unique<StoresBeside>(place, *store_);
+        beside_ = std::make_unique<SiblingStores>(place, *store_);
 }
 
 void BatchStore::give_up(const core::Error& error) {
@@ -203,7 +203,7 @@ std::string share_text(const CheckOptions& options, const SharedWork& work) {
                        work.programs.size());
 }
 
-Shard shard_of(const ShareName& share, const SharedWork& work, const BatchResult& batch,
+Shard shard_of(const ShardId& share, const SharedWork& work, const BatchResult& batch,
                double seconds) {
     Shard shard;
     shard.version = build_version();
@@ -247,7 +247,7 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
             if (found) known.insert(found->program);
             return found;
         };
-    hooks.looked = [&](const core::FileLook& look) {
+    hooks.looked = [&](const core::FileAccess& look) {
         read.note(look);
         if (watch.files) watch.files->note(look);
     };

@@ -27,8 +27,8 @@ struct CheckOptions {
     bool verbose = false;
     bool watch = false;
     std::optional<unsigned> jobs;
-    std::optional<double> memory;   // MB
-    std::optional<ShareName> share; // of the programs; empty: all
+    std::optional<double> memory; // MB
+    std::optional<ShardId> share; // of the programs; empty: all
 };
 
 /// A report that is to be written.

@@ -35,17 +35,17 @@ core::Result<std::vector<std::string>> places_of_stores(const HistoryOptions& op
 
 /// What two databases have, as after another division of a library among machines, is one version,
 /// and was last seen when anybody did.
-std::vector<KeptVersion> joined(std::vector<KeptVersion> all) {
+std::vector<StoredVersion> joined(std::vector<StoredVersion> all) {
     std::map<std::vector<std::string>, size_t> places;
-    std::vector<KeptVersion> versions;
-    for (KeptVersion& each : all) {
+    std::vector<StoredVersion> versions;
+    for (StoredVersion& each : all) {
         const auto [at, is_new] = places.try_emplace(
             {each.version, each.setup, each.options, each.inputs}, versions.size());
         if (is_new) {
             versions.push_back(std::move(each));
             continue;
         }
-        KeptVersion& same = versions[at->second];
+        StoredVersion& same = versions[at->second];
         same.checked_at = std::min(same.checked_at, each.checked_at);
         same.seen_at = std::max(same.seen_at, each.seen_at);
     }
@@ -53,26 +53,26 @@ std::vector<KeptVersion> joined(std::vector<KeptVersion> all) {
 }
 
 /// All versions, that which was seen last at the end.
-core::Result<std::vector<KeptVersion>> versions_in(const std::vector<std::string>& places,
-                                                   const std::string& program) {
+core::Result<std::vector<StoredVersion>> versions_in(const std::vector<std::string>& places,
+                                                     const std::string& program) {
     std::vector<ResultStore> stores;
-    std::vector<KeptVersion> all;
+    std::vector<StoredVersion> all;
     for (const std::string& place : places) {
         FEELER_TRY(ResultStore store, ResultStore::open(place, build_version()));
-        FEELER_TRY(std::vector<KeptVersion> versions, store.history(program));
+        FEELER_TRY(std::vector<StoredVersion> versions, store.history(program));
         std::move(versions.begin(), versions.end(), std::back_inserter(all));
         stores.push_back(std::move(store));
     }
-    for (KeptVersion& version : all) {
+    for (StoredVersion& version : all) {
         for (ResultStore& store : stores) {
             FEELER_TRY(const int64_t seen, store.seen_at(version));
             version.seen_at = std::max(version.seen_at, seen);
         }
     }
-    std::vector<KeptVersion> versions = joined(std::move(all));
+    std::vector<StoredVersion> versions = joined(std::move(all));
     std::stable_sort(
         versions.begin(), versions.end(),
-        [](const KeptVersion& a, const KeptVersion& b) { return a.seen_at < b.seen_at; });
+        [](const StoredVersion& a, const StoredVersion& b) { return a.seen_at < b.seen_at; });
     return versions;
 }
 
@@ -81,7 +81,7 @@ core::Result<void> write_history(const HistoryOptions& options) {
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
     for (const std::string& place : places)
         if (auto safe = check_output(options.output, {place}); !safe) return safe;
-    FEELER_TRY(const std::vector<KeptVersion> versions, versions_in(places, options.program));
+    FEELER_TRY(const std::vector<StoredVersion> versions, versions_in(places, options.program));
     if (versions.empty())
         return core::fail(core::ErrorCode::missing_value,
                           fmt::format("{} has no results of {}", places[0], options.program));

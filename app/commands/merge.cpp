@@ -61,7 +61,7 @@ void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
             };
             for (const std::string& name : {result.program, result.setup}) add(name);
             if (result.error) add(result.error->file);
-            for (const KeptFinding& finding : result.findings) add(finding.file);
+            for (const StoredFinding& finding : result.findings) add(finding.file);
         }
     }
 }

@@ -20,9 +20,9 @@ FileNumber number_of(const std::string& path) {
 
 } // namespace
 
-ReadFiles::ReadFiles() : listening_([this](const core::FileLook& look) { note(look); }) {}
+ReadFiles::ReadFiles() : listening_([this](const core::FileAccess& look) { note(look); }) {}
 
-void ReadFiles::note(const core::FileLook& look) {
+void ReadFiles::note(const core::FileAccess& look) {
     if (look.question == core::FileQuestion::content) add(look.path);
 }
 

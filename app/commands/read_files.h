@@ -18,7 +18,7 @@ public:
     ReadFiles();
 
     /// Told of a look by another thread.
-    void note(const core::FileLook& look);
+    void note(const core::FileAccess& look);
     void add(const std::string& path); // empty: nothing
 
     /// Refuses an output file that is one of them, also by another name or link.
@@ -30,7 +30,7 @@ public:
 private:
     mutable std::mutex mutex_;
     std::set<std::string> paths_;
-    core::FileListening listening_;
+    core::FileAccessObserver listening_;
 };
 
 /// As write_output, of what is not to take the place of a file that was read.

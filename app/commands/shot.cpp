@@ -157,7 +157,7 @@ core::Result<std::string> FilmWriter::finish() {
 namespace {
 
 using viewer::BlockRow;
-using viewer::Studio;
+using viewer::OffscreenViewer;
 using viewer::ViewModel;
 
 constexpr size_t most_prints = 60;  // of a sheet
@@ -213,15 +213,15 @@ core::Result<size_t> chosen_block(const ShotOptions& options, const ViewModel& m
 }
 
 core::Result<void> shoot_block(const ShotOptions& options, const render::Viewport& size,
-                               Studio& studio) {
-    FEELER_TRY(const size_t block, chosen_block(options, studio.model));
+                               OffscreenViewer& offscreen) {
+    FEELER_TRY(const size_t block, chosen_block(options, offscreen.model));
     if (options.block)
-        viewer::go_to(studio.model, block);
+        viewer::go_to(offscreen.model, block);
     else
-        viewer::go_to_witness(studio.model, block);
-    studio.settle();
-    studio.look(view_named(options.view), size);
-    FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
+        viewer::go_to_witness(offscreen.model, block);
+    offscreen.settle();
+    offscreen.look(view_named(options.view), size);
+    FEELER_TRY(const render::Image image, offscreen.picture(size, !options.no_ui));
     return render::write_png(image, options.output);
 }
 
@@ -248,17 +248,17 @@ std::string caption_of(const ViewModel& model, size_t block, const std::vector<s
     return text;
 }
 
-core::Result<void> shoot_sheet(const ShotOptions& options, Studio& studio) {
+core::Result<void> shoot_sheet(const ShotOptions& options, OffscreenViewer& offscreen) {
     const render::Viewport size{460, 330};
-    std::vector<Studio::Print> prints;
-    const auto blocks = blocks_with_findings(studio.model);
+    std::vector<OffscreenViewer::Print> prints;
+    const auto blocks = blocks_with_findings(offscreen.model);
     for (const auto& [block, findings] : blocks) {
         if (prints.size() == most_prints) break;
-        viewer::go_to_witness(studio.model, block);
-        studio.settle();
-        studio.look(viewer::ShotView::witness, size);
-        FEELER_TRY(render::Image image, studio.picture(size, false));
-        prints.push_back({std::move(image), caption_of(studio.model, block, findings)});
+        viewer::go_to_witness(offscreen.model, block);
+        offscreen.settle();
+        offscreen.look(viewer::ShotView::witness, size);
+        FEELER_TRY(render::Image image, offscreen.picture(size, false));
+        prints.push_back({std::move(image), caption_of(offscreen.model, block, findings)});
     }
     if (blocks.size() > prints.size())
         print_note(fmt::format("feeler: the sheet has the first {} of {} blocks with findings\n",
@@ -266,13 +266,13 @@ core::Result<void> shoot_sheet(const ShotOptions& options, Studio& studio) {
     if (prints.empty())
         return core::fail(core::ErrorCode::missing_value, "--sheet: no finding is about a block");
     const size_t columns = prints.size() < 4 ? prints.size() : prints.size() < 9 ? 2 : 3;
-    FEELER_TRY(const render::Image image, studio.sheet(prints, columns));
+    FEELER_TRY(const render::Image image, offscreen.sheet(prints, columns));
     return render::write_png(image, options.output);
 }
 
 core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport& size,
-                              Studio& studio) {
-    ViewModel& model = studio.model;
+                              OffscreenViewer& offscreen) {
+    ViewModel& model = offscreen.model;
     const size_t from = options.from.value_or(0), to = options.to.value_or(model.rows.size() - 1);
     if (to >= model.rows.size() || from >= model.rows.size())
         return tl::unexpected(no_such("--from, --to: " + block_numbers(model)));
@@ -288,9 +288,9 @@ core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport
     model.playback.speed = 1.0;
     FEELER_TRY(const auto film, FilmWriter::open(options.output));
     for (size_t i = 0; i < count; ++i) {
-        studio.settle();
-        if (i == 0) studio.look(view_named(options.view), size);
-        FEELER_TRY(const render::Image image, studio.picture(size, !options.no_ui));
+        offscreen.settle();
+        if (i == 0) offscreen.look(view_named(options.view), size);
+        FEELER_TRY(const render::Image image, offscreen.picture(size, !options.no_ui));
         if (const auto written = film->add(image); !written) return written;
         viewer::play(model, length / static_cast<double>(count - 1));
     }
@@ -325,18 +325,19 @@ core::Result<void> shoot(const ShotOptions& options) {
     if (auto safe = read.check(options.output); !safe) return safe;
     if (!options.from && !options.to)
         if (auto safe = check_replaced(options.output); !safe) return safe;
-    const auto theme = options.theme == "light" ? render::Theme::light : render::Theme::dark;
-    FEELER_TRY(const auto studio, Studio::make(theme, 1.0));
-    if (const auto opened = studio->open(job); !opened) return opened;
-    if (!studio->model.has_rows() && studio->model.stopped)
-        return tl::unexpected(*studio->model.stopped);
-    if (!studio->model.has_rows())
+    const auto theme =
+        options.theme == "light" ? render::ColorScheme::light : render::ColorScheme::dark;
+    FEELER_TRY(const auto offscreen, OffscreenViewer::make(theme, 1.0));
+    if (const auto opened = offscreen->open(job); !opened) return opened;
+    if (!offscreen->model.has_rows() && offscreen->model.stopped)
+        return tl::unexpected(*offscreen->model.stopped);
+    if (!offscreen->model.has_rows())
         return core::fail(core::ErrorCode::missing_value, "the program runs no block");
     if (options.device.shown)
-        if (const auto run = studio->run_device(options.device.file); !run) return run;
-    if (options.sheet) return shoot_sheet(options, *studio);
-    if (options.from || options.to) return shoot_film(options, size, *studio);
-    return shoot_block(options, size, *studio);
+        if (const auto run = offscreen->run_device(options.device.file); !run) return run;
+    if (options.sheet) return shoot_sheet(options, *offscreen);
+    if (options.from || options.to) return shoot_film(options, size, *offscreen);
+    return shoot_block(options, size, *offscreen);
 }
 
 /// What is to be seen: one of these.

@@ -75,7 +75,7 @@ public:
 
     /// Blocks that have been run.
     size_t at() const { return at_; }
-    const RunPlace& place() const { return place_; }
+    const RunState& place() const { return place_; }
     const Keyframes& keyframes() const { return run_->keyframes(); }
 
     /// Shows the blocks that come next and what they are about to do, as far as `visit` wants.
@@ -88,7 +88,7 @@ public:
     ///         been.
     core::Result<void> go_to(size_t place);
     /// A copy of a place, without going there.
-    core::Result<RunPlace> place_at(size_t place) { return run_->place_at(place); }
+    core::Result<RunState> place_at(size_t place) { return run_->place_at(place); }
 
     // --- walking: each says why it ended ---
 
@@ -157,7 +157,7 @@ private:
     explicit DebugSession(std::unique_ptr<RecordedRun> run);
 
     std::unique_ptr<RecordedRun> run_;
-    RunPlace place_;
+    RunState place_;
     size_t at_ = 0;
     int last_id_ = 0;
     std::vector<Breakpoint> breakpoints_ = {};

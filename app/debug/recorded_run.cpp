@@ -12,7 +12,7 @@
 
 namespace app {
 
-size_t KeptBoxes::bytes_apart(const KeptBoxes& other) const {
+size_t SavedBoxes::bytes_apart(const SavedBoxes& other) const {
     size_t bytes = boxes.bytes_apart(other.boxes) + blocks.bytes_apart(other.blocks)
                    + gaps.bytes_apart(other.gaps) + block_gaps.bytes_apart(other.block_gaps)
                    + rest.stale.size() * sizeof(uint16_t)
@@ -22,8 +22,8 @@ size_t KeptBoxes::bytes_apart(const KeptBoxes& other) const {
     return bytes;
 }
 
-KeptBoxes kept(core::TileBoxes boxes, const KeptBoxes& like) {
-    KeptBoxes kept;
+SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like) {
+    SavedBoxes kept;
     kept.boxes = {std::exchange(boxes.boxes, {}), like.boxes};
     kept.blocks = {std::exchange(boxes.blocks, {}), like.blocks};
     kept.gaps = {std::exchange(boxes.gaps, {}), like.gaps};
@@ -32,7 +32,7 @@ KeptBoxes kept(core::TileBoxes boxes, const KeptBoxes& like) {
     return kept;
 }
 
-core::TileBoxes restored(const KeptBoxes& kept) {
+core::TileBoxes restored(const SavedBoxes& kept) {
     core::TileBoxes boxes = kept.rest;
     boxes.boxes = kept.boxes.whole();
     boxes.blocks = kept.blocks.whole();
@@ -92,8 +92,8 @@ size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
 
 } // namespace
 
-RunPlace Keyframe::restored() const {
-    RunPlace whole = place;
+RunState Keyframe::restored() const {
+    RunState whole = place;
     for (size_t i = 0; i < boxes.size(); ++i)
         boxes_of(whole.machine.stock, i) = app::restored(boxes[i]);
     return whole;
@@ -121,7 +121,7 @@ const Keyframe& Keyframes::before(size_t blocks) const {
     return frames_[after - 1];
 }
 
-void Keyframes::note(size_t blocks, double seconds, const RunPlace& place) {
+void Keyframes::note(size_t blocks, double seconds, const RunState& place) {
     if (!wants(blocks, seconds)) return;
     const size_t after = index_after(blocks);
     static const Keyframe nothing;
@@ -220,7 +220,7 @@ const core::Setup& RecordedRun::setup_at(size_t block) const {
     return check_.run.setup;
 }
 
-void RecordedRun::change_at(size_t place, RunPlace& state) {
+void RecordedRun::change_at(size_t place, RunState& state) {
     for (size_t i = 0; i < changes_.size(); ++i) {
         if (changes_[i].block != place) continue;
         core::Setup scratch = i == 0 ? check_.run.setup : *setups_[i - 1]; // as it was for this one
@@ -229,7 +229,7 @@ void RecordedRun::change_at(size_t place, RunPlace& state) {
     }
 }
 
-core::Result<RunPlace> RecordedRun::place_at(size_t place) {
+core::Result<RunState> RecordedRun::place_at(size_t place) {
     while (last_place() < place && advance()) {
     }
     if (place > last_place())
@@ -240,15 +240,15 @@ core::Result<RunPlace> RecordedRun::place_at(size_t place) {
     return replayed(place);
 }
 
-RunPlace RecordedRun::replayed(size_t place) {
+RunState RecordedRun::replayed(size_t place) {
     const Keyframe& frame = keyframes_.before(place);
-    RunPlace state = frame.restored();
+    RunState state = frame.restored();
     if (frame.blocks == 0) change_at(0, state); // it is the program's start, whatever was changed
     take_to(state, frame.blocks, place);
     return state;
 }
 
-void RecordedRun::take_to(RunPlace& state, size_t from, size_t place) {
+void RecordedRun::take_to(RunState& state, size_t from, size_t place) {
     assert(from <= place && place <= last_place());
     if (const Keyframe& frame = keyframes_.before(place); frame.blocks > from) {
         state = frame.restored();
@@ -267,7 +267,7 @@ void RecordedRun::take_to(RunPlace& state, size_t from, size_t place) {
 size_t RecordedRun::restart_place(size_t place) {
     // Blocks whose time was still open, and those of a length doubt, are run again whole.
     while (true) {
-        const RunPlace state = replayed(place);
+        const RunState state = replayed(place);
         size_t first = std::min<size_t>(place, state.clock.first_open);
         if (state.lengths.is_open)
             first = std::min<size_t>(first, core::value_of(state.lengths.doubts.back().first));
@@ -279,7 +279,7 @@ size_t RecordedRun::restart_place(size_t place) {
 
 void RecordedRun::record_again_from(size_t place) {
     const size_t first = restart_place(place);
-    const RunPlace state = replayed(first); // the runner's own may hold what is taken back
+    const RunState state = replayed(first); // the runner's own may hold what is taken back
     CheckRun& run = check_.run;
     if (is_complete_) {
         run.findings = told_.findings;
@@ -311,7 +311,7 @@ void RecordedRun::forget_from(size_t place) {
 }
 
 core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
-    FEELER_TRY(RunPlace state, place_at(place));
+    FEELER_TRY(RunState state, place_at(place));
     auto setup = std::make_unique<core::Setup>(setup_at(place));
     if (const auto done = apply(change, *setup, state); !done) return done;
     forget_from(place);

@@ -62,28 +62,28 @@ private:
 };
 
 /// The boxes of a family of lines, to be had again bit for bit.
-struct KeptBoxes {
+struct SavedBoxes {
     SharedPieces<core::Aabb> boxes, blocks;
     SharedPieces<core::BoxGap> gaps, block_gaps;
     core::TileBoxes rest; // what is small
 
-    size_t bytes_apart(const KeptBoxes& other) const;
+    size_t bytes_apart(const SavedBoxes& other) const;
 };
 
 /// Takes the boxes out of where they are.
-KeptBoxes kept(core::TileBoxes boxes, const KeptBoxes& like);
+SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like);
 
-core::TileBoxes restored(const KeptBoxes& kept);
+core::TileBoxes restored(const SavedBoxes& kept);
 
 /// A place that is kept, to come back from. It shares with the keyframe before it what is the same.
 struct Keyframe {
     size_t blocks = 0;    // that were run before it
     double seconds = 0.0; // of work from the first place to here
-    RunPlace place;       // but for the boxes round its lines and columns
-    std::array<KeptBoxes, 4> boxes;
+    RunState place;       // but for the boxes round its lines and columns
+    std::array<SavedBoxes, 4> boxes;
     size_t bytes = 0; // that it does not share with the keyframe before it
 
-    RunPlace restored() const;
+    RunState restored() const;
 };
 
 /// Places along a run, kept within a budget of memory: close to one another where the run is looked
@@ -93,7 +93,7 @@ public:
     explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
 
     /// Keeps a place if it is far enough from the one before it.
-    void note(size_t blocks, double seconds, const RunPlace& place);
+    void note(size_t blocks, double seconds, const RunState& place);
 
     /// The last one at or before a place; there is one, once the first place was added.
     const Keyframe& before(size_t blocks) const;
@@ -165,14 +165,14 @@ public:
     ///
     /// Errors: the program does not go that far.
     /// Cost:   as take_to, from the nearest keyframe.
-    core::Result<RunPlace> place_at(size_t place);
+    core::Result<RunState> place_at(size_t place);
     /// Takes a copy of place `from` on to a later one that the record holds.
     ///
     /// Cost: running the blocks again, but for those before the nearest keyframe.
-    void take_to(RunPlace& state, size_t from, size_t place);
+    void take_to(RunState& state, size_t from, size_t place);
 
     /// As BlockRunner::visit_ahead, from a copy of a place.
-    void visit_ahead(size_t place, const RunPlace& state, const BlockVisit& visit) {
+    void visit_ahead(size_t place, const RunState& state, const BlockVisit& visit) {
         replayer_.use(setup_at(place));
         replayer_.visit_ahead(state.control, state.lowering, visit);
     }
@@ -207,13 +207,13 @@ private:
     RecordedRun(PreparedCheck check, size_t memory_budget);
     void finish();
     /// A copy of a place that the record holds, by way of keyframes, changes there included.
-    RunPlace replayed(size_t place);
+    RunState replayed(size_t place);
     /// Forgets the keyframes from a place on, and the changes behind it.
     void forget_from(size_t place);
     /// Makes the record go on from a place anew.
     void record_again_from(size_t place);
     /// The changes that are made at a place, to a copy of it.
-    void change_at(size_t place, RunPlace& state);
+    void change_at(size_t place, RunState& state);
     /// A place from which the record can be made again up to another one.
     size_t restart_place(size_t place);
 

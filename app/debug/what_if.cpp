@@ -40,7 +40,7 @@ core::Result<void> check_number(double value, const std::string& of) {
     return core::fail(ErrorCode::invalid_value, fmt::format("{}: this is no number", of));
 }
 
-core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunPlace& place) {
+core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunState& place) {
     const auto found = setup.tools.find(change.tool);
     if (found == setup.tools.end())
         return core::fail(ErrorCode::invalid_value,
@@ -58,7 +58,7 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
 }
 
 /// The control must stand where the machine does.
-core::Result<void> check_that_nothing_waits(const RunPlace& place) {
+core::Result<void> check_that_nothing_waits(const RunState& place) {
     if (place.control.contour.is_idle()) return {};
     return core::fail(ErrorCode::unsupported,
                       "the control has read ahead here, for cutter radius compensation or a "
@@ -66,7 +66,7 @@ core::Result<void> check_that_nothing_waits(const RunPlace& place) {
 }
 
 /// Lets other offsets be in effect. The machine stays.
-void use(const gcode::Offsets& offsets, RunPlace& place) {
+void use(const gcode::Offsets& offsets, RunState& place) {
     gcode::change_offsets(place.control.modal, offsets);
     place.lowering.offsets.work = offsets.work;
     place.lowering.offsets.tool = offsets.tool;
@@ -90,7 +90,7 @@ gcode::Offsets with_length(const gcode::ModalState& modal, double before, double
     return offsets;
 }
 
-core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunPlace& place) {
+core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunState& place) {
     const int number = core::value_of(change.number);
     if (number <= 0)
         return core::fail(ErrorCode::invalid_value,
@@ -113,7 +113,7 @@ core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, R
     return {};
 }
 
-core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunPlace& place) {
+core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunState& place) {
     if (change.index >= gcode::work_offset_count)
         return core::fail(ErrorCode::invalid_value, "there is no such work offset");
     if (change.axis >= gcode::axis_count || !setup.machine.axes[change.axis].present)
@@ -137,7 +137,7 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
     return {};
 }
 
-core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunPlace& place) {
+core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& place) {
     if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{} is no allowance: it goes from 0 to 1000 mm",
@@ -171,7 +171,7 @@ core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<b
                                         names.size() == 1 ? "is" : "are", fmt::join(names, ", ")));
 }
 
-core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunPlace& place) {
+core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunState& place) {
     FEELER_TRY(const size_t index, fixture_named(setup, place.machine.fixtures_there, change.name));
     for (int axis = 0; axis < 3; ++axis)
         if (auto wrong = check_number(change.by[axis], change.name); !wrong) return wrong;
@@ -218,7 +218,7 @@ std::string text_of(const WhatIf& change) {
     return std::visit([](const auto& one) { return text(one); }, change);
 }
 
-core::Result<void> apply(const WhatIf& what, core::Setup& setup, RunPlace& place) {
+core::Result<void> apply(const WhatIf& what, core::Setup& setup, RunState& place) {
     return std::visit([&](const auto& one) { return change(one, setup, place); }, what);
 }
 

@@ -52,7 +52,7 @@ std::string text_of(const WhatIf& change);
 ///
 /// Errors: a tool, fixture, offset or axis that there is not; a length that makes no tool; an
 ///         offset that is on while the control has read ahead (G41, G42). Nothing has changed then.
-core::Result<void> apply(const WhatIf& change, core::Setup& setup, RunPlace& place);
+core::Result<void> apply(const WhatIf& change, core::Setup& setup, RunState& place);
 
 /// A tool as it stands when it is pulled out of its holder, or pushed in, until its gauge length is
 /// `length`. The shank is as thick where more of it is seen as it is at its end. Of a tool without

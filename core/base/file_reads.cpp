@@ -9,7 +9,7 @@
 namespace core {
 namespace {
 
-thread_local const FileListening* youngest = nullptr;
+thread_local const FileAccessObserver* youngest = nullptr;
 
 std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t limit) {
     std::error_code failure;
@@ -48,26 +48,26 @@ std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
 
 } // namespace
 
-FileListening::FileListening(Told told) : told_(std::move(told)), older_(youngest) {
+FileAccessObserver::FileAccessObserver(Told told) : told_(std::move(told)), older_(youngest) {
     youngest = this;
 }
 
-FileListening::~FileListening() { youngest = older_; }
+FileAccessObserver::~FileAccessObserver() { youngest = older_; }
 
-void note_look(const FileLook& look) {
+void notify_file_access(const FileAccess& look) {
     if (!youngest) return;
     const int reason = errno;
-    for (const FileListening* each = youngest; each; each = each->older_) each->told_(look);
+    for (const FileAccessObserver* each = youngest; each; each = each->older_) each->told_(look);
     errno = reason;
 }
 
 std::optional<std::string> file_bytes(const std::filesystem::path& path, size_t limit) {
     std::optional<std::string> bytes = read_bytes(path, limit);
     const bool is_whole = bytes && bytes->size() <= limit;
-    note_look({FileQuestion::content,
-               path.string(),
-               {},
-               is_whole ? std::optional<std::string_view>(*bytes) : std::nullopt});
+    notify_file_access({FileQuestion::content,
+                        path.string(),
+                        {},
+                        is_whole ? std::optional<std::string_view>(*bytes) : std::nullopt});
     return bytes;
 }
 
@@ -83,7 +83,7 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
         answer = "other";
     else
         answer = leftover_of(path, failure);
-    note_look({FileQuestion::presence, path.string(), {}, answer});
+    notify_file_access({FileQuestion::presence, path.string(), {}, answer});
     return answer;
 }
 

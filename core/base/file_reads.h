@@ -21,7 +21,7 @@ enum class FileQuestion : uint8_t {
 };
 
 /// A question to the disk and what it answered.
-struct FileLook {
+struct FileAccess {
     FileQuestion question{};
     std::string path; // of the file, or of the folder that is asked about a name
     std::string name{};
@@ -30,24 +30,24 @@ struct FileLook {
 
 /// While it lives, somebody is told of every look that readers of this thread take at the disk. It
 /// is how a check knows its inputs: all of the stack asks by the functions below.
-class FileListening {
+class FileAccessObserver {
 public:
-    using Told = std::function<void(const FileLook&)>;
+    using Told = std::function<void(const FileAccess&)>;
 
-    explicit FileListening(Told told);
-    ~FileListening();
-    FileListening(const FileListening&) = delete;
-    FileListening& operator=(const FileListening&) = delete;
+    explicit FileAccessObserver(Told told);
+    ~FileAccessObserver();
+    FileAccessObserver(const FileAccessObserver&) = delete;
+    FileAccessObserver& operator=(const FileAccessObserver&) = delete;
 
 private:
     Told told_;
-    const FileListening* older_;
+    const FileAccessObserver* older_;
 
-    friend void note_look(const FileLook& look);
+    friend void notify_file_access(const FileAccess& look);
 };
 
 /// Tells who listens on this thread, if anybody does. errno stays what it was.
-void note_look(const FileLook& look);
+void notify_file_access(const FileAccess& look);
 
 /// The bytes of a file; empty when it cannot be read, with the reason in errno. Of a file that is
 /// longer than `limit` one byte more than that is read. Pipes and devices, which may never end, are

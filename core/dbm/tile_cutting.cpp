@@ -302,7 +302,7 @@ double reported(CutModel& model, const LineSums& sums) {
 }
 
 /// What became of one tile, kept until all threads are done.
-struct KeptOutcome {
+struct StoredOutcome {
     uint32_t sweep;
     int family;
     size_t tile;
@@ -346,14 +346,15 @@ private:
 
     /// Sums up in the order in which one thread would have come by, whoever did the work.
     std::vector<double> gather() {
-        std::vector<KeptOutcome> all;
+        std::vector<StoredOutcome> all;
         for (const auto& some : kept_) all.insert(all.end(), some.begin(), some.end());
-        std::stable_sort(all.begin(), all.end(), [](const KeptOutcome& a, const KeptOutcome& b) {
-            if (a.sweep != b.sweep) return a.sweep < b.sweep;
-            return a.family != b.family ? a.family < b.family : a.tile < b.tile;
-        });
+        std::stable_sort(all.begin(), all.end(),
+                         [](const StoredOutcome& a, const StoredOutcome& b) {
+                             if (a.sweep != b.sweep) return a.sweep < b.sweep;
+                             return a.family != b.family ? a.family < b.family : a.tile < b.tile;
+                         });
         std::vector<LineSums> sums(ready_.size());
-        for (const KeptOutcome& one : all) {
+        for (const StoredOutcome& one : all) {
             sums[one.sweep].beyond += one.outcome.removed.beyond;
             sums[one.sweep].points += one.outcome.removed.points;
             boxes_of(model_, one.family).note(one.tile, one.outcome.blocks);
@@ -366,7 +367,7 @@ private:
 
     CutModel& model_;
     std::vector<std::optional<ReadySweep>> ready_;
-    std::vector<std::vector<KeptOutcome>> kept_; // by thread
+    std::vector<std::vector<StoredOutcome>> kept_; // by thread
 };
 
 } // namespace

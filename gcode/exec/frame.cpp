@@ -23,7 +23,7 @@ bool is_plain(const std::string& name) {
 std::optional<std::string> looked_up_in_any_case(const std::string& folder,
                                                  const std::string& name) {
     const std::optional<std::string> actual = name_in_any_case(names_in(folder), name);
-    core::note_look({core::FileQuestion::any_case, folder, name, actual});
+    core::notify_file_access({core::FileQuestion::any_case, folder, name, actual});
     return actual;
 }
 

@@ -241,7 +241,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     if (dialect.language == Language::klartext) return run_klartext(execution);
     if (dialect.language == Language::siemens) return run_siemens(execution);
     if (auto taken = take_steps(execution); !taken) return taken;
-    look_for_regrets(execution, before.modal);
+    check_modal_rules(execution, before.modal);
     if (state.siemens->is_iso) return leave_iso(execution);
     return {};
 }

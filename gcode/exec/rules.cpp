@@ -217,7 +217,7 @@ void look_at_block_delete(Execution& execution) {
 
 } // namespace
 
-void look_for_regrets(Execution& execution, const ModalState& before) {
+void check_modal_rules(Execution& execution, const ModalState& before) {
     RuleWatch& watch = execution.state.rules;
     look_at_block_delete(execution);
     if (execution.statement.code_count > 0) {

@@ -32,6 +32,6 @@ struct RuleWatch {
 ///        offset-not-tool, tool-not-in-table and missing-decimal-point are where the words are
 ///        read.
 /// Cost:  next to nothing for a block that only moves.
-void look_for_regrets(Execution& execution, const ModalState& before);
+void check_modal_rules(Execution& execution, const ModalState& before);
 
 } // namespace gcode

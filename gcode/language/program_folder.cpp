@@ -28,8 +28,8 @@ std::optional<fs::path> found_in(const fs::path& folder, const std::string& name
 std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
     const std::optional<fs::path> path = found_in(folder, name);
     const std::string place = path ? path->string() : std::string();
-    core::note_look({core::FileQuestion::in_folder, folder.string(), name,
-                     path ? std::optional<std::string_view>(place) : std::nullopt});
+    core::notify_file_access({core::FileQuestion::in_folder, folder.string(), name,
+                              path ? std::optional<std::string_view>(place) : std::nullopt});
     return path;
 }
 

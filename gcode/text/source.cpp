@@ -328,7 +328,7 @@ core::Result<Collector> collected(const std::string& path) {
 
 core::Result<Program> read_program(const std::string& path) {
     auto collector = collected(path);
-    core::note_look(
+    core::notify_file_access(
         {core::FileQuestion::content,
          path,
          {},

@@ -23,7 +23,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-KeptFinding near_miss(const std::string& text, uint32_t line) {
+StoredFinding near_miss(const std::string& text, uint32_t line) {
     return {.rule = "near-miss",
             .severity = Severity::error,
             .block = line,
@@ -58,7 +58,7 @@ BatchResult batch_of_all_kinds() {
                       .seconds = 1.5};
     bad.findings[1].file = "/abs/sub 1.nc";
     const ProgramResult broken{.program = "broken.nc",
-                               .error = KeptError{"broken.nc", 3, 5, "G999: no such <code>"},
+                               .error = StoredError{"broken.nc", 3, 5, "G999: no such <code>"},
                                .blocks = 2,
                                .seconds = 0.25};
     return {.programs = {good, bad, broken},
@@ -153,7 +153,7 @@ BatchResult batch_of_many(size_t programs, size_t findings) {
     for (size_t i = 0; i < programs; ++i) {
         ProgramResult program{.program = std::to_string(i) + ".nc"};
         for (size_t k = 0; k < findings; ++k) {
-            KeptFinding finding = near_miss("G0 X5.", static_cast<uint32_t>(k + 1));
+            StoredFinding finding = near_miss("G0 X5.", static_cast<uint32_t>(k + 1));
             if (k % 3 != 0) finding.severity = Severity::warning;
             finding.shortfall = static_cast<double>(k);
             program.findings.push_back(finding);
@@ -230,7 +230,7 @@ TEST(Fingerprint, TellsFindingsApart) {
     EXPECT_NE(fingerprint_of(near_miss("N20 G0 X6.", 7), 0), before);
     EXPECT_NE(fingerprint_of(near_miss("/N20 G0 X5.", 7), 0), before);
     EXPECT_NE(fingerprint_of(near_miss("N20 G0 X5.", 7), 1), before);
-    KeptFinding other = near_miss("N20 G0 X5.", 7);
+    StoredFinding other = near_miss("N20 G0 X5.", 7);
     other.pair[1] = "clamp-2";
     EXPECT_NE(fingerprint_of(other, 0), before);
 }
@@ -310,7 +310,7 @@ TEST(BatchReport, HasNoCellThatASpreadsheetCarriesOut) {
     const BatchResult batch{
         .programs = {{.program = "=1+1.nc",
                       .setup = "+vise.toml",
-                      .error = KeptError{.file = "@a.nc", .line = 3, .message = "is wrong"},
+                      .error = StoredError{.file = "@a.nc", .line = 3, .message = "is wrong"},
                       .tightest = Tightest{.line = 7,
                                            .pair = {"-holder", "=clamp"},
                                            .lower = -2e-6,

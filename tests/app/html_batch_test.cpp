@@ -28,7 +28,7 @@ TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
     EXPECT_EQ(outcome_of(program), Outcome::errors);
     program.verdict = core::Verdict::collision;
     EXPECT_EQ(outcome_of(program), Outcome::collision);
-    program.error = KeptError{.message = "no such code"};
+    program.error = StoredError{.message = "no such code"};
     EXPECT_EQ(outcome_of(program), Outcome::stopped);
     program.blocks = 0;
     EXPECT_EQ(outcome_of(program), Outcome::not_run);
@@ -123,7 +123,7 @@ TEST(HtmlBatchColumns, HoldEveryFindingTheWorstFirst) {
         ASSERT_EQ(counts[i], static_cast<int64_t>(findings.size()));
         std::stable_sort(findings.begin(), findings.end(),
                          [](const auto& a, const auto& b) { return a.severity > b.severity; });
-        for (const KeptFinding& finding : findings) {
+        for (const StoredFinding& finding : findings) {
             EXPECT_EQ(severities[at], static_cast<int64_t>(finding.severity));
             EXPECT_EQ(lines[at], finding.line);
             EXPECT_EQ(data["texts"][static_cast<size_t>(texts[at])], finding.text);
@@ -219,7 +219,7 @@ TEST(HtmlBatch, HoldsNamesAndTextsAsTextOnly) {
     batch.programs[0].program = evil;
     batch.programs[0].setup = evil;
     batch.programs[0].dialect = evil;
-    batch.programs[0].error = KeptError{evil, 1, 1, evil};
+    batch.programs[0].error = StoredError{evil, 1, 1, evil};
     batch.programs[1].findings[0] = {
         .rule = evil, .text = evil, .message = evil, .cure = evil, .pair = {evil, evil}};
     batch.programs[1].assumptions = {evil};

@@ -62,7 +62,7 @@ TEST(Printable, KeepsLineEndsAndTextsOfAnyLanguage) {
 }
 
 TEST(HistoryText, SendsNothingToTheTerminal) {
-    KeptVersion before, after;
+    StoredVersion before, after;
     before.setup = after.setup = hostile;
     before.result = after.result = hostile_result();
     before.result.findings.clear();

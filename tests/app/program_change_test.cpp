@@ -4,9 +4,9 @@
 
 namespace {
 
-using app::KeptFinding;
 using app::numberless;
 using app::ProgramResult;
+using app::StoredFinding;
 
 TEST(Numberless, LeavesWhatTheBlockSays) {
     EXPECT_EQ(numberless("N120 G1 x10 Y-5."), "G1X10Y-5.");
@@ -18,7 +18,7 @@ TEST(Numberless, LeavesWhatTheBlockSays) {
     EXPECT_NE(numberless("G1 X1"), numberless("G1 X11"));
 }
 
-KeptFinding near_miss(uint32_t line, const std::string& text) {
+StoredFinding near_miss(uint32_t line, const std::string& text) {
     return {.rule = "near-miss",
             .severity = core::Severity::error,
             .block = line,

@@ -150,7 +150,7 @@ TEST_F(Kept, HistoryEndsWithWhatWasSeenLast) {
     EXPECT_EQ(found(job), first);
     const auto versions = opened(path).history(job.program);
     ASSERT_EQ(versions->size(), 2u);
-    const app::KeptVersion& last = versions->back();
+    const app::StoredVersion& last = versions->back();
     EXPECT_EQ(last.result, first);
     EXPECT_GT(last.seen_at, versions->front().seen_at);
     EXPECT_EQ(*opened(path).seen_at(last), last.seen_at);

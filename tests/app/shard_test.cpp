@@ -62,12 +62,12 @@ TEST(ShareOf, IsBalanced) {
 }
 
 TEST(ShareNamed, ReadsOneOfSomeAndNothingElse) {
-    EXPECT_EQ(*app::share_named("2/8"), (app::ShareName{2, 8}));
-    EXPECT_EQ(*app::share_named("1/1"), (app::ShareName{1, 1}));
+    EXPECT_EQ(*app::share_named("2/8"), (app::ShardId{2, 8}));
+    EXPECT_EQ(*app::share_named("1/1"), (app::ShardId{1, 1}));
     for (const char* text : {"", "2", "0/3", "4/3", "1/0", "1/2/3", "-1/2", "1 /2", "a/b", "1/",
                              "1/99999999999999999999999", "1/1000001"})
         EXPECT_FALSE(app::share_named(text)) << text;
-    EXPECT_EQ(*app::share_named("1000000/1000000"), (app::ShareName{1'000'000, 1'000'000}));
+    EXPECT_EQ(*app::share_named("1000000/1000000"), (app::ShardId{1'000'000, 1'000'000}));
 }
 
 /// Ten programs in three shares, as three machines would write them.
@@ -83,7 +83,7 @@ std::vector<Shard> three_shards() {
         for (size_t program = 0; program < 10; ++program)
             shard.programs.push_back(
                 {fmt::format("teil \"{}\" ä.nc", program), sizes[program], "terms"});
-        shard.failures = {{.program = "*.tap", .error = app::KeptError{.message = "no file"}}};
+        shard.failures = {{.program = "*.tap", .error = app::StoredError{.message = "no file"}}};
         shard.skipped = {{"part.stl", "is a mesh"}, {fmt::format("{}.new", i), "is no program"}};
         for (const size_t place : shard.places)
             shard.results.push_back(

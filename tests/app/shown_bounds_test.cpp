@@ -42,7 +42,7 @@ ProgramResult with_tightest(double lower, std::optional<double> upper, double ke
 }
 
 std::string history_of(const ProgramResult& result) {
-    KeptVersion version;
+    StoredVersion version;
     version.result = result;
     return history_text("a.nc", {version});
 }

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using app::StorePlaces;
+using app::RelativePaths;
 using test_support::ScopedFolder;
 
 /// A library with links, its database in it, and files beside it.
@@ -29,9 +29,9 @@ protected:
 
     ~Places() override { fs::current_path(before); }
 
-    StorePlaces from(const std::string& working_folder, const std::string& database) const {
+    RelativePaths from(const std::string& working_folder, const std::string& database) const {
         fs::current_path(folder / working_folder);
-        return StorePlaces(database);
+        return RelativePaths(database);
     }
 
     const fs::path before = fs::current_path();
@@ -55,7 +55,7 @@ TEST_F(Places, AreTheSameFromWhereverOneCalls) {
 }
 
 TEST_F(Places, TellNamesOfOneFileApart) {
-    const StorePlaces places = from("lib", "r.db");
+    const RelativePaths places = from("lib", "r.db");
     EXPECT_EQ(places.place_of("linked.nc"), "linked.nc") << "subprograms are looked for beside it";
     EXPECT_EQ(places.path_of("linked.nc"), folder / "lib/linked.nc");
 }
@@ -93,7 +93,7 @@ TEST_F(Places, LeadWhereThePathDoes) {
         std::string database = (any({folder.path(), ".", ".."}) + "/");
         for (size_t left = random() % 3; left > 0; --left) database += any(parts) + "/";
         if (!fs::is_directory(database)) continue;
-        const StorePlaces places(database + "r.db");
+        const RelativePaths places(database + "r.db");
         std::string path = any({folder.path(), any(parts)});
         for (size_t left = random() % 5; left > 0; --left) path += "/" + any(parts);
         const std::string back = places.path_of(places.place_of(path));
@@ -145,7 +145,7 @@ TEST(QuotedPath, IsNotTheNameOfTheProgramWhichIsPutBack) {
 }
 
 TEST_F(Places, HoldUntilTheWorkingFolderIsAnother) {
-    const StorePlaces places = from("old", "../lib/.feeler/results.db");
+    const RelativePaths places = from("old", "../lib/.feeler/results.db");
     EXPECT_TRUE(places.still_hold());
     fs::rename(folder / "old", folder / "older");
     fs::create_directory(folder / "old");
@@ -158,7 +158,7 @@ TEST_F(Places, AreThoseOfTheFileHoweverItIsSpelled) {
 }
 
 TEST_F(Places, HoldUntilALinkToTheFolderIsSwapped) {
-    const StorePlaces places = from(".", "link/.feeler/results.db");
+    const RelativePaths places = from(".", "link/.feeler/results.db");
     EXPECT_TRUE(places.still_hold());
     fs::remove(folder / "link");
     fs::create_directory_symlink("new", folder / "link");

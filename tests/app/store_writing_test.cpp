@@ -81,7 +81,7 @@ TEST_F(OneResult, IsWrittenAlsoIfNobodyWaits) {
 TEST_F(OneResult, IsRefusedWhileSomebodyHasTheDatabase) {
     std::atomic<bool> is_stopped = false;
     std::atomic<int> attempts = 0;
-    auto store = ResultStore::open(path, "1", std::make_shared<app::Patience>([&] {
+    auto store = ResultStore::open(path, "1", std::make_shared<app::RetryBudget>([&] {
                                        ++attempts;
                                        return is_stopped.load();
                                    }));

@@ -8,7 +8,7 @@ namespace app_test {
 namespace {
 
 /// The second of two subprograms cuts without the tool's length, and calls the first again.
-TEST(LengthDoubt, IsFollowedFromTheMiddleOfASubprogram) {
+TEST(LengthMismatch, IsFollowedFromTheMiddleOfASubprogram) {
     const test_support::ScopedFolder folder;
     folder.write("O4000.nc", "O4000\nX40.\nM99\n");
     folder.write("O3000.nc", "O3000\nG0 X10. Y10.\nG49 Z50.\nG1 Z-2. F300.\nX30.\nM98 P4000\n"

@@ -28,8 +28,8 @@ protected:
     /// Looks at places as a check does.
     template <typename Looks>
     void watch(Looks&& looks) {
-        const core::FileListening listening(
-            [this](const core::FileLook& look) { files.note(look); });
+        const core::FileAccessObserver listening(
+            [this](const core::FileAccess& look) { files.note(look); });
         looks();
     }
 
@@ -131,7 +131,9 @@ TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
     watch([&] { core::is_there(report); });
     EXPECT_FALSE(files.reads(report)) << "nothing in it was asked for";
     fs::create_symlink(report, folder / "link");
-    watch([&] { core::note_look({core::FileQuestion::content, folder / "link", {}, {}}); });
+    watch([&] {
+        core::notify_file_access({core::FileQuestion::content, folder / "link", {}, {}});
+    });
     EXPECT_TRUE(files.reads(report)) << "by another name";
     EXPECT_FALSE(files.reads(folder / "a.nc"));
     files.begin_again();
@@ -240,8 +242,8 @@ TEST_F(WatchedFilesTest, SeeLinksThatLedNowhereLeadToAFileOrAFolder) {
         fs::create_symlink(folder / name, folder / ("parts/to-" + std::string(name)));
     for (const std::string word : {"parts", "parts/to-*", "*/to-file", "*/to-folder/x.nc"}) {
         WatchedFiles each;
-        const core::FileListening listening(
-            [&each](const core::FileLook& look) { each.note(look); });
+        const core::FileAccessObserver listening(
+            [&each](const core::FileAccess& look) { each.note(look); });
         find_programs({folder / word});
         EXPECT_TRUE(each.look_again().paths.empty()) << word;
         fs::create_directory(folder / "folder");

@@ -9,14 +9,14 @@
 
 namespace {
 
-using core::FileLook;
+using core::FileAccess;
 using core::FileQuestion;
 using test_support::ScopedFolder;
 
 /// "content a: hello", "presence b: -" and so on, with the file's own name only.
 struct Looks {
     std::vector<std::string> seen;
-    core::FileListening listening{[this](const FileLook& look) {
+    core::FileAccessObserver listening{[this](const FileAccess& look) {
         const char* const words[] = {"content",  "presence", "in_folder",
                                      "any_case", "listing",  "kind"};
         seen.push_back(std::string(words[static_cast<int>(look.question)]) + " "
@@ -97,7 +97,7 @@ TEST(FileReads, AllWhoListenAreToldWhileTheyLive) {
 }
 
 TEST(FileReads, LeaveTheReasonOfAFailureInErrno) {
-    const core::FileListening listening([](const FileLook&) { errno = 0; });
+    const core::FileAccessObserver listening([](const FileAccess&) { errno = 0; });
     EXPECT_FALSE(core::file_bytes("/nowhere/at/all"));
     EXPECT_EQ(errno, ENOENT);
 }

@@ -29,21 +29,21 @@ std::string refused(std::string_view text) {
 
 // What is expected here was probed with LinuxCNC's interpreter.
 
-TEST(KeptOffsets, AreInEffectAtTheStart) {
+TEST(StoredOffsets, AreInEffectAtTheStart) {
     EXPECT_EQ(traced_with({{5220, 2.0}}, "G53 G0 X0 Y0 Z0"), "straight_traverse x=-10 y=-20 z=3\n");
     EXPECT_EQ(traced_with({{5220, 2.0}, {5210, 1.0}, {5211, 0.5}, {5212, 0.25}},
                           "G53 G0 X0 Y0 Z0\n(print,%d#5220 #5210)"),
               "straight_traverse x=-10.5 y=-20.25 z=3\nmessage text=2 1\n");
 }
 
-TEST(KeptOffsets, LeaveG92OutThatIsSuspended) {
+TEST(StoredOffsets, LeaveG92OutThatIsSuspended) {
     EXPECT_EQ(traced_with({{5220, 2.0}, {5210, 0.0}, {5211, 0.5}}, "G53 G0 X0 Y0 Z0"),
               "straight_traverse x=-10 y=-20 z=3\n");
     EXPECT_THAT(traced_with({{5220, 2.0}, {5211, 0.5}}, "G92.3\nG53 G0 X0 Y0 Z0"),
                 HasSubstr("straight_traverse x=-10.5 y=-20 z=3\n"));
 }
 
-TEST(KeptOffsets, AreG54WhereTheNumberIsNone) {
+TEST(StoredOffsets, AreG54WhereTheNumberIsNone) {
     for (const double number : {0.0, 1.0, 10.0, -3.0, 1e300})
         EXPECT_EQ(traced_with({{5220, number}, {5230, 0.0}}, "(print,%d#5220)"),
                   "message text=1\n");

@@ -94,7 +94,7 @@ size_t count_near(const Image& image, Color wanted, int tolerance) {
 TEST_F(Picture, ShowsTheWholeSetupInTheDark) { expect_golden("setup-dark", *scene, work_camera()); }
 
 TEST_F(Picture, ShowsTheWholeSetupInTheLight) {
-    expect_golden("setup-light", *scene, work_camera(), {.theme = Theme::light});
+    expect_golden("setup-light", *scene, work_camera(), {.theme = ColorScheme::light});
 }
 
 TEST_F(Picture, ShowsTheFacesOfASection) {
@@ -117,17 +117,17 @@ TEST_F(Picture, ShowsTheWitnessThroughWhatHidesIt) {
     without.path_visible = false;
     Scene with = without;
     with.witness = scene->witness;
-    const Color ink = color(Theme::dark, Role::violation);
+    const Color ink = color(ColorScheme::dark, Role::violation);
     EXPECT_EQ(count_near(drawn(without, camera), ink, 24), 0u);
     EXPECT_GT(count_near(drawn(with, camera), ink, 24), 20u);
 }
 
 TEST_F(Picture, HasTheBackgroundOfThePaletteAndNothingSeenThrough) {
     const Image image = drawn(Scene(), Camera());
-    const Color top = color(Theme::dark, Role::view_top);
+    const Color top = color(ColorScheme::dark, Role::view_top);
     EXPECT_NEAR(image.pixel(200, 0)[0], top.r, 2);
     EXPECT_NEAR(image.pixel(200, 0)[2], top.b, 2);
-    const Color bottom = color(Theme::dark, Role::view_bottom);
+    const Color bottom = color(ColorScheme::dark, Role::view_bottom);
     EXPECT_NEAR(image.pixel(200, size.height - 1)[1], bottom.g, 2);
     const Image full = drawn(*scene, work_camera());
     for (size_t i = 3; i < full.rgba.size(); i += 4) ASSERT_EQ(full.rgba[i], 255);
@@ -153,7 +153,7 @@ TEST_F(Picture, FadesWhatComesLater) {
     Scene plain;
     plain.path = scene->path;
     const Camera camera = framing(Camera(), size, scene->path->bounds);
-    const Color amber = color(Theme::dark, Role::near);
+    const Color amber = color(ColorScheme::dark, Role::near);
     plain.current_block = 0;
     const size_t faded = count_near(drawn(plain, camera), amber, 30);
     plain.current_block.reset();
@@ -173,7 +173,7 @@ TEST_F(Picture, DrawsAPathOfManyPieces) {
     camera.target = {75, 0, 0};
     camera.distance = 400;
     const Image image = drawn(plain, camera);
-    const Color ink = color(Theme::dark, Role::violation);
+    const Color ink = color(ColorScheme::dark, Role::violation);
     for (const double x : {1.0, 70.0, 100.0, 149.0}) {
         const Vec2 at = project(camera, size, {x, 0, 0})->place;
         const uint8_t* p = image.pixel(static_cast<int>(at.x), static_cast<int>(at.y));

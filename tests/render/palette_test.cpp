@@ -59,7 +59,7 @@ double apart(const Sight& sight, Color a, Color b) {
 }
 
 TEST(Palette, StatesStayApartForEveryKindOfSight) {
-    for (const Theme theme : {Theme::dark, Theme::light})
+    for (const ColorScheme theme : {ColorScheme::dark, ColorScheme::light})
         for (const Sight& sight : sights) {
             const Color violation = state_color(theme, ClearanceState::violation);
             const Color near = state_color(theme, ClearanceState::near);
@@ -90,7 +90,7 @@ double contrast(Color a, Color b) {
 }
 
 TEST(Palette, TextCanBeRead) {
-    for (const Theme theme : {Theme::dark, Theme::light})
+    for (const ColorScheme theme : {ColorScheme::dark, ColorScheme::light})
         for (const Role ground : {Role::background, Role::panel, Role::raised}) {
             EXPECT_GT(contrast(color(theme, Role::text), color(theme, ground)), 7.0);
             EXPECT_GT(contrast(color(theme, Role::dim), color(theme, ground)), 4.5);
@@ -99,12 +99,12 @@ TEST(Palette, TextCanBeRead) {
 }
 
 TEST(Palette, HasTheColoursOfTheTable) {
-    EXPECT_EQ(color(Theme::dark, Role::violation), (Color{0xFF, 0x5A, 0x36}));
-    EXPECT_EQ(color(Theme::light, Role::violation), (Color{0xB3, 0x26, 0x1E}));
-    EXPECT_EQ(color(Theme::dark, Role::background), (Color{0x14, 0x17, 0x1C}));
-    EXPECT_EQ(color(Theme::light, Role::stock_cut), (Color{0x7F, 0xA0, 0xC8}));
-    EXPECT_EQ(color(Theme::dark, Role::flutes), (Color{0xF2, 0xC1, 0x4E}));
-    EXPECT_EQ(color(Theme::dark, Role::holder).a, 140); // 55 %
+    EXPECT_EQ(color(ColorScheme::dark, Role::violation), (Color{0xFF, 0x5A, 0x36}));
+    EXPECT_EQ(color(ColorScheme::light, Role::violation), (Color{0xB3, 0x26, 0x1E}));
+    EXPECT_EQ(color(ColorScheme::dark, Role::background), (Color{0x14, 0x17, 0x1C}));
+    EXPECT_EQ(color(ColorScheme::light, Role::stock_cut), (Color{0x7F, 0xA0, 0xC8}));
+    EXPECT_EQ(color(ColorScheme::dark, Role::flutes), (Color{0xF2, 0xC1, 0x4E}));
+    EXPECT_EQ(color(ColorScheme::dark, Role::holder).a, 140); // 55 %
 }
 
 TEST(ClearanceColour, FollowsTheAllowance) {
@@ -114,7 +114,8 @@ TEST(ClearanceColour, FollowsTheAllowance) {
     EXPECT_EQ(clearance_state(1.0, 1.0), ClearanceState::near);
     EXPECT_EQ(clearance_state(2.0, 1.0), ClearanceState::near);
     EXPECT_EQ(clearance_state(2.01, 1.0), ClearanceState::clear);
-    EXPECT_EQ(clearance_color(Theme::dark, 0.5, 1.0), color(Theme::dark, Role::violation));
+    EXPECT_EQ(clearance_color(ColorScheme::dark, 0.5, 1.0),
+              color(ColorScheme::dark, Role::violation));
 }
 
 TEST(Colour, MixesFromOneToTheOther) {

@@ -15,7 +15,7 @@ std::string every_byte() {
 /// A batch that was ended early, with names and texts of any bytes.
 app::BatchResult odd_batch() {
     app::BatchResult batch = test_support::large_batch(60, 5);
-    for (app::KeptFinding& finding : batch.programs[3].findings)
+    for (app::StoredFinding& finding : batch.programs[3].findings)
         finding.text = finding.message = finding.cure = every_byte();
     batch.programs[3].findings[0].file = "/abs/" + every_byte();
     batch.programs[4].program = every_byte();

@@ -53,7 +53,7 @@ TEST(StoreSpeed, GivesUpALockedDatabaseWithinTenSecondsInAllAndOneWhenStopped) {
     const auto each = store_life::numbered(folder.write("a.nc", "G0 X1\n"), 1);
     std::atomic<bool> is_stopped = false;
     auto store = ResultStore::open(
-        folder / "db", "1", std::make_shared<app::Patience>([&] { return is_stopped.load(); }));
+        folder / "db", "1", std::make_shared<app::RetryBudget>([&] { return is_stopped.load(); }));
     ASSERT_TRUE(store);
     auto other = app::Database::open(folder / "db", app::Database::Access::read_write);
     ASSERT_TRUE(other && other->run("BEGIN EXCLUSIVE"));

@@ -45,7 +45,7 @@ inline app::ProgramResult one_of_many(size_t i, size_t findings) {
                                      .lower = 0.0007 * static_cast<double>(i % 9000),
                                      .upper = {},
                                      .allowance = 2.0};
-    if (i % 50 == 0) program.error = app::KeptError{program.program, 7, 3, "G999: no such code"};
+    if (i % 50 == 0) program.error = app::StoredError{program.program, 7, 3, "G999: no such code"};
     return program;
 }
 

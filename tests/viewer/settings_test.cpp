@@ -8,7 +8,7 @@ using namespace app::viewer;
 
 TEST(ViewerSettings, ComeBackAsTheyWere) {
     Settings settings;
-    settings.theme = render::Theme::light;
+    settings.theme = render::ColorScheme::light;
     settings.inch = true;
     settings.scale = 1.25;
     settings.mouse = MousePreset::middle_pans;

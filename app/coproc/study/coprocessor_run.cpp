@@ -53,7 +53,7 @@ core::Result<void> BesideCoprocessor::open() {
 }
 
 core::Result<void> BesideCoprocessor::ask() {
-    const RunPlace& place = runner_.place();
+    const RunState& place = runner_.place();
     const auto events = first_events(
         [&](const BlockVisit& look) { ahead_.visit_ahead(place.control, place.lowering, look); });
     if (!events) return {};

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// That what has no other look is what it is: it may become a file or another folder, by a link.
 void note_presence(const fs::path& path) {
-    core::note_look({core::FileQuestion::presence, path.string(), {}, {}});
+    core::notify_file_access({core::FileQuestion::presence, path.string(), {}, {}});
 }
 
 /// Enters folders one after the other, links last.
@@ -49,7 +49,7 @@ private:
 
     void enter(const fs::path& folder) {
         found.folders.push_back(folder);
-        core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileQuestion::listing, folder.string(), {}, {}});
         std::error_code failure;
         std::vector<fs::directory_entry> entries;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
@@ -152,7 +152,7 @@ private:
     }
 
     std::vector<std::string> names_of(const fs::path& folder) {
-        core::note_look({core::FileQuestion::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileQuestion::listing, folder.string(), {}, {}});
         std::error_code failure;
         std::vector<std::string> names = gcode::names_in(folder, failure);
         if (failure) found_.unreadable.push_back(unreadable_folder(folder, failure));

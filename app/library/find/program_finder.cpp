@@ -86,7 +86,7 @@ private:
             if (!project.empty()) program.project = project;
         }
         if (!is_new) return look.may_be_program;
-        core::note_look({core::FileQuestion::kind, file, {}, {}});
+        core::notify_file_access({core::FileQuestion::kind, file, {}, {}});
         auto why = why_no_program(file);
         look.may_be_program = !why || !*why;
         if (!why)

@@ -14,7 +14,7 @@ int status_of(const BatchResult& batch) {
 size_t count_of(const ProgramResult& result, core::Severity severity) {
     return static_cast<size_t>(
         std::count_if(result.findings.begin(), result.findings.end(),
-                      [&](const KeptFinding& finding) { return finding.severity == severity; }));
+                      [&](const StoredFinding& finding) { return finding.severity == severity; }));
 }
 
 const char* name_of(Outcome outcome) {

@@ -101,12 +101,12 @@ ProgramChange change_along(const std::vector<std::pair<size_t, size_t>>& pairs,
     for (const auto& [was, is] : pairs) later.emplace(was, is);
     return change_between(
         before, after,
-        [&](const KeptFinding& finding) {
+        [&](const StoredFinding& finding) {
             if (!finding.block) return std::string();
             const auto found = later.find(*finding.block);
             return found == later.end() ? "gone" : std::to_string(found->second);
         },
-        [](const KeptFinding& finding) {
+        [](const StoredFinding& finding) {
             return finding.block ? std::to_string(*finding.block) : std::string();
         });
 }
@@ -127,7 +127,7 @@ void sort_worst_first(std::vector<ChangedBlock>& blocks, int sign) {
 bool ProgramDiff::is_worse() const {
     const bool has_new = std::any_of(
         change.new_findings.begin(), change.new_findings.end(),
-        [](const KeptFinding& finding) { return finding.severity >= core::Severity::warning; });
+        [](const StoredFinding& finding) { return finding.severity >= core::Severity::warning; });
     const bool comes_near = std::any_of(nearer.begin(), nearer.end(), [](const ChangedBlock& each) {
         return each.after.verdict > each.before.verdict
                || (each.after.margin && *each.after.margin < each.after.allowance);
@@ -330,12 +330,12 @@ std::vector<std::pair<size_t, size_t>> aligned(std::span<const uint32_t> a,
 
 namespace {
 
-using Findings = std::vector<KeptFinding>;
+using Findings = std::vector<StoredFinding>;
 using Identity = std::tuple<std::string, core::Severity, std::array<std::string, 2>, std::string>;
 
 std::vector<Identity> identities(const Findings& findings, const PlaceOfFinding& place_of) {
     std::vector<Identity> named;
-    for (const KeptFinding& finding : findings)
+    for (const StoredFinding& finding : findings)
         named.emplace_back(finding.rule, finding.severity, finding.pair, place_of(finding));
     return named;
 }
@@ -363,7 +363,7 @@ double margin_of(const Tightest& tightest) {
 } // namespace
 
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after) {
-    const PlaceOfFinding by_text = [](const KeptFinding& finding) {
+    const PlaceOfFinding by_text = [](const StoredFinding& finding) {
         return finding.file + "\n" + numberless(finding.text);
     };
     return change_between(before, after, by_text, by_text);

@@ -20,7 +20,7 @@ struct ProgramChange {
     bool verdict_differs = false;
     std::optional<double> nearer; // by how much the least margin is less, mm; empty: unknown
     double longer = 0.0;          // seconds
-    std::vector<KeptFinding> new_findings, gone_findings;
+    std::vector<StoredFinding> new_findings, gone_findings;
 };
 
 /// Findings are the same when rule, severity, bodies and what their block says are, wherever the
@@ -28,7 +28,7 @@ struct ProgramChange {
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after);
 
 /// A name for the place of a finding, by which those of two versions go together.
-using PlaceOfFinding = std::function<std::string(const KeptFinding&)>;
+using PlaceOfFinding = std::function<std::string(const StoredFinding&)>;
 
 /// Findings are the same when rule, severity, bodies and place are.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after,

@@ -14,7 +14,7 @@
 namespace app {
 namespace {
 
-using Json = KeptJson;
+using Json = StoredJson;
 
 /// In characters, as editors count them and SARIF says; bytes where the line cannot be read.
 uint32_t column_of(const core::Error& error) {
@@ -28,18 +28,18 @@ uint32_t column_of(const core::Error& error) {
     return static_cast<uint32_t>(characters_in(text.substr(starts[line - 1], column - 1))) + 1;
 }
 
-KeptError kept(const core::Error& error, FileBytes& bytes) {
+StoredError kept(const core::Error& error, FileBytes& bytes) {
     return {shown_name(error.file, bytes), error.where.line, column_of(error),
             utf8_text(error.message)};
 }
 
-KeptFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
-    KeptFinding made{.rule = finding.rule,
-                     .severity = finding.severity,
-                     .message = utf8_text(finding.message),
-                     .cure = utf8_text(finding.cure),
-                     .pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])},
-                     .shortfall = finding.shortfall};
+StoredFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
+    StoredFinding made{.rule = finding.rule,
+                       .severity = finding.severity,
+                       .message = utf8_text(finding.message),
+                       .cure = utf8_text(finding.cure),
+                       .pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])},
+                       .shortfall = finding.shortfall};
     if (!finding.block) return made;
     const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
     made.block = core::value_of(*finding.block);
@@ -63,7 +63,7 @@ std::optional<Tightest> tightest_of(const CheckRun& run) {
     return tightest;
 }
 
-Json json_of(const KeptFinding& finding) {
+Json json_of(const StoredFinding& finding) {
     return {{"rule", finding.rule},
             {"severity", core::name_of(finding.severity)},
             {"block", finding.block ? Json(*finding.block) : Json(nullptr)},
@@ -85,7 +85,7 @@ Json json_of(const Tightest& tightest) {
             {"allowance", tightest.allowance}};
 }
 
-Json json_of(const KeptError& error) {
+Json json_of(const StoredError& error) {
     return {{"file", error.file},
             {"line", error.line},
             {"column", error.column},
@@ -100,21 +100,21 @@ Enum named_as(const std::string& name) {
     throw std::invalid_argument("no value is called " + name);
 }
 
-KeptError error_from(const Json& json) {
+StoredError error_from(const Json& json) {
     return {json.at("file"), whole_from<uint32_t>(json.at("line")),
             whole_from<uint32_t>(json.at("column")), json.at("message")};
 }
 
-KeptFinding finding_from(const Json& json) {
-    KeptFinding finding{.rule = json.at("rule"),
-                        .severity = named_as<core::Severity, 4>(json.at("severity")),
-                        .line = whole_from<uint32_t>(json.at("line")),
-                        .file = json.at("file"),
-                        .text = json.at("text"),
-                        .message = json.at("message"),
-                        .cure = json.at("cure"),
-                        .pair = pair_from(json.at("pair")),
-                        .shortfall = number_from(json.at("shortfall"))};
+StoredFinding finding_from(const Json& json) {
+    StoredFinding finding{.rule = json.at("rule"),
+                          .severity = named_as<core::Severity, 4>(json.at("severity")),
+                          .line = whole_from<uint32_t>(json.at("line")),
+                          .file = json.at("file"),
+                          .text = json.at("text"),
+                          .message = json.at("message"),
+                          .cure = json.at("cure"),
+                          .pair = pair_from(json.at("pair")),
+                          .shortfall = number_from(json.at("shortfall"))};
     if (const Json& block = json.at("block"); !block.is_null())
         finding.block = whole_from<uint32_t>(block);
     return finding;
@@ -188,10 +188,9 @@ ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
 
 int status_of(const ProgramResult& result) {
     if (result.error) return 2;
-    const bool has_errors =
-        std::any_of(result.findings.begin(), result.findings.end(), [](const KeptFinding& finding) {
-            return finding.severity == core::Severity::error;
-        });
+    const bool has_errors = std::any_of(
+        result.findings.begin(), result.findings.end(),
+        [](const StoredFinding& finding) { return finding.severity == core::Severity::error; });
     return has_errors ? 1 : 0;
 }
 
@@ -210,7 +209,8 @@ std::string json_of(const ProgramResult& result) {
                  {"seconds", result.seconds},
                  {"assumptions", result.assumptions},
                  {"findings", Json::array()}};
-    for (const KeptFinding& finding : result.findings) json["findings"].push_back(json_of(finding));
+    for (const StoredFinding& finding : result.findings)
+        json["findings"].push_back(json_of(finding));
     if (!result.file_bytes.empty()) json["file_bytes"] = json_of(result.file_bytes);
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -244,10 +244,10 @@ nlohmann::ordered_json json_of(const FileBytes& bytes) {
     return json;
 }
 
-FileBytes file_bytes_from(const KeptJson& json) {
+FileBytes file_bytes_from(const StoredJson& json) {
     FileBytes bytes;
     for (const auto& [text, list] : json.items())
-        for (const KeptJson& byte : list_from(list))
+        for (const StoredJson& byte : list_from(list))
             bytes[text] += static_cast<char>(whole_from<uint8_t>(byte));
     return bytes;
 }
@@ -275,12 +275,12 @@ bool is_nested_too_deep(std::string_view text) {
     return false;
 }
 
-KeptJson kept_json(const std::string& text) {
+StoredJson kept_json(const std::string& text) {
     if (is_nested_too_deep(text)) throw std::invalid_argument("its lists are nested too deep");
-    return KeptJson::parse(text);
+    return StoredJson::parse(text);
 }
 
-double number_from(const KeptJson& json, double least) {
+double number_from(const StoredJson& json, double least) {
     // What is no number has a value too: true is 1.
     const double number = json.is_number() ? json.get<double>() : std::nan("");
     if (!std::isfinite(number) || number < least)
@@ -288,13 +288,13 @@ double number_from(const KeptJson& json, double least) {
     return number;
 }
 
-const KeptJson& list_from(const KeptJson& json, std::optional<size_t> count) {
+const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count) {
     if (!json.is_array() || (count && json.size() != *count))
         throw std::invalid_argument("a list is none, or of another length");
     return json;
 }
 
-std::array<std::string, 2> pair_from(const KeptJson& json) {
+std::array<std::string, 2> pair_from(const StoredJson& json) {
     list_from(json, 2);
     return {json[0].get<std::string>(), json[1].get<std::string>()};
 }

@@ -32,7 +32,7 @@ nlohmann::ordered_json json_of(const FileBytes& bytes);
 FileBytes file_bytes_from(const nlohmann::ordered_json& json);
 
 /// A finding as it is kept when the run is gone.
-struct KeptFinding {
+struct StoredFinding {
     std::string rule;
     core::Severity severity = core::Severity::warning;
     std::optional<uint32_t> block; // empty: the program as a whole
@@ -43,7 +43,7 @@ struct KeptFinding {
     std::array<std::string, 2> pair{};
     double shortfall = 0.0; // mm
 
-    bool operator==(const KeptFinding&) const = default;
+    bool operator==(const StoredFinding&) const = default;
 };
 
 /// The block with the least margin, and what is known of it. mm.
@@ -58,12 +58,12 @@ struct Tightest {
 };
 
 /// Why a program could not be run, or not to its end.
-struct KeptError {
+struct StoredError {
     std::string file;              // empty if it is about none
     uint32_t line = 0, column = 0; // in characters
     std::string message;
 
-    bool operator==(const KeptError&) const = default;
+    bool operator==(const StoredError&) const = default;
 };
 
 /// What is kept of one program of a library: all that summaries, other systems and later versions
@@ -75,8 +75,8 @@ struct ProgramResult {
     std::string dialect; // empty if nobody knows
     std::string engine;  // "exact" or "coprocessor"
     core::Verdict verdict = core::Verdict::undecided;
-    std::optional<KeptError> error;
-    std::vector<KeptFinding> findings;
+    std::optional<StoredError> error;
+    std::vector<StoredFinding> findings;
     std::vector<std::string> assumptions;
     size_t blocks = 0;
     double cycle_time = 0.0; // seconds
@@ -107,18 +107,18 @@ core::Result<ProgramResult> result_from_json(const std::string& text);
 /// JSON that was kept in a file or a database, which anybody can have edited since. Its readers are
 /// stricter than the library's, which takes 0.7 for 0 and an object for a list. Like the library's,
 /// they throw exceptions of the standard; their callers make errors of them.
-using KeptJson = nlohmann::ordered_json;
+using StoredJson = nlohmann::ordered_json;
 
 /// Whether brackets stand in brackets deeper than anything that is kept: what walks through such
 /// JSON calls itself that often.
 bool is_nested_too_deep(std::string_view text);
 
 /// Errors: throws for text that is no JSON, or nested too deep.
-KeptJson kept_json(const std::string& text);
+StoredJson kept_json(const std::string& text);
 
 /// A number without a fraction that fits.
 template <typename Whole>
-Whole whole_from(const KeptJson& json) {
+Whole whole_from(const StoredJson& json) {
     if (!json.is_number_unsigned()
         || json.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<Whole>::max()))
         throw std::invalid_argument("a whole number is none, or too large");
@@ -126,12 +126,12 @@ Whole whole_from(const KeptJson& json) {
 }
 
 /// A finite number, and at least as large as `least`.
-double number_from(const KeptJson& json, double least = std::numeric_limits<double>::lowest());
+double number_from(const StoredJson& json, double least = std::numeric_limits<double>::lowest());
 
 /// A list, and of so many entries if `count` is given.
-const KeptJson& list_from(const KeptJson& json, std::optional<size_t> count = {});
+const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count = {});
 
 /// The two texts of a list.
-std::array<std::string, 2> pair_from(const KeptJson& json);
+std::array<std::string, 2> pair_from(const StoredJson& json);
 
 } // namespace app

@@ -108,7 +108,7 @@ private:
     bool is_stopped() const { return hooks_.is_stopped && hooks_.is_stopped(); }
 
     void work(size_t thread) {
-        std::optional<core::FileListening> listening;
+        std::optional<core::FileAccessObserver> listening;
         if (hooks_.looked) listening.emplace(hooks_.looked);
         while (!is_stopped()) {
             const size_t place = next_++;

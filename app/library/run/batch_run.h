@@ -34,7 +34,7 @@ struct BatchHooks {
     std::function<void(const CheckJob&, const CheckRun&, const ProgramResult&)> keep = {};
 
     /// Told of every look at the disk, in the thread that takes it.
-    std::function<void(const core::FileLook&)> looked = {};
+    std::function<void(const core::FileAccess&)> looked = {};
 
     /// Told of each program as it ends, in the caller's thread.
     std::function<void(const ProgramResult&)> ended = {};

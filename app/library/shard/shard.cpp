@@ -47,7 +47,7 @@ std::vector<PlannedProgram> planned_programs(const BatchPlan& plan) {
     return programs;
 }
 
-std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShareName& share) {
+std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShardId& share) {
     std::vector<uintmax_t> sizes;
     for (const PlannedProgram& program : programs) sizes.push_back(program.size);
     return share_of(sizes, share);
@@ -80,7 +80,7 @@ Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult
 
 namespace {
 
-using Json = KeptJson;
+using Json = StoredJson;
 
 constexpr int shard_format = 1;
 constexpr std::string_view beginning = "{\"feeler_shard\"";
@@ -134,8 +134,8 @@ core::Result<Shard> shard_from(const Json& json) {
     Shard shard;
     shard.version = json.at("version");
     const Json& share = list_from(json.at("share"), 2);
-    FEELER_TRY(shard.share, share_named(text_of(ShareName{whole_from<size_t>(share[0]),
-                                                          whole_from<size_t>(share[1])})));
+    FEELER_TRY(shard.share, share_named(text_of(ShardId{whole_from<size_t>(share[0]),
+                                                        whole_from<size_t>(share[1])})));
     shard.seconds = number_from(json.at("seconds"), 0.0);
     if (shard.seconds > longest) throw std::invalid_argument("it took longer than anything does");
     for (const Json& each : list_from(json.at("programs")))

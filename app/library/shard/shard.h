@@ -19,7 +19,7 @@ struct PlannedProgram {
 struct Shard {
     std::string file;    // it was read from; not kept
     std::string version; // of the program that checked: see build_version
-    ShareName share;
+    ShardId share;
     std::vector<PlannedProgram> programs; // of the whole batch, in their order
     std::vector<ProgramResult> failures;  // words of the whole batch that stand for nothing
     std::vector<SkippedFile> skipped;     // of the whole batch
@@ -35,7 +35,7 @@ struct Shard {
 std::vector<PlannedProgram> planned_programs(const BatchPlan& plan);
 
 /// The places of the programs that a share has.
-std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShareName& share);
+std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShardId& share);
 
 /// A plan for some of its programs alone. Words that stand for nothing are everybody's.
 BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& places);

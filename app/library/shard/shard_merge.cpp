@@ -66,7 +66,7 @@ core::Result<void> find_missing(const std::vector<Shard>& shards) {
         if (at < shards.size() && shards[at].share.i == i)
             ++at;
         else
-            missing.push_back(text_of(ShareName{i, n}));
+            missing.push_back(text_of(ShardId{i, n}));
     return core::fail(core::ErrorCode::missing_value,
                       fmt::format("{} missing: {}{}",
                                   count == 1 ? "a share is" : "these shares are",

@@ -16,10 +16,10 @@ constexpr auto when_stopped = 1s;
 
 } // namespace
 
-Patience::Patience(std::function<bool()> is_stopped)
+RetryBudget::RetryBudget(std::function<bool()> is_stopped)
     : is_stopped_(std::move(is_stopped)), left_(whole_budget), told_(Clock::now()) {}
 
-bool Patience::take(Clock::duration nap) {
+bool RetryBudget::take(Clock::duration nap) {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
     if (now > told_) left_ = std::min<Clock::duration>(whole_budget, left_ + (now - told_) / 2);
@@ -30,7 +30,7 @@ bool Patience::take(Clock::duration nap) {
     return true;
 }
 
-bool Patience::wait(int attempt) {
+bool RetryBudget::wait(int attempt) {
     const auto nap = std::chrono::milliseconds(std::clamp(attempt + 1, 1, 20));
     if (!take(nap)) return false;
     std::this_thread::sleep_for(nap);
@@ -45,8 +45,8 @@ core::Error error_of(sqlite3* database, const std::string& path) {
 }
 
 /// Asked by SQLite while others write.
-int wait_for_others(void* patience, int attempt) {
-    return static_cast<Patience*>(patience)->wait(attempt) ? 1 : 0;
+int wait_for_others(void* retries, int attempt) {
+    return static_cast<RetryBudget*>(retries)->wait(attempt) ? 1 : 0;
 }
 
 } // namespace
@@ -103,7 +103,7 @@ void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(dat
 core::Error Database::error() const { return error_of(database_.get(), path_); }
 
 core::Result<Database> Database::open(const std::string& path, Access access,
-                                      std::shared_ptr<Patience> patience) {
+                                      std::shared_ptr<RetryBudget> retries) {
     const int flags = access == Access::read_only ? SQLITE_OPEN_READONLY
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* opened = nullptr;
@@ -117,8 +117,8 @@ core::Result<Database> Database::open(const std::string& path, Access access,
     database.path_ = path;
     database.database_.reset(opened);
     if (code != SQLITE_OK) return tl::unexpected(database.error());
-    database.patience_ = patience ? std::move(patience) : std::make_shared<Patience>();
-    sqlite3_busy_handler(opened, wait_for_others, database.patience_.get());
+    database.retry_budget_ = retries ? std::move(retries) : std::make_shared<RetryBudget>();
+    sqlite3_busy_handler(opened, wait_for_others, database.retry_budget_.get());
     return database;
 }
 

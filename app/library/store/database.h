@@ -15,9 +15,9 @@ namespace app {
 /// How long one run waits for databases that others have, in all: ten seconds, and of what it has
 /// waited it gets back half of the time that it then need not wait. Who is to stop gives others a
 /// second more. Several threads may wait.
-class Patience {
+class RetryBudget {
 public:
-    explicit Patience(std::function<bool()> is_stopped = {});
+    explicit RetryBudget(std::function<bool()> is_stopped = {});
 
     /// Waits some milliseconds, longer with every attempt; false, at once, when there is no
     /// patience left.
@@ -84,11 +84,11 @@ public:
 
     /// Opens the file; with read_write it is made when it is not there. Of `in_memory` there is one
     /// for the whole process, as long as somebody has it open. Whoever finds it in use
-    /// waits as long as there is patience: that of a run of its own if none is given.
+    /// retries within the budget: that of a run of its own if none is given.
     ///
     /// Errors: io, with the file.
     static core::Result<Database> open(const std::string& path, Access access,
-                                       std::shared_ptr<Patience> patience = nullptr);
+                                       std::shared_ptr<RetryBudget> retries = nullptr);
 
     /// Runs statements that give no rows.
     ///
@@ -110,7 +110,7 @@ private:
 
     core::Error error() const;
 
-    std::shared_ptr<Patience> patience_; // outlives the database
+    std::shared_ptr<RetryBudget> retry_budget_; // outlives the database
     std::unique_ptr<sqlite3, Close> database_;
     std::string path_;
 };

@@ -33,14 +33,14 @@ bool InputAnswers::is_same(const InputFile& input) {
 
 std::optional<std::string> InputAnswers::name_in_any_case(const InputFile& input) {
     auto name = gcode::name_in_any_case(*names_of(input.path), input.name);
-    core::note_look({input.question, input.path, input.name, name});
+    core::notify_file_access({input.question, input.path, input.name, name});
     return name;
 }
 
 template <typename T, typename Read>
 T InputAnswers::ask(std::map<std::string, Known<T>>& known, const std::string& path, Read&& read) {
     Known<T> now{.stamp = stamp_of(path)};
-    now.was_fresh = is_fresh(now.stamp);
+    now.was_fresh = may_change_unseen(now.stamp);
     {
         const std::lock_guard lock(mutex_);
         const auto found = known.find(path);
@@ -53,7 +53,7 @@ T InputAnswers::ask(std::map<std::string, Known<T>>& known, const std::string& p
 }
 
 std::string InputAnswers::content_of(const std::string& path) {
-    core::note_look({core::FileQuestion::content, path, {}, {}});
+    core::notify_file_access({core::FileQuestion::content, path, {}, {}});
     return ask(contents_, path, sha256_of_file);
 }
 

@@ -48,7 +48,7 @@ std::string folder_of(const std::string& database) {
 
 } // namespace
 
-StorePlaces::StorePlaces(const std::string& database) {
+RelativePaths::RelativePaths(const std::string& database) {
     std::error_code failure;
     working_folder_ = fs::current_path(failure).string();
     named_folder_ = absolute_path(folder_of(database), working_folder_);
@@ -57,7 +57,7 @@ StorePlaces::StorePlaces(const std::string& database) {
     stamps_ = stamps_of({working_folder_, named_folder_, folder_});
 }
 
-bool StorePlaces::still_hold() const {
+bool RelativePaths::still_hold() const {
     const auto is_same = [](const FileStamp& a, const FileStamp& b) {
         return a.is_there && a.device == b.device && a.number == b.number;
     };
@@ -67,7 +67,7 @@ bool StorePlaces::still_hold() const {
            && is_same(stamps_[0], here);
 }
 
-std::string StorePlaces::place_of(const std::string& path) const {
+std::string RelativePaths::place_of(const std::string& path) const {
     if (path.empty()) return {};
     const std::string file = absolute_path(path, working_folder_);
     for (const std::string& folder : {named_folder_, folder_})
@@ -80,7 +80,7 @@ std::string StorePlaces::place_of(const std::string& path) const {
     return file.empty() ? "/" : file;
 }
 
-std::string StorePlaces::path_of(const std::string& place) const {
+std::string RelativePaths::path_of(const std::string& place) const {
     if (place.empty() || place.starts_with('/')) return place;
     std::string_view folder = folder_, rest = place;
     while (rest == ".." || rest.starts_with("../")) {
@@ -92,7 +92,7 @@ std::string StorePlaces::path_of(const std::string& place) const {
     return path.empty() ? "/" : path;
 }
 
-CheckJob placed(const CheckJob& job, const StorePlaces& places) {
+CheckJob placed(const CheckJob& job, const RelativePaths& places) {
     CheckJob made = job;
     ProgramSettings& settings = made.settings;
     for (std::string* path :
@@ -102,14 +102,14 @@ CheckJob placed(const CheckJob& job, const StorePlaces& places) {
     return made;
 }
 
-InputFile placed(InputFile input, const StorePlaces& places) {
+InputFile placed(InputFile input, const RelativePaths& places) {
     input.path = places.place_of(input.path);
     if (input.question == core::FileQuestion::in_folder && input.answer)
         input.answer = places.place_of(*input.answer);
     return input;
 }
 
-InputFile asked_again(InputFile input, const StorePlaces& places) {
+InputFile asked_again(InputFile input, const RelativePaths& places) {
     input.path = places.path_of(input.path);
     if (input.question == core::FileQuestion::in_folder && input.answer)
         input.answer = places.path_of(*input.answer);
@@ -138,7 +138,7 @@ bool quotes(const std::string& text, const std::string& path) {
 
 std::vector<std::string> texts_of(const ProgramResult& result) {
     std::vector<std::string> texts = result.assumptions;
-    for (const KeptFinding& finding : result.findings)
+    for (const StoredFinding& finding : result.findings)
         texts.insert(texts.end(), {finding.file, finding.message, finding.cure, finding.pair[0],
                                    finding.pair[1]});
     if (result.tightest)

@@ -15,10 +15,10 @@ namespace app {
 /// `..` taken back, but for those above the folder: from a place one comes to the very file that
 /// whoever gave the path would have come to, also after links have changed. (A `.` counts as
 /// nothing also behind a file.)
-class StorePlaces {
+class RelativePaths {
 public:
     /// Of a database in a file; `.feeler` is for the folder that it lies in.
-    explicit StorePlaces(const std::string& database);
+    explicit RelativePaths(const std::string& database);
 
     /// Relative if the path leads into the folder or shares some of the way; empty if it is.
     std::string place_of(const std::string& path) const;
@@ -39,11 +39,11 @@ private:
 };
 
 /// A job with places in place of paths.
-CheckJob placed(const CheckJob& job, const StorePlaces& places);
+CheckJob placed(const CheckJob& job, const RelativePaths& places);
 
 /// A look with places in place of paths, and back.
-InputFile placed(InputFile input, const StorePlaces& places);
-InputFile asked_again(InputFile input, const StorePlaces& places);
+InputFile placed(InputFile input, const RelativePaths& places);
+InputFile asked_again(InputFile input, const RelativePaths& places);
 
 /// Whether any text of a result may name a file or a folder of its check by its path, beside the
 /// program and the set-up: as the job names them, as the check asked for them, or any in `folder`.

@@ -58,9 +58,9 @@ struct ResultStore::State {
     State(const std::string& path, std::string by) : version(std::move(by)), places(path) {}
 
     std::string version;
-    StorePlaces places;
+    RelativePaths places;
     std::shared_ptr<InputAnswers> answers;
-    std::shared_ptr<Patience> patience;
+    std::shared_ptr<RetryBudget> retries;
     std::shared_ptr<ResultWriter> writer; // of the own store if nothing is kept in this one
     bool is_kept_in = true;
     std::mutex mutex; // over all below
@@ -71,8 +71,8 @@ struct ResultStore::State {
     std::string place_of(const std::string& program) const;
     std::string content_of(const CheckJob& job) const;
     JobKeys keys_of(const CheckJob& job, const std::string& sha256) const;
-    bool is_same(const KeptRow& row);
-    core::Result<std::vector<KeptRow>> rows(const std::string& key);
+    bool is_same(const StoredRow& row);
+    core::Result<std::vector<StoredRow>> rows(const std::string& key);
     core::Result<std::optional<ProgramResult>> find(const std::string& key);
 };
 
@@ -113,15 +113,15 @@ JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha2
     return keys;
 }
 
-bool ResultStore::State::is_same(const KeptRow& row) {
+bool ResultStore::State::is_same(const StoredRow& row) {
     return std::all_of(row.inputs.begin(), row.inputs.end(), [this](const InputFile& input) {
         return answers->is_same(asked_again(input, places));
     });
 }
 
-core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& key) {
+core::Result<std::vector<StoredRow>> ResultStore::State::rows(const std::string& key) {
     const std::lock_guard lock(mutex);
-    std::vector<KeptRow> found;
+    std::vector<StoredRow> found;
     rows_of_key.reset();
     rows_of_key.bind(1, key);
     for (bool more = true;;) {
@@ -134,7 +134,7 @@ core::Result<std::vector<KeptRow>> ResultStore::State::rows(const std::string& k
                          .seal = rows_of_key.text(4)});
     }
     rows_of_key.reset();
-    for (KeptRow& row : found) {
+    for (StoredRow& row : found) {
         looks_of_row.reset();
         looks_of_row.bind(1, row.id);
         for (bool more = true;;) {
@@ -153,11 +153,11 @@ ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
 ResultStore::~ResultStore() = default;
 
 core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version,
-                                            std::shared_ptr<Patience> patience) {
+                                            std::shared_ptr<RetryBudget> retries) {
     auto state = std::make_unique<State>(path, version);
     state->answers = std::make_shared<InputAnswers>();
-    state->patience = patience ? std::move(patience) : std::make_shared<Patience>();
-    state->writer = std::make_shared<ResultWriter>(path, state->patience);
+    state->retries = retries ? std::move(retries) : std::make_shared<RetryBudget>();
+    state->writer = std::make_shared<ResultWriter>(path, state->retries);
     return open_as(path, Database::Access::read_write, std::move(state));
 }
 
@@ -165,7 +165,7 @@ core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
                                                    const ResultStore& own) {
     auto state = std::make_unique<State>(path, own.state_->version);
     state->answers = own.state_->answers;
-    state->patience = own.state_->patience;
+    state->retries = own.state_->retries;
     state->writer = own.state_->writer;
     state->is_kept_in = false;
     return open_as(path, Database::Access::read_only, std::move(state));
@@ -173,7 +173,7 @@ core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
 
 core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database::Access access,
                                                std::unique_ptr<State> state) {
-    FEELER_TRY(state->database, open_store_file(path, access, state->patience));
+    FEELER_TRY(state->database, open_store_file(path, access, state->retries));
     if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
     return ResultStore(std::move(state));
 }
@@ -200,8 +200,8 @@ core::Result<std::vector<std::string>> ResultStore::keys() {
 }
 
 core::Result<std::optional<ProgramResult>> ResultStore::State::find(const std::string& key) {
-    FEELER_TRY(const std::vector<KeptRow> found, rows(key));
-    for (const KeptRow& row : found) {
+    FEELER_TRY(const std::vector<StoredRow> found, rows(key));
+    for (const StoredRow& row : found) {
         if (!is_same(row) || !is_sound(row)) continue;
         auto result = result_from_json(row.value);
         if (!result) continue;
@@ -223,23 +223,23 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
                                      const ProgramResult& result) {
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
     if (!state_->is_kept_in || !is_kept(job) || was_stopped || run.sha256.empty()) return {};
-    const StorePlaces& places = state_->places;
+    const RelativePaths& places = state_->places;
     if (!places.still_hold()) return {};
     const JobKeys keys = state_->keys_of(job, run.sha256);
     const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
     std::set<InputFile> inputs; // of which two may have been one, by different names
     for (const InputFile& input : run.inputs) inputs.insert(placed(input, places));
     const int64_t at = now();
-    KeptRow row{.program = state_->place_of(job.program),
-                .setup = places.place_of(job.setup),
-                .options = keys.options,
-                .version = state_->version,
-                .checked_at = at / 1'000'000,
-                .key = is_named ? keys.by_this_name : keys.by_any_name,
-                .looks = {},
-                .value = json_of(result),
-                .seal = {},
-                .inputs = {inputs.begin(), inputs.end()}};
+    StoredRow row{.program = state_->place_of(job.program),
+                  .setup = places.place_of(job.setup),
+                  .options = keys.options,
+                  .version = state_->version,
+                  .checked_at = at / 1'000'000,
+                  .key = is_named ? keys.by_this_name : keys.by_any_name,
+                  .looks = {},
+                  .value = json_of(result),
+                  .seal = {},
+                  .inputs = {inputs.begin(), inputs.end()}};
     row.looks = looks_of(row.inputs);
     row.seal = seal_of(row);
     Sighting sighting{row.key, row.looks, at};
@@ -248,19 +248,19 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
 
 core::Result<void> ResultStore::flush() { return state_->writer->flush(); }
 
-core::Result<std::vector<KeptVersion>> ResultStore::history(const std::string& program) {
+core::Result<std::vector<StoredVersion>> ResultStore::history(const std::string& program) {
     const std::lock_guard lock(state_->mutex);
-    std::vector<KeptVersion> versions;
+    std::vector<StoredVersion> versions;
     Statement& rows = state_->rows_of_program;
     rows.reset();
     rows.bind(1, state_->place_of(program));
     for (bool more = true;;) {
         FEELER_TRY(more, rows.step());
         if (!more) break;
-        const KeptRow row{.key = rows.text(6),
-                          .looks = rows.text(4),
-                          .value = rows.text(5),
-                          .seal = rows.text(7)};
+        const StoredRow row{.key = rows.text(6),
+                            .looks = rows.text(4),
+                            .value = rows.text(5),
+                            .seal = rows.text(7)};
         auto result = result_from_json(row.value);
         if (!result || row.seal != seal_of(row)) continue;
         versions.push_back({.checked_at = rows.number(0),
@@ -276,7 +276,7 @@ core::Result<std::vector<KeptVersion>> ResultStore::history(const std::string& p
     return versions;
 }
 
-core::Result<int64_t> ResultStore::seen_at(const KeptVersion& version) {
+core::Result<int64_t> ResultStore::seen_at(const StoredVersion& version) {
     const std::lock_guard lock(state_->mutex);
     Statement& sighting = state_->sighting;
     sighting.reset();
@@ -286,7 +286,7 @@ core::Result<int64_t> ResultStore::seen_at(const KeptVersion& version) {
     return at;
 }
 
-StoresBeside::StoresBeside(const std::string& path, const ResultStore& own) : own_(own) {
+SiblingStores::SiblingStores(const std::string& path, const ResultStore& own) : own_(own) {
     for (const std::string& place : stores_beside(path)) {
         auto store = ResultStore::open_beside(place, own_);
         if (!store) continue;
@@ -296,7 +296,7 @@ StoresBeside::StoresBeside(const std::string& path, const ResultStore& own) : ow
     }
 }
 
-ResultStore* StoresBeside::store_at(const std::string& path) {
+ResultStore* SiblingStores::store_at(const std::string& path) {
     constexpr size_t most_open = 64;
     if (const auto at = open_.find(path); at != open_.end()) return &at->second;
     if (open_.size() >= most_open) open_.clear();
@@ -304,7 +304,7 @@ ResultStore* StoresBeside::store_at(const std::string& path) {
     return store ? &open_.emplace(path, *std::move(store)).first->second : nullptr;
 }
 
-std::optional<ProgramResult> StoresBeside::find_in(const std::string& path, const CheckJob& job) {
+std::optional<ProgramResult> SiblingStores::find_in(const std::string& path, const CheckJob& job) {
     const std::lock_guard lock(mutex_);
     if (lost_.contains(path)) return std::nullopt;
     if (ResultStore* const store = store_at(path))
@@ -313,7 +313,7 @@ std::optional<ProgramResult> StoresBeside::find_in(const std::string& path, cons
     return std::nullopt;
 }
 
-std::optional<ProgramResult> StoresBeside::find(const CheckJob& job) {
+std::optional<ProgramResult> SiblingStores::find(const CheckJob& job) {
     if (paths_of_key_.empty()) return std::nullopt;
     for (const std::string& key : own_.keys_of(job)) {
         const auto [first, last] = paths_of_key_.equal_range(key);

@@ -17,11 +17,11 @@
 namespace app {
 
 /// A result that was kept, and of when and what.
-struct KeptVersion {
+struct StoredVersion {
     int64_t checked_at = 0; // seconds since 1970
     int64_t seen_at = 0;    // when it was last seen to hold, microseconds since 1970
     std::string version;    // of the program that checked
-    std::string setup;      // where it lies: see StorePlaces; empty: inferred
+    std::string setup;      // where it lies: see RelativePaths; empty: inferred
     std::string options;    // of the job: see options_text
     std::string inputs;     // a digest of all that was read
     std::string key;        // see result_key
@@ -39,11 +39,11 @@ public:
 
     /// `version` is that of the program that checks; results of others are not found.
     ///
-    /// It waits for others while there is patience.
+    /// Waits for other processes within the retry budget.
     ///
     /// Errors: io, with the file; unsupported for a database of another program or a newer version.
     static core::Result<ResultStore> open(const std::string& path, const std::string& version,
-                                          std::shared_ptr<Patience> patience = nullptr);
+                                          std::shared_ptr<RetryBudget> retries = nullptr);
 
     /// One that nothing is kept in. It shares with `own` what the disk has answered, and its
     /// patience; what is found is put down as seen in that.
@@ -85,13 +85,13 @@ public:
     /// Everything that was kept of a program, what was seen last at the end.
     ///
     /// Errors: io, with the database.
-    core::Result<std::vector<KeptVersion>> history(const std::string& program);
+    core::Result<std::vector<StoredVersion>> history(const std::string& program);
 
     /// When a version that may lie in another database was last seen to hold in a check that had
     /// this one; 0 if it was not.
     ///
     /// Errors: io, with the database.
-    core::Result<int64_t> seen_at(const KeptVersion& version);
+    core::Result<int64_t> seen_at(const StoredVersion& version);
 
 private:
     struct State;
@@ -105,11 +105,11 @@ private:
 /// What lies in the other databases of a folder, of shares and of whole batches: a program that
 /// comes to another machine than before is not checked twice. They are only read, and one that
 /// cannot be is as good as none.
-class StoresBeside {
+class SiblingStores {
 public:
     /// Those beside the database at `path`, which is that of `own`, as they are now. One that
     /// others have locked for longer than there is patience is not asked again.
-    StoresBeside(const std::string& path, const ResultStore& own);
+    SiblingStores(const std::string& path, const ResultStore& own);
 
     /// What the check of this job gave; see ResultStore. Several threads may ask.
     std::optional<ProgramResult> find(const CheckJob& job);

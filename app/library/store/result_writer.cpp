@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 constexpr auto gathering = 150ms;
 constexpr size_t most_bytes = size_t{64} << 20; // that wait to be written
 
-size_t row_size(const KeptRow& row) {
+size_t row_size(const StoredRow& row) {
     size_t bytes = sizeof row + row.value.size() + row.options.size();
     for (const InputFile& input : row.inputs)
         bytes += sizeof input + input.path.size() + input.name.size();
@@ -31,19 +31,19 @@ struct ResultWriter::Connection {
     Statement add_program, add_row, add_look, add_link, add_sighting;
 
     static core::Result<Connection> open(const std::string& path,
-                                         std::shared_ptr<Patience> patience);
+                                         std::shared_ptr<RetryBudget> retries);
     core::Result<void> write(const Group& group);
 
 private:
-    core::Result<void> add(const KeptRow& row);
+    core::Result<void> add(const StoredRow& row);
     core::Result<void> add(const InputFile& input, int64_t row);
 };
 
 core::Result<ResultWriter::Connection>
-ResultWriter::Connection::open(const std::string& path, std::shared_ptr<Patience> patience) {
+ResultWriter::Connection::open(const std::string& path, std::shared_ptr<RetryBudget> retries) {
     Connection made;
     FEELER_TRY(made.database,
-               open_store_file(path, Database::Access::read_write, std::move(patience)));
+               open_store_file(path, Database::Access::read_write, std::move(retries)));
     FEELER_TRY(made.add_program,
                made.database.prepare("INSERT OR IGNORE INTO program(path) VALUES(?1)"));
     FEELER_TRY(made.add_row,
@@ -72,7 +72,7 @@ core::Result<void> ResultWriter::Connection::add(const InputFile& input, int64_t
     return add_link.bind(5, answer).finish();
 }
 
-core::Result<void> ResultWriter::Connection::add(const KeptRow& row) {
+core::Result<void> ResultWriter::Connection::add(const StoredRow& row) {
     if (auto done = add_program.bind(1, row.program).finish(); !done) return done;
     add_row.bind(1, row.program).bind(2, row.key).bind(3, row.looks).bind(4, row.setup);
     add_row.bind(5, row.options).bind(6, row.version).bind(7, row.checked_at);
@@ -88,7 +88,7 @@ core::Result<void> ResultWriter::Connection::add(const KeptRow& row) {
 
 core::Result<void> ResultWriter::Connection::write(const Group& group) {
     FEELER_TRY(Transaction writing, Transaction::begin(database));
-    for (const KeptRow& row : group.rows)
+    for (const StoredRow& row : group.rows)
         if (auto done = add(row); !done) return done;
     for (const Sighting& each : group.sightings) {
         add_sighting.bind(1, each.key).bind(2, each.looks).bind(3, each.at);
@@ -97,8 +97,8 @@ core::Result<void> ResultWriter::Connection::write(const Group& group) {
     return writing.commit();
 }
 
-ResultWriter::ResultWriter(std::string path, std::shared_ptr<Patience> patience)
-    : path_(std::move(path)), patience_(std::move(patience)) {}
+ResultWriter::ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries)
+    : path_(std::move(path)), retry_budget_(std::move(retries)) {}
 
 ResultWriter::~ResultWriter() {
     {
@@ -109,7 +109,7 @@ ResultWriter::~ResultWriter() {
     if (thread_.joinable()) thread_.join();
 }
 
-core::Result<void> ResultWriter::put(KeptRow row, Sighting sighting) {
+core::Result<void> ResultWriter::put(StoredRow row, Sighting sighting) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return waiting_.bytes < most_bytes || error_; });
     if (error_) return tl::unexpected(*error_);
@@ -168,7 +168,7 @@ void ResultWriter::write(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     core::Result<void> done;
     if (!connection_) {
-        auto opened = Connection::open(path_, patience_);
+        auto opened = Connection::open(path_, retry_budget_);
         if (opened)
             connection_ = std::make_unique<Connection>(*std::move(opened));
         else
@@ -196,9 +196,9 @@ std::string looks_of(std::vector<InputFile> inputs) {
     return sha256_of(text);
 }
 
-std::string seal_of(const KeptRow& row) { return sha256_of(row.key + row.looks + row.value); }
+std::string seal_of(const StoredRow& row) { return sha256_of(row.key + row.looks + row.value); }
 
-bool is_sound(const KeptRow& row) {
+bool is_sound(const StoredRow& row) {
     return row.seal == seal_of(row) && row.looks == looks_of(row.inputs);
 }
 

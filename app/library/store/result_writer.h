@@ -14,7 +14,7 @@
 namespace app {
 
 /// A result as it lies in the database, with what its check read.
-struct KeptRow {
+struct StoredRow {
     int64_t id = 0;
     std::string program, setup, options, version;
     int64_t checked_at = 0; // seconds since 1970
@@ -30,10 +30,10 @@ std::string looks_of(std::vector<InputFile> inputs);
 
 /// A digest of key, looks and value: a file that was damaged where SQLite does not see it does not
 /// become another result.
-std::string seal_of(const KeptRow& row);
+std::string seal_of(const StoredRow& row);
 
 /// Whether a row is what somebody kept.
-bool is_sound(const KeptRow& row);
+bool is_sound(const StoredRow& row);
 
 /// That the result of a check was seen to hold.
 struct Sighting {
@@ -45,7 +45,7 @@ struct Sighting {
 /// of a second is written at once, wholly or not at all. Several threads may put.
 class ResultWriter {
 public:
-    ResultWriter(std::string path, std::shared_ptr<Patience> patience);
+    ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries);
 
     /// Writes what was put.
     ~ResultWriter();
@@ -56,7 +56,7 @@ public:
     /// forgotten.
     ///
     /// Errors: why something could not be written; from then on nothing is.
-    core::Result<void> put(KeptRow row, Sighting sighting);
+    core::Result<void> put(StoredRow row, Sighting sighting);
     void put(Sighting sighting);
 
     /// Waits until all that was put is written.
@@ -69,7 +69,7 @@ public:
 
 private:
     struct Group {
-        std::vector<KeptRow> rows;
+        std::vector<StoredRow> rows;
         std::vector<Sighting> sightings;
         size_t bytes = 0;
 
@@ -82,7 +82,7 @@ private:
     void write(std::unique_lock<std::mutex>& lock);
 
     std::string path_;
-    std::shared_ptr<Patience> patience_;
+    std::shared_ptr<RetryBudget> retry_budget_;
     std::unique_ptr<Connection> connection_; // of the thread alone
     std::mutex mutex_;                       // over all below
     std::condition_variable changed_;

@@ -13,10 +13,10 @@ constexpr size_t most_shares = 1'000'000;
 
 } // namespace
 
-std::string text_of(const ShareName& share) { return fmt::format("{}/{}", share.i, share.n); }
+std::string text_of(const ShardId& share) { return fmt::format("{}/{}", share.i, share.n); }
 
-core::Result<ShareName> share_named(const std::string& text) {
-    ShareName share{0, 0};
+core::Result<ShardId> share_named(const std::string& text) {
+    ShardId share{0, 0};
     const char* const end = text.data() + text.size();
     const auto [slash, wrong] = std::from_chars(text.data(), end, share.i);
     if (wrong == std::errc() && slash != end && *slash == '/') {
@@ -30,7 +30,7 @@ core::Result<ShareName> share_named(const std::string& text) {
                                   text, most_shares));
 }
 
-std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShareName& share) {
+std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShardId& share) {
     std::vector<size_t> largest_first(sizes.size());
     std::iota(largest_first.begin(), largest_first.end(), size_t(0));
     std::stable_sort(largest_first.begin(), largest_first.end(),

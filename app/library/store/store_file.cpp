@@ -116,7 +116,7 @@ std::vector<std::string> stores_in(const std::filesystem::path& folder) {
 
 } // namespace
 
-std::string default_store_path(const std::string& folder, const std::optional<ShareName>& share) {
+std::string default_store_path(const std::string& folder, const std::optional<ShardId>& share) {
     const std::string name =
         share ? fmt::format("results-{}of{}.db", share->i, share->n) : "results.db";
     return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler" / name).string();
@@ -141,12 +141,12 @@ std::vector<std::string> stores_above(const std::string& program) {
 }
 
 core::Result<Database> open_store_file(const std::string& path, Database::Access access,
-                                       std::shared_ptr<Patience> patience) {
+                                       std::shared_ptr<RetryBudget> retries) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code failure; // which opening the file tells as well
     if (folder.filename() == ".feeler" && access == Database::Access::read_write)
         std::filesystem::create_directory(folder, failure);
-    FEELER_TRY(Database database, Database::open(path, access, std::move(patience)));
+    FEELER_TRY(Database database, Database::open(path, access, std::move(retries)));
     if (auto done = settle(database, path, access); !done)
         return tl::unexpected(std::move(done).error());
     return database;

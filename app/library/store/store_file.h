@@ -11,8 +11,7 @@ namespace app {
 
 /// Where results of a folder's programs are kept unless another place is named. A share of a batch
 /// has one of its own: machines with one disk need not write to one file.
-std::string default_store_path(const std::string& folder,
-                               const std::optional<ShareName>& share = {});
+std::string default_store_path(const std::string& folder, const std::optional<ShardId>& share = {});
 
 /// The other databases of the same folder: of the whole batch, and of shares.
 std::vector<std::string> stores_beside(const std::string& path);
@@ -28,6 +27,6 @@ std::vector<std::string> stores_above(const std::string& program);
 /// Errors: io, with the file; unsupported for a database of another program or of a newer version.
 core::Result<Database> open_store_file(const std::string& path,
                                        Database::Access access = Database::Access::read_write,
-                                       std::shared_ptr<Patience> patience = nullptr);
+                                       std::shared_ptr<RetryBudget> retries = nullptr);
 
 } // namespace app

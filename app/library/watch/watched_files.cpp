@@ -78,7 +78,7 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
 
 /// A time to come is fresh until it comes: here it counts how long it has been seen.
 bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& stamp) {
-    if (!is_fresh(stamp)) {
+    if (!may_change_unseen(stamp)) {
         fresh_.erase(path);
         return false;
     }
@@ -111,7 +111,7 @@ bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
     return a.names != b.names || a.kind != b.kind;
 }
 
-void WatchedFiles::note(const core::FileLook& look) {
+void WatchedFiles::note(const core::FileAccess& look) {
     using enum core::FileQuestion;
     const bool is_named = look.question == in_folder;
     const std::string path = is_named ? (fs::path(look.path) / look.name).string() : look.path;

@@ -23,7 +23,7 @@ public:
     void add_own(const std::string& path);
 
     /// Told of a look as it is taken. Several threads may tell.
-    void note(const core::FileLook& look);
+    void note(const core::FileAccess& look);
 
     size_t size() const { return places_.size(); }
 

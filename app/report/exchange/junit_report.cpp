@@ -51,7 +51,7 @@ std::string xml_attribute(const std::string& text) {
     return safe;
 }
 
-std::string finding_text(const KeptFinding& finding) {
+std::string finding_text(const StoredFinding& finding) {
     std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
     if (!finding.file.empty()) text += " in " + finding.file;
     if (finding.line != 0)
@@ -64,7 +64,7 @@ std::string finding_text(const KeptFinding& finding) {
 /// The findings that count as errors, or the others.
 std::string findings_text(const ProgramResult& program, bool errors) {
     std::string text;
-    for (const KeptFinding& finding : program.findings)
+    for (const StoredFinding& finding : program.findings)
         if ((finding.severity == core::Severity::error) == errors) text += finding_text(finding);
     return text;
 }
@@ -82,7 +82,7 @@ std::string case_of(const ProgramResult& program) {
                                    name_attributes(program.program), program.seconds);
     const std::string errors = findings_text(program, true), others = findings_text(program, false);
     if (program.error) {
-        const KeptError& error = *program.error;
+        const StoredError& error = *program.error;
         const std::string place = error.line == 0 ? "" : fmt::format("line {}: ", error.line);
         text += fmt::format(
             "      <error message=\"{}\" type=\"not-run-to-its-end\">{}</error>\n",

@@ -79,7 +79,7 @@ Json location_json(const std::string& file, const FileBytes& bytes, uint32_t lin
           {"region", {{"startLine", std::max(line, 1U)}, {"startColumn", std::max(column, 1U)}}}}}};
 }
 
-Json finding_json(const ProgramResult& program, const KeptFinding& finding, size_t before) {
+Json finding_json(const ProgramResult& program, const StoredFinding& finding, size_t before) {
     const std::string& file = finding.file.empty() ? program.program : finding.file;
     const std::string cure = finding.cure.empty() ? "" : " " + finding.cure;
     Json json = {
@@ -95,7 +95,7 @@ Json finding_json(const ProgramResult& program, const KeptFinding& finding, size
 }
 
 Json error_json(const ProgramResult& program) {
-    const KeptError& error = *program.error;
+    const StoredError& error = *program.error;
     return {
         {"ruleId", not_run},
         {"ruleIndex", index_of(not_run)},
@@ -122,11 +122,11 @@ using Urgency = std::pair<int, size_t>;
 
 /// Of the findings of a program, in their order. What could not be run or was not checked is {0,
 /// 0}.
-std::vector<Urgency> urgencies_of(const std::vector<KeptFinding>& findings) {
+std::vector<Urgency> urgencies_of(const std::vector<StoredFinding>& findings) {
     std::vector<size_t> worst_first(findings.size());
     std::iota(worst_first.begin(), worst_first.end(), size_t(0));
     std::stable_sort(worst_first.begin(), worst_first.end(), [&](size_t a, size_t b) {
-        const KeptFinding &one = findings[a], &other = findings[b];
+        const StoredFinding &one = findings[a], &other = findings[b];
         if (one.severity != other.severity) return one.severity > other.severity;
         return one.shortfall > other.shortfall;
     });
@@ -162,7 +162,7 @@ Json results_json(const BatchResult& batch, const std::vector<bool>& is_told) {
     size_t next = 0;
     for (const ProgramResult& program : batch.programs) {
         std::map<std::string, size_t> seen; // by the fingerprint of the first of its kind
-        for (const KeptFinding& finding : program.findings) {
+        for (const StoredFinding& finding : program.findings) {
             const size_t before = seen[fingerprint_of(finding, 0)]++;
             if (is_told[next++]) results.push_back(finding_json(program, finding, before));
         }
@@ -212,7 +212,7 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_told)
                 left_out, most_results)));
     for (const ProgramResult& program : batch.programs)
         if (program.error) {
-            const KeptError& error = *program.error;
+            const StoredError& error = *program.error;
             notes.push_back(
                 notification_json("error", error.message,
                                   location_json(error.file.empty() ? program.program : error.file,
@@ -243,7 +243,7 @@ std::string uri_of(const std::string& path) {
     return uri;
 }
 
-std::string fingerprint_of(const KeptFinding& finding, size_t before) {
+std::string fingerprint_of(const StoredFinding& finding, size_t before) {
     return sha256_of(fmt::format("{}\n{}\n{}\n{}\n{}", finding.rule, finding.pair[0],
                                  finding.pair[1], without_number(finding.text), before));
 }

@@ -21,6 +21,6 @@ std::string sarif_report(const BatchResult& batch, const std::string& folder);
 std::string uri_of(const std::string& path);
 
 /// What tells a finding from others in its program. `before` is how many equal ones there were.
-std::string fingerprint_of(const KeptFinding& finding, size_t before);
+std::string fingerprint_of(const StoredFinding& finding, size_t before);
 
 } // namespace app

@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t microseconds = 1'000'000; // in a second
 
 /// The version before one that was checked in the same way; null if there is none.
-const KeptVersion* before(const std::vector<KeptVersion>& versions, size_t place) {
-    const KeptVersion& asked = versions[place];
+const StoredVersion* before(const std::vector<StoredVersion>& versions, size_t place) {
+    const StoredVersion& asked = versions[place];
     while (place-- > 0)
         if (versions[place].setup == asked.setup && versions[place].options == asked.options)
             return &versions[place];
@@ -48,7 +48,7 @@ std::string nearest_text(const ProgramResult& result) {
 
 std::string findings_text(const ProgramResult& result) {
     size_t errors = 0, warnings = 0;
-    for (const KeptFinding& finding : result.findings) {
+    for (const StoredFinding& finding : result.findings) {
         errors += finding.severity == core::Severity::error;
         warnings += finding.severity == core::Severity::warning;
     }
@@ -64,14 +64,14 @@ std::string change_text(const ProgramChange& change) {
     if (std::abs(change.longer) >= 0.05)
         text += fmt::format("    {:.1f} s {}\n", std::abs(change.longer),
                             change.longer > 0.0 ? "longer" : "shorter");
-    for (const KeptFinding& finding : change.new_findings)
+    for (const StoredFinding& finding : change.new_findings)
         text += "    new:  " + finding_line(finding) + "\n";
-    for (const KeptFinding& finding : change.gone_findings)
+    for (const StoredFinding& finding : change.gone_findings)
         text += "    gone: " + finding_line(finding) + "\n";
     return text.empty() ? "    nothing else is other than before\n" : text;
 }
 
-std::string version_text(const KeptVersion& kept, const KeptVersion* earlier) {
+std::string version_text(const StoredVersion& kept, const StoredVersion* earlier) {
     const ProgramResult& result = kept.result;
     const std::string checked = minute_text(kept.checked_at);
     const std::string seen = minute_text(kept.seen_at / microseconds);
@@ -97,7 +97,7 @@ Json change_json(const ProgramChange& change) {
 
 } // namespace
 
-std::string history_text(const std::string& program, const std::vector<KeptVersion>& versions) {
+std::string history_text(const std::string& program, const std::vector<StoredVersion>& versions) {
     std::string text =
         fmt::format("{}: {}\n", trimmed(program), counted(versions.size(), "version"));
     for (size_t i = 0; i < versions.size(); ++i)
@@ -105,14 +105,14 @@ std::string history_text(const std::string& program, const std::vector<KeptVersi
     return printable(text);
 }
 
-std::string history_json(const std::string& program, const std::vector<KeptVersion>& versions) {
+std::string history_json(const std::string& program, const std::vector<StoredVersion>& versions) {
     Json json = {{"feeler", version},
                  {"schema", 1},
                  {"program", utf8_text(program)},
                  {"versions", Json::array()}};
     for (size_t i = 0; i < versions.size(); ++i) {
-        const KeptVersion& kept = versions[i];
-        const KeptVersion* earlier = before(versions, i);
+        const StoredVersion& kept = versions[i];
+        const StoredVersion* earlier = before(versions, i);
         json["versions"].push_back(
             {{"checked_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.checked_at)},
              {"seen_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.seen_at / microseconds)},

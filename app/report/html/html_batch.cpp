@@ -47,7 +47,7 @@ public:
 
 private:
     void add_tightest(const std::optional<Tightest>& tightest);
-    void add_error(const KeptError& error);
+    void add_error(const StoredError& error);
 
     TextTable texts_;
     FindingColumns findings_;
@@ -69,7 +69,7 @@ void ProgramColumns::add_tightest(const std::optional<Tightest>& tightest) {
     keep_.push_back(tightest ? um_above(tightest->allowance) : 0);
 }
 
-void ProgramColumns::add_error(const KeptError& error) {
+void ProgramColumns::add_error(const StoredError& error) {
     fmt::format_to(std::back_inserter(errors_), "{}[{},{},{},{},{}]", errors_.empty() ? "" : ",",
                    paths_.size() - 1, shown_text(texts_, error.file), error.line, error.column,
                    shown_text(texts_, error.message));
@@ -340,9 +340,9 @@ std::string html_skipped(const BatchResult& batch) {
 namespace {
 
 /// The first findings of a program, the worst severities before others.
-std::vector<const KeptFinding*> worst_findings(const ProgramResult& program, size_t most) {
-    std::vector<const KeptFinding*> findings;
-    for (const KeptFinding& finding : program.findings) findings.push_back(&finding);
+std::vector<const StoredFinding*> worst_findings(const ProgramResult& program, size_t most) {
+    std::vector<const StoredFinding*> findings;
+    for (const StoredFinding& finding : program.findings) findings.push_back(&finding);
     std::stable_sort(findings.begin(), findings.end(),
                      [](const auto* a, const auto* b) { return a->severity > b->severity; });
     if (findings.size() > most) findings.resize(most);
@@ -362,7 +362,7 @@ int64_t shown_text(TextTable& texts, const std::string& text) {
 
 void FindingColumns::add(const ProgramResult& program) {
     const auto worst = worst_findings(program, most_);
-    for (const KeptFinding* finding : worst) add(*finding);
+    for (const StoredFinding* finding : worst) add(*finding);
     count_.add(static_cast<int64_t>(worst.size()));
     const auto tallies = rule_tallies(program);
     kinds_.add(static_cast<int64_t>(tallies.size()));
@@ -373,7 +373,7 @@ void FindingColumns::add(const ProgramResult& program) {
     }
 }
 
-void FindingColumns::add(const KeptFinding& finding) {
+void FindingColumns::add(const StoredFinding& finding) {
     severity_.add(static_cast<int64_t>(finding.severity));
     rule_.add(rules_.index_of(finding.rule));
     block_.add(finding.block ? int64_t{*finding.block} : -1);

@@ -66,7 +66,7 @@ public:
     std::string json() const;
 
 private:
-    void add(const KeptFinding& finding);
+    void add(const StoredFinding& finding);
 
     TextTable& texts_;
     TextTable rules_;

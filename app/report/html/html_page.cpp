@@ -53,7 +53,7 @@ constexpr Variable variables[] = {{"background", Role::background},
                                   {"rapid", Role::rapid},
                                   {"current", Role::current}};
 
-std::string declarations(render::Theme theme) {
+std::string declarations(render::ColorScheme theme) {
     std::string text;
     for (const Variable& variable : variables) {
         const render::Color color = render::color(theme, variable.role);
@@ -62,15 +62,15 @@ std::string declarations(render::Theme theme) {
     // Yellow letters on white cannot be read.
     const render::Color near = render::color(theme, Role::near);
     const render::Color letters =
-        theme == render::Theme::light ? render::mixed(near, {0, 0, 0}, 0.4) : near;
+        theme == render::ColorScheme::light ? render::mixed(near, {0, 0, 0}, 0.4) : near;
     return text + fmt::format("--near-text:#{:02x}{:02x}{:02x};", letters.r, letters.g, letters.b);
 }
 
 } // namespace
 
 std::string html_palette() {
-    const std::string light = declarations(render::Theme::light),
-                      dark = declarations(render::Theme::dark);
+    const std::string light = declarations(render::ColorScheme::light),
+                      dark = declarations(render::ColorScheme::dark);
     return fmt::format(":root{{{0}}}\n"
                        "@media screen and (prefers-color-scheme:dark)"
                        "{{:root:not([data-theme=light]){{{1}}}}}\n"

@@ -225,7 +225,7 @@ struct Stage {
         while (session.has_work()) session.record();
         take_in(model, session.take_news(), 0.0);
         if (model.failure) return tl::unexpected(*model.failure);
-        model.settings.theme = render::Theme::light;
+        model.settings.theme = render::ColorScheme::light;
         return {};
     }
 

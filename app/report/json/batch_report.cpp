@@ -30,7 +30,7 @@ std::string tightest_cells(const std::optional<Tightest>& tightest) {
 
 std::string error_cell(const ProgramResult& program) {
     if (!program.error) return {};
-    const KeptError& error = *program.error;
+    const StoredError& error = *program.error;
     const std::string file = error.file.empty() ? program.program : error.file;
     return csv_cell(error.line == 0 ? fmt::format("{}: {}", file, error.message)
                                     : fmt::format("{}:{}: {}", file, error.line, error.message));

@@ -37,11 +37,11 @@ std::string counts_text(const ProgramResult& result) {
 /// finding; the worst rule first.
 std::string findings_text(const ProgramResult& result, const BatchStyle& style) {
     struct Group {
-        const KeptFinding* worst;
+        const StoredFinding* worst;
         std::set<uint32_t> lines;
     };
     std::map<std::pair<int, std::string>, Group> groups;
-    for (const KeptFinding& finding : result.findings) {
+    for (const StoredFinding& finding : result.findings) {
         if (finding.severity != Severity::error && !style.verbose) continue;
         const std::pair<int, std::string> key = {-static_cast<int>(finding.severity),
                                                  finding.rule + finding.file};
@@ -51,7 +51,7 @@ std::string findings_text(const ProgramResult& result, const BatchStyle& style) 
     }
     std::string text;
     for (const auto& [key, group] : groups) {
-        const KeptFinding& worst = *group.worst;
+        const StoredFinding& worst = *group.worst;
         std::string line = fmt::format("{} {}", core::name_of(worst.severity), worst.rule);
         if (!worst.file.empty()) line += " in " + trimmed(worst.file);
         if (!group.lines.empty())
@@ -62,7 +62,7 @@ std::string findings_text(const ProgramResult& result, const BatchStyle& style) 
     return text;
 }
 
-std::string place_of(const KeptError& error, const std::string& program) {
+std::string place_of(const StoredError& error, const std::string& program) {
     std::string place = error.file.empty() ? program : error.file;
     if (error.line != 0) place += fmt::format(":{}", error.line);
     if (error.line != 0 && error.column != 0) place += fmt::format(":{}", error.column);
@@ -75,7 +75,7 @@ std::string error_line(const ProgramResult& result) {
 
 /// The same below the line of the program, which need not be named again.
 std::string own_error_line(const ProgramResult& result) {
-    const KeptError& error = *result.error;
+    const StoredError& error = *result.error;
     const bool is_own = error.file.empty() || error.file == result.program;
     if (!is_own) return error_line(result);
     return error.line == 0 ? error.message : fmt::format("line {}: {}", error.line, error.message);
@@ -209,7 +209,7 @@ std::vector<RuleTally> values_of(const std::map<Key, RuleTally>& tallies) {
 
 std::vector<RuleTally> rule_tallies(const ProgramResult& program) {
     std::map<Key, RuleTally> tallies;
-    for (const KeptFinding& finding : program.findings) {
+    for (const StoredFinding& finding : program.findings) {
         const RuleTally fresh{finding.severity, finding.rule, 1, 0};
         ++tallies.try_emplace(key_of(finding.severity, finding.rule), fresh).first->second.findings;
     }

@@ -70,10 +70,10 @@ std::string blocks_text(const char* title, const std::vector<ChangedBlock>& bloc
     return text + "\n";
 }
 
-std::string findings_text(const char* title, const std::vector<KeptFinding>& findings) {
+std::string findings_text(const char* title, const std::vector<StoredFinding>& findings) {
     if (findings.empty()) return {};
     std::string text = fmt::format("{}:\n", title);
-    for (const KeptFinding& finding : findings) text += "  " + finding_line(finding) + "\n";
+    for (const StoredFinding& finding : findings) text += "  " + finding_line(finding) + "\n";
     return text + "\n";
 }
 
@@ -148,7 +148,7 @@ std::string diff_json(const ProgramDiff& diff) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string finding_line(const KeptFinding& finding) {
+std::string finding_line(const StoredFinding& finding) {
     std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
     if (finding.line == 0) return text;
     text += fmt::format(", line {}", finding.line);
@@ -156,7 +156,7 @@ std::string finding_line(const KeptFinding& finding) {
     return text + ": " + clipped(trimmed(finding.text), 40);
 }
 
-nlohmann::ordered_json findings_json(const std::vector<KeptFinding>& findings) {
+nlohmann::ordered_json findings_json(const std::vector<StoredFinding>& findings) {
     ProgramResult holder;
     holder.findings = findings;
     return nlohmann::ordered_json::parse(json_of(holder)).at("findings");

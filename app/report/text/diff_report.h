@@ -18,9 +18,9 @@ std::string diff_text(const ProgramDiff& diff, bool all);
 std::string diff_json(const ProgramDiff& diff);
 
 /// "error near-miss, line 17: G0 X10.".
-std::string finding_line(const KeptFinding& finding);
+std::string finding_line(const StoredFinding& finding);
 
 /// Rule, severity, line, message and so on of each, as the JSON of a program's result has them.
-nlohmann::ordered_json findings_json(const std::vector<KeptFinding>& findings);
+nlohmann::ordered_json findings_json(const std::vector<StoredFinding>& findings);
 
 } // namespace app

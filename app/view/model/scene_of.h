@@ -14,7 +14,7 @@ struct SceneKey {
     Cursor cursor;
     render::Camera camera;
     Shown shown;
-    render::Theme theme = render::Theme::dark;
+    render::ColorScheme theme = render::ColorScheme::dark;
     std::optional<size_t> hovered;
     core::Vec3 section = core::Vec3(0.0);
     double section_offset = 0.0;

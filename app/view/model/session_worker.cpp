@@ -153,7 +153,7 @@ void WorkerSession::show(const ShowRequest& request) {
     if (!request.at_end) surface_.update(session_->place().machine.stock);
     // A block that the control refuses has nothing behind it: the view is then that before it.
     if (ahead) static_cast<void>(session_->go_to(view->block + 1));
-    const RunPlace& after = session_->place();
+    const RunState& after = session_->place();
     if (request.at_end) surface_.update(after.machine.stock);
     view->stock = surface_.bricks();
     view->standing = known_values(view->scene->setup.machine, after.machine.position);

@@ -39,7 +39,7 @@ Settings settings_in(const std::string& text) {
     const toml::table& table = *parsed;
     std::string word;
     take(table, "theme", word);
-    if (word == "light") settings.theme = render::Theme::light;
+    if (word == "light") settings.theme = render::ColorScheme::light;
     take(table, "projection", word);
     if (word == "parallel") settings.projection = render::Projection::orthographic;
     take(table, "inch", settings.inch);
@@ -76,7 +76,7 @@ std::string text_of(const Settings& s) {
         "{:.1f}\n"
         "show_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = {}\n"
         "show_path = {}\nshow_witness = {}\nholder_xray = {}\n",
-        s.theme == render::Theme::light ? "light" : "dark",
+        s.theme == render::ColorScheme::light ? "light" : "dark",
         s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
         s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y, s.maximised, s.list_width,
         s.inspector_width, s.device_width, s.timeline_height, shown.stock, shown.fixtures,

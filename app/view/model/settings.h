@@ -29,7 +29,7 @@ struct Shown {
 
 /// What the window remembers from one time to the next.
 struct Settings {
-    render::Theme theme = render::Theme::dark;
+    render::ColorScheme theme = render::ColorScheme::dark;
     bool inch = false;
     double scale = 1.0; // of everything, on top of the screen's
     MousePreset mouse = MousePreset::middle_orbits;

@@ -55,7 +55,7 @@ constexpr double least_view = 560.0; // beside which both columns at the right s
 
 } // namespace
 
-Desk::Parts Desk::parts_of(const Frame& frame, const Area& area) {
+Layout::Parts Layout::parts_of(const Frame& frame, const Area& area) {
     const Settings& settings = frame.model.settings;
     const float top = area.y + frame.px(48);
     const float bottom = std::min(frame.px(settings.timeline_height), 0.4F * area.height);
@@ -79,7 +79,7 @@ Desk::Parts Desk::parts_of(const Frame& frame, const Area& area) {
     return parts;
 }
 
-void Desk::draw_splitters(Frame& frame, const Parts& parts) {
+void Layout::draw_splitters(Frame& frame, const Parts& parts) {
     Settings& settings = frame.model.settings;
     const float grip = frame.px(5);
     const auto upright = [&](const char* name, float x) {
@@ -96,7 +96,7 @@ void Desk::draw_splitters(Frame& frame, const Parts& parts) {
          90.0, 500.0);
 }
 
-void Desk::draw_body(Frame& frame, const Area& area) {
+void Layout::draw_body(Frame& frame, const Area& area) {
     const Parts parts = parts_of(frame, area);
     const ImVec2 room(frame.px(12), frame.px(10));
     place(frame, toolbar_, "toolbar", parts.toolbar, ImVec2(0, 0));
@@ -111,8 +111,8 @@ void Desk::draw_body(Frame& frame, const Area& area) {
     draw_splitters(frame, parts);
 }
 
-void Desk::draw(ViewModel& model, const Fonts& fonts, double now) {
-    Frame frame{model, fonts, Look{model.settings.theme}, now};
+void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
+    Frame frame{model, fonts, Theme{model.settings.theme}, now};
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const Area area{0, 0, size.x, size.y};
     ImGui::SetNextWindowPos(ImVec2(0, 0));

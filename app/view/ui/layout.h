@@ -10,9 +10,9 @@ namespace app::viewer {
 
 /// All panels and where they stand. Needs a current OpenGL context and an ImGui context, and no
 /// window: pictures are made by the same functions.
-class Desk {
+class Layout {
 public:
-    explicit Desk(render::Renderer renderer) : scene_(std::move(renderer)) {}
+    explicit Layout(render::Renderer renderer) : scene_(std::move(renderer)) {}
 
     /// Draws everything between ImGui's NewFrame and Render.
     void draw(ViewModel& model, const Fonts& fonts, double now);

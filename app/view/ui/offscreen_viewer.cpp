@@ -36,22 +36,23 @@ struct Texture {
 
 } // namespace
 
-core::Result<std::unique_ptr<Studio>> Studio::make(render::Theme theme, double scale) {
+core::Result<std::unique_ptr<OffscreenViewer>> OffscreenViewer::make(render::ColorScheme theme,
+                                                                     double scale) {
     FEELER_TRY(render::Offscreen context, render::Offscreen::make());
     FEELER_TRY(render::Renderer renderer, render::Renderer::make());
-    return std::unique_ptr<Studio>(
-        new Studio(std::move(context), std::move(renderer), theme, scale));
+    return std::unique_ptr<OffscreenViewer>(
+        new OffscreenViewer(std::move(context), std::move(renderer), theme, scale));
 }
 
-Studio::Studio(render::Offscreen context, render::Renderer renderer, render::Theme theme,
-               double scale)
+OffscreenViewer::OffscreenViewer(render::Offscreen context, render::Renderer renderer,
+                                 render::ColorScheme theme, double scale)
     : context_(std::move(context)), still_(std::move(renderer)) {
     model.settings.theme = theme;
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui_ImplOpenGL3_Init("#version 330 core");
     fonts_ = std::make_unique<Fonts>(load_fonts(scale));
-    apply_style(Look{theme}, scale);
+    apply_style(Theme{theme}, scale);
     const auto wake = [this] {
         {
             const std::lock_guard lock(mutex_);
@@ -63,21 +64,21 @@ Studio::Studio(render::Offscreen context, render::Renderer renderer, render::The
     device_ = std::make_unique<DeviceWorker>(wake);
 }
 
-Studio::~Studio() {
+OffscreenViewer::~OffscreenViewer() {
     device_.reset();
     worker_.reset();
-    desk_.reset();
+    layout_.reset();
     ImGui_ImplOpenGL3_Shutdown();
     ImGui::DestroyContext();
 }
 
-void Studio::wait() {
+void OffscreenViewer::wait() {
     std::unique_lock lock(mutex_);
     woken_.wait(lock, [&] { return is_woken_; });
     is_woken_ = false;
 }
 
-void Studio::update() {
+void OffscreenViewer::update() {
     take_in(model, worker_->take(), 0.0);
     take_in(model, device_->take());
     model.message.clear();
@@ -85,7 +86,7 @@ void Studio::update() {
     send_requests(model, *worker_);
 }
 
-core::Result<void> Studio::open(const CheckJob& job) {
+core::Result<void> OffscreenViewer::open(const CheckJob& job) {
     job_ = job;
     worker_->open(job);
     while (!model.failure && !model.is_recorded) {
@@ -96,7 +97,7 @@ core::Result<void> Studio::open(const CheckJob& job) {
     return {};
 }
 
-core::Result<void> Studio::run_device(const std::string& file) {
+core::Result<void> OffscreenViewer::run_device(const std::string& file) {
     model.device.file = file;
     model.device.shown = true;
     update();
@@ -108,7 +109,7 @@ core::Result<void> Studio::run_device(const std::string& file) {
     return {};
 }
 
-void Studio::settle() {
+void OffscreenViewer::settle() {
     if (!model.has_rows()) return;
     model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
     const bool at_end = model.wanted->at_end;
@@ -128,7 +129,7 @@ void Studio::settle() {
     }
 }
 
-void Studio::look(ShotView view, const render::Viewport& size) {
+void OffscreenViewer::look(ShotView view, const render::Viewport& size) {
     const auto from = [&](render::StandardView side) {
         model.camera = render::seen_from(model.camera, side);
         model.camera = render::framing(model.camera, size, render::work_bounds(scene_of(model)));
@@ -140,8 +141,8 @@ void Studio::look(ShotView view, const render::Viewport& size) {
     model.camera_placed = true;
 }
 
-core::Result<render::Image> Studio::drawn(const render::Viewport& size, int frames,
-                                          const std::function<void()>& draw) {
+core::Result<render::Image> OffscreenViewer::drawn(const render::Viewport& size, int frames,
+                                                   const std::function<void()>& draw) {
     FEELER_TRY(render::Canvas canvas, render::Canvas::make(size));
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
@@ -154,7 +155,7 @@ core::Result<render::Image> Studio::drawn(const render::Viewport& size, int fram
     }
     canvas.begin();
     glViewport(0, 0, size.width, size.height);
-    const ImVec4 back = Look{model.settings.theme}.vector(Role::panel);
+    const ImVec4 back = Theme{model.settings.theme}.vector(Role::panel);
     glClearColor(back.x, back.y, back.z, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -164,24 +165,25 @@ core::Result<render::Image> Studio::drawn(const render::Viewport& size, int fram
     return image;
 }
 
-core::Result<render::Image> Studio::picture(const render::Viewport& size, bool with_ui) {
+core::Result<render::Image> OffscreenViewer::picture(const render::Viewport& size, bool with_ui) {
     if (!with_ui) {
         render::DrawOptions options;
         options.theme = model.settings.theme;
         return render::still_picture(still_, scene_of(model), model.camera, options, size);
     }
-    if (!desk_) {
+    if (!layout_) {
         FEELER_TRY(render::Renderer renderer, render::Renderer::make());
-        desk_ = std::make_unique<Desk>(std::move(renderer));
-        desk_->scene().set_samples(4);
+        layout_ = std::make_unique<Layout>(std::move(renderer));
+        layout_->scene().set_samples(4);
     }
     return drawn(size, 4, [&] {
         model.list_follows = true;
-        desk_->draw(model, *fonts_, 0.0);
+        layout_->draw(model, *fonts_, 0.0);
     });
 }
 
-core::Result<render::Image> Studio::sheet(const std::vector<Print>& prints, size_t columns) {
+core::Result<render::Image> OffscreenViewer::sheet(const std::vector<Print>& prints,
+                                                   size_t columns) {
     const int gap = 14, foot = 30;
     const render::Image& first = prints.front().image;
     const auto rows = static_cast<int>((prints.size() + columns - 1) / columns);
@@ -189,7 +191,7 @@ core::Result<render::Image> Studio::sheet(const std::vector<Print>& prints, size
                                 rows * (first.height + foot + gap) + gap};
     std::vector<Texture> textures;
     for (const Print& print : prints) textures.emplace_back(print.image);
-    const Look look{model.settings.theme};
+    const Theme look{model.settings.theme};
     return drawn(size, 1, [&] {
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
         for (size_t i = 0; i < prints.size(); ++i) {

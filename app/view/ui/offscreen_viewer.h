@@ -11,7 +11,7 @@
 
 namespace app::viewer {
 
-class Desk;
+class Layout;
 struct Fonts;
 
 /// From which side a picture is taken.
@@ -19,11 +19,12 @@ enum class ShotView : uint8_t { iso, top, front, witness };
 
 /// Takes pictures of a program without a window or a screen, by the functions that the window
 /// draws with.
-class Studio {
+class OffscreenViewer {
 public:
     /// Errors: unsupported, when there is no OpenGL 3.3.
-    static core::Result<std::unique_ptr<Studio>> make(render::Theme theme, double scale);
-    ~Studio();
+    static core::Result<std::unique_ptr<OffscreenViewer>> make(render::ColorScheme theme,
+                                                               double scale);
+    ~OffscreenViewer();
 
     /// Opens a program and checks it to its end.
     ///
@@ -53,7 +54,8 @@ public:
     core::Result<render::Image> sheet(const std::vector<Print>& prints, size_t columns);
 
 private:
-    Studio(render::Offscreen context, render::Renderer renderer, render::Theme theme, double scale);
+    OffscreenViewer(render::Offscreen context, render::Renderer renderer, render::ColorScheme theme,
+                    double scale);
     void wait();
     void update();
     /// What is drawn between ImGui's NewFrame and Render, as a picture.
@@ -62,7 +64,7 @@ private:
 
     render::Offscreen context_;
     render::Renderer still_;
-    std::unique_ptr<Desk> desk_;
+    std::unique_ptr<Layout> layout_;
     std::unique_ptr<Fonts> fonts_;
     std::mutex mutex_;
     std::condition_variable woken_;

@@ -12,7 +12,7 @@ using render::Role;
 
 ImU32 packed(const render::Color& color) { return IM_COL32(color.r, color.g, color.b, color.a); }
 
-void set_colors(const Look& look, ImVec4* colors) {
+void set_colors(const Theme& look, ImVec4* colors) {
     const ImVec4 clear(0, 0, 0, 0);
     colors[ImGuiCol_Text] = look.vector(Role::text);
     colors[ImGuiCol_TextDisabled] = look.vector(Role::dim);
@@ -48,31 +48,31 @@ void set_colors(const Look& look, ImVec4* colors) {
 
 } // namespace
 
-ImU32 Look::color(Role role, double alpha) const {
+ImU32 Theme::color(Role role, double alpha) const {
     render::Color found = render::color(theme, role);
     return packed(render::with_alpha(found, alpha * found.a / 255.0));
 }
 
-ImVec4 Look::vector(Role role, double alpha) const {
+ImVec4 Theme::vector(Role role, double alpha) const {
     return ImGui::ColorConvertU32ToFloat4(color(role, alpha));
 }
 
-ImU32 Look::ink(Role role) const {
-    const bool is_pale = role == Role::near && theme == render::Theme::light;
+ImU32 Theme::ink(Role role) const {
+    const bool is_pale = role == Role::near && theme == render::ColorScheme::light;
     return is_pale ? mixed(role, Role::text, 0.55) : color(role);
 }
 
-ImU32 Look::mixed(Role a, Role b, double share) const {
+ImU32 Theme::mixed(Role a, Role b, double share) const {
     return packed(render::mixed(render::color(theme, a), render::color(theme, b), share));
 }
 
-ImU32 Look::of(const BlockRow& row, Role otherwise) const {
+ImU32 Theme::of(const BlockRow& row, Role otherwise) const {
     if (is_offending(row)) return color(Role::violation);
     if (is_near(row)) return color(Role::near);
     return color(otherwise);
 }
 
-void apply_style(const Look& look, double scale) {
+void apply_style(const Theme& look, double scale) {
     ImGuiStyle style;
     style.WindowRounding = 6.0F;
     style.ChildRounding = 0.0F;

@@ -12,8 +12,8 @@
 namespace app::viewer {
 
 /// The colours of a theme as ImGui wants them.
-struct Look {
-    render::Theme theme = render::Theme::dark;
+struct Theme {
+    render::ColorScheme theme = render::ColorScheme::dark;
 
     ImU32 color(render::Role role, double alpha = 1.0) const;
     ImVec4 vector(render::Role role, double alpha = 1.0) const;
@@ -26,7 +26,7 @@ struct Look {
 };
 
 /// Gives ImGui's current context the colours and sizes of a theme.
-void apply_style(const Look& look, double scale);
+void apply_style(const Theme& look, double scale);
 
 } // namespace app::viewer
 
@@ -98,7 +98,7 @@ struct Area {
 struct Frame {
     ViewModel& model;
     const Fonts& fonts;
-    Look look;
+    Theme look;
     double now = 0.0; // seconds
 
     float px(double length) const { return static_cast<float>(length * fonts.scale); }

@@ -254,8 +254,8 @@ bool show(ViewModel& model, Command command) {
         toggle(settings.inch);
         return true;
     case Command::theme:
-        settings.theme =
-            settings.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
+        settings.theme = settings.theme == render::ColorScheme::dark ? render::ColorScheme::light
+                                                                     : render::ColorScheme::dark;
         return true;
     case Command::larger:
         set_scale(model, 1.1);

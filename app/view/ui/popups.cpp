@@ -47,11 +47,11 @@ void draw_shortcuts(Frame& frame) {
 
 void draw_settings(Frame& frame) {
     Settings& settings = frame.model.settings;
-    int theme = settings.theme == render::Theme::light ? 1 : 0;
+    int theme = settings.theme == render::ColorScheme::light ? 1 : 0;
     ImGui::RadioButton("Dark", &theme, 0);
     ImGui::SameLine();
     ImGui::RadioButton("Light", &theme, 1);
-    settings.theme = theme == 1 ? render::Theme::light : render::Theme::dark;
+    settings.theme = theme == 1 ? render::ColorScheme::light : render::ColorScheme::dark;
     int unit = settings.inch ? 1 : 0;
     ImGui::RadioButton("mm", &unit, 0);
     ImGui::SameLine();
@@ -292,7 +292,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
 
 void WelcomePanel::draw(Frame& frame, const Area& area) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     list.AddRectFilledMultiColor(area.corner(), area.far_corner(), look.color(Role::view_top),
                                  look.color(Role::view_top), look.color(Role::view_bottom),
                                  look.color(Role::view_bottom));

@@ -18,7 +18,7 @@ using render::Role;
 
 /// The words of a line, each with its colour: N numbers and comments dim, motion codes marked.
 void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, float end) {
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     ImFont* const font = frame.fonts.mono;
     const float letter = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, "0").x;
     const std::string& text = row.text;
@@ -64,7 +64,7 @@ std::string clearance_text(const ViewModel& model, const BlockRow& row) {
 
 void draw_background(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
                      bool is_current, bool is_odd) {
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     const ImVec2 a = row.corner(), b = row.far_corner();
     const float round = frame.px(3);
     if (is_current)
@@ -80,7 +80,7 @@ void draw_background(Frame& frame, ImDrawList& list, const Area& row, const Bloc
 /// The bar at the left: its colour and its width tell the state.
 void draw_gutter(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
                  size_t index) {
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     const float middle = row.y + 0.5F * row.height;
     if (is_offending(block) || is_near(block)) {
         const float width = frame.px(is_offending(block) ? 4 : 2);

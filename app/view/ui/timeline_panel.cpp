@@ -44,7 +44,7 @@ void draw_mark(Frame& frame, ImDrawList& list, const Area& area, const Mark& mar
 void draw_bar(Frame& frame, ImDrawList& list, const Area& area, const TimelineCell& cell, float x,
               float width) {
     if (!cell.known || !cell.moves) return;
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     ImU32 color = look.mixed(Role::panel, Role::accent, 0.5);
     if (cell.near) color = look.color(Role::near);
     // What stops the machine is as high as the row: nobody looks for it.
@@ -101,7 +101,7 @@ struct Bars {
 
 void draw_bar(Frame& frame, ImDrawList& list, const Bars& bars, const TimelineCell& cell, float x,
               float width) {
-    const Look& look = frame.look;
+    const Theme& look = frame.look;
     const float bottom = bars.area.y + bars.area.height;
     ImU32 color = look.mixed(Role::panel, Role::clear, 0.55);
     if (cell.near) color = look.color(Role::near);

@@ -87,7 +87,7 @@ void draw_right(Frame& frame) {
     ImGui::SameLine();
     icon_button(frame, Icon::picture, Command::picture);
     ImGui::SameLine();
-    const bool is_dark = model.settings.theme == render::Theme::dark;
+    const bool is_dark = model.settings.theme == render::ColorScheme::dark;
     icon_button(frame, is_dark ? Icon::sun : Icon::moon, Command::theme);
     ImGui::SameLine();
     ImGui::PushID("settings");

@@ -129,7 +129,7 @@ public:
         : job_(job),
           window_(window),
           gui_(window),
-          desk_(std::move(renderer)),
+          layout_(std::move(renderer)),
           log_(job.frame_log),
           worker_([] { glfwPostEmptyEvent(); }),
           device_([] { glfwPostEmptyEvent(); }) {}
@@ -157,10 +157,10 @@ private:
     WindowJob job_;
     GLFWwindow* window_;
     Gui gui_;
-    Desk desk_;
+    Layout layout_;
     Fonts fonts_;
     std::string title_;
-    std::optional<render::Theme> styled_;
+    std::optional<render::ColorScheme> styled_;
     FileWatch files_;
     FrameLog log_;
     KeyQueue keys_;
@@ -191,7 +191,7 @@ void Window::rebuild_fonts() {
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }
-    apply_style(Look{model.settings.theme}, scale);
+    apply_style(Theme{model.settings.theme}, scale);
     styled_ = model.settings.theme;
 }
 
@@ -315,14 +315,14 @@ void Window::draw() {
     ImGui_ImplGlfw_NewFrame();
     if (keys_.feed(ImGui::GetIO())) damage();
     ImGui::NewFrame();
-    desk_.draw(model, fonts_, glfwGetTime());
+    layout_.draw(model, fonts_, glfwGetTime());
     set_title();
     ImGui::Render();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width, height);
-    const ImVec4 back = Look{model.settings.theme}.vector(render::Role::panel);
+    const ImVec4 back = Theme{model.settings.theme}.vector(render::Role::panel);
     glClearColor(back.x, back.y, back.z, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -48,8 +48,8 @@ std::vector<Finding> findings_of(const ToolReaches& reaches, const Setup& setup)
 struct RunWatch {
     AirSeries air;
     ToolReaches reaches;
-    bool has_fed = false;    // the tool that is in the spindle now
-    bool told_swing = false; // of the same tool, singular-orientation
+    bool has_fed = false;           // the tool that is in the spindle now
+    bool singular_reported = false; // of the same tool, singular-orientation
     // The control counts with another length than the tool's: how deep the tool goes then says
     // nothing of its stick-out. Whoever runs the blocks knows that and sets it.
     bool length_in_doubt = false;

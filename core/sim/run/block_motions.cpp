@@ -193,7 +193,7 @@ void BlockRun::look_at_feed(const Motion& motion, const Path& path, double remov
     if (in_air) return;
     auto found = singular_orientation(setup.machine, motion, tool()->length);
     const bool swings = found && !motion.tip && removed <= 0.0;
-    if (!found || swings || std::exchange(state.watch.told_swing, true)) return;
+    if (!found || swings || std::exchange(state.watch.singular_reported, true)) return;
     tell(std::move(found));
 }
 

@@ -39,7 +39,7 @@ void BlockRun::carry_out(const ToolChange& change) {
     legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
-    state.watch.has_fed = state.watch.told_swing = false;
+    state.watch.has_fed = state.watch.singular_reported = false;
     forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
