@@ -36,6 +36,21 @@ std::string clearance_text(double lower, double upper, int upper_digits, int dig
 
 } // namespace
 
+const char* name_of(BlockMotion motion) {
+    switch (motion) {
+    case BlockMotion::none:
+        return "none";
+    case BlockMotion::rapid:
+        return "rapid";
+    case BlockMotion::feed:
+        return "feed";
+    case BlockMotion::arc:
+        return "arc";
+    default:
+        return "cycle";
+    }
+}
+
 // Zero is added to what is rounded, as -0 is not to be printed.
 
 double units_below(double value, int digits) {

@@ -11,6 +11,11 @@ enum class Verdict : uint8_t { clear, undecided, violation, collision };
 
 const char* name_of(Verdict verdict);
 
+/// What a block moves, as reports show it.
+enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
+
+const char* name_of(BlockMotion motion);
+
 /// Lengths nearer together than this are the same length, mm: an allowance that is kept to within
 /// it counts as kept. It stands far above rounding and far below anything a machine can hold.
 constexpr double resolution = 1e-6;

@@ -6,21 +6,6 @@
 
 namespace core {
 
-const char* name_of(BlockMotion motion) {
-    switch (motion) {
-    case BlockMotion::none:
-        return "none";
-    case BlockMotion::rapid:
-        return "rapid";
-    case BlockMotion::feed:
-        return "feed";
-    case BlockMotion::arc:
-        return "arc";
-    default:
-        return "cycle";
-    }
-}
-
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
     FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
     if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());

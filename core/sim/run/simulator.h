@@ -44,11 +44,6 @@ inline bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool)
 /// rotary axes move are taken to go such a way.
 bool cuts_along(const ToolAssembly& tool, const Motion& motion);
 
-/// What a block moves, as a report says it.
-enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
-
-const char* name_of(BlockMotion motion);
-
 /// What a block did and how near it came.
 struct BlockResult {
     BlockMotion motion = BlockMotion::none;
