@@ -1,0 +1,302 @@
+#!/usr/bin/env python3
+"""Carries out the recipes of docs/recipes.md on a copy of the files that they change.
+
+    recipes.py ROOT BUILD      fails with the first recipe step that is out of date
+    recipes.py --self-check    checks this script against a small tree with known mistakes
+
+The first words after the ``` of a code block say what it is:
+
+    ```diff FILE       an edit of FILE: lines that begin with a blank or - must be in it, side by side and
+                       once; a line of three dots separates two edits
+    ```LANGUAGE FILE   a new file
+    ```console         commands ($ ...) with what they print, run in ROOT with the feeler of the recipes
+
+All recipes go into one copy. Only the changed sources are compiled; they are linked in front of the
+libraries in BUILD. So an edit of a header must not change the size or order of anything that other
+sources read. Rows that a recipe adds to tests/planted/table.txt are run like those that are there.
+"""
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+import documentation
+import tutorial
+
+PLANTED = "tests/planted/table.txt"
+
+# Sources with short functions, which the compiler inlines into the other sources of their group: these
+# are compiled as well.
+INLINED = {"gcode/language/dialect.cpp"}
+
+
+class Stale(Exception):
+    """A step of a recipe that does not fit the code."""
+
+
+def blocks_of(text):
+    """Line number, info string and lines of each fenced block."""
+    lines, at = text.splitlines(), 0
+    while at < len(lines):
+        at += 1
+        if not lines[at - 1].startswith("```"):
+            continue
+        end = lines.index("```", at)
+        yield at, lines[at - 1][3:].split(), lines[at:end]
+        at = end + 1
+
+
+def hunks_of(lines):
+    """The edits of a diff: lines to be found, lines to take their place."""
+    old, new = [], []
+    for line in [*lines, "..."]:
+        if line == "...":
+            yield old, new
+            old, new = [], []
+            continue
+        if line[:1] != "+":
+            old.append(line[1:])
+        if line[:1] != "-":
+            new.append(line[1:])
+
+
+def edited(text, lines):
+    content = text.splitlines()
+    for old, new in hunks_of(lines):
+        places = [at for at in range(len(content) - len(old) + 1) if content[at:at + len(old)] == old]
+        if len(places) != 1:
+            raise Stale(f"these lines are in the file {len(places)} times, not once:\n" + "\n".join(old))
+        content[places[0]:places[0] + len(old)] = new
+    return "\n".join(content) + "\n"
+
+
+class Overlay:
+    """The files that recipes change or add, in a folder of their own beside the tree."""
+
+    def __init__(self, root, folder):
+        self.root, self.folder, self.added = root, folder, []
+        self.names = set()
+        self.planted_rows = []
+
+    def edit(self, name, lines):
+        source = self.folder / name if name in self.names else self.root / name
+        if not source.is_file():
+            raise Stale(f"{name}: there is no such file")
+        before = source.read_text(encoding="utf-8")
+        try:
+            after = edited(before, lines)
+        except Stale as stale:
+            raise Stale(f"{name}: {stale}") from None
+        if name == PLANTED:
+            self.planted_rows += [line[1:].split() for line in lines if line.startswith("+")]
+        self.write(name, after)
+
+    def add(self, name, lines):
+        if (self.root / name).exists() or name in self.names:
+            raise Stale(f"{name}: a new file, and it exists already")
+        self.write(name, "\n".join(lines) + "\n")
+        self.added.append(name)
+
+    def write(self, name, text):
+        self.names.add(name)
+        file = self.folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+    def complete_folders_of_tests(self):
+        """Links to the files beside those in `tests` and `docs`, which commands and tests read."""
+        for name in ("assets", "tests/planted", "docs/manual"):
+            self.link(name)
+
+    def link(self, name):
+        if not (self.folder / name).exists():
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / name).symlink_to(self.root / name)
+        elif (self.folder / name).is_dir():
+            for entry in (self.root / name).iterdir():
+                self.link(f"{name}/{entry.name}")
+
+
+def apply_recipes(text, overlay):
+    """Edits and adds the files of all recipes; the console blocks come back for later."""
+    consoles = []
+    for number, info, lines in blocks_of(text):
+        try:
+            if info == ["console"]:
+                consoles.append((number, lines))
+            elif len(info) == 2 and info[0] == "diff":
+                overlay.edit(info[1], lines)
+            elif len(info) == 2:
+                overlay.add(info[1], lines)
+        except Stale as stale:
+            raise Stale(f"docs/recipes.md:{number}: {stale}") from None
+    return consoles
+
+
+# --- building -------------------------------------------------------------------------------------
+
+def run(command, **options):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, **options)
+    if done.returncode:
+        raise Stale(f"{shlex.join(command) if isinstance(command, list) else command}\n{done.stdout}")
+    return done.stdout
+
+
+def compile_entries(build):
+    """The entry of the compile database for each source, with the sources of its group."""
+    found = {}
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        file = entry["file"]
+        if "/tests/" in file:
+            continue
+        group = [file]
+        if "/Unity/" in file:
+            group = re.findall(r'#include "(.*)"', pathlib.Path(file).read_text(encoding="utf-8"))
+        found.update({source: (entry, group) for source in group})
+    return found
+
+
+def objects_of(overlay, build):
+    """Compiles the sources that the recipes change or add; new ones as their neighbours are compiled."""
+    entries = compile_entries(build)
+    neighbours = {str(pathlib.Path(source).parent): entry for source, (entry, _) in entries.items()}
+    listed = "".join((overlay.folder / name).read_text(encoding="utf-8") for name in overlay.names
+                     if name.endswith("CMakeLists.txt"))
+    objects = []
+    for name in sorted(name for name in overlay.names if name.endswith(".cpp")):
+        source = str(overlay.root / name)
+        if name in overlay.added:
+            if os.path.basename(name) not in listed:
+                raise Stale(f"{name}: a new source that no CMakeLists.txt of a recipe names")
+            entry, group = neighbours[os.path.dirname(source)], [source]
+        elif source in entries:
+            entry, group = entries[source]
+        elif name.startswith("tests/"):
+            continue
+        else:
+            raise Stale(f"{name}: no library has this source")
+        sources = group if name in INLINED else [source]
+        objects.append(compiled_object(overlay, entry, sources, len(objects)))
+    return objects
+
+
+def compiled_object(overlay, entry, sources, number):
+    group, target = overlay.folder / f"group{number}.cpp", overlay.folder / f"group{number}.o"
+    names = [os.path.relpath(source, overlay.root) for source in sources]
+    group.write_text("".join(f'#include "{overlay.folder if name in overlay.names else overlay.root}/{name}"\n'
+                             for name in names), encoding="utf-8")
+    words = shlex.split(entry["command"])
+    words[words.index("-o") + 1] = str(target)
+    words[words.index("-c") + 1] = str(group)
+    words = ["-O1" if re.fullmatch("-O[23]", word) else word for word in words if word != "-fpch-preprocess"]
+    at = next(i for i, word in enumerate(words) if word == f"-I{overlay.root}")
+    run([*words[:at], f"-I{overlay.folder}", *words[at:]], cwd=entry["directory"])
+    return str(target)
+
+
+def link_feeler(overlay, build, objects):
+    """A feeler whose changed sources are those of the recipes: they come before the libraries."""
+    feeler = overlay.folder / "bin" / "feeler"
+    feeler.parent.mkdir()
+    command = run(["ninja", "-C", str(build), "-t", "commands", "-s", "app/feeler"]).strip().splitlines()[-1]
+    first = f"-Wl,--allow-multiple-definition -o {shlex.quote(str(feeler))} {shlex.join(objects)}"
+    command = command.replace("-o app/feeler", first)
+    run(command, cwd=build, shell=True)
+    return feeler
+
+
+# --- running --------------------------------------------------------------------------------------
+
+def check_planted(overlay, feeler):
+    """Each new program must have its finding, and its twin neither warnings nor errors."""
+    for rule, dialect, program, line, setup, twin, twin_setup, option, twin_option in overlay.planted_rows:
+        at = {(f["rule"], f["line"]) for f in findings_of(overlay, feeler, dialect, program, setup, option)}
+        if (rule, int(line) or None) not in at:
+            raise Stale(f"{program}: {rule} is not found in line {line}, but {sorted(map(str, at))}")
+        loud = [f for f in findings_of(overlay, feeler, dialect, twin, twin_setup, twin_option) if f["severity"] != "note"]
+        if loud:
+            raise Stale(f"{twin}: {loud}")
+
+
+def findings_of(overlay, feeler, dialect, program, setup, option):
+    folder = overlay.folder / "tests" / "planted"
+    words = [str(feeler), "check", str(folder / program), "--dialect", dialect, "--format", "json",
+             "--setup", str(folder / "setups" / f"{setup}.toml"), *([] if option == "-" else [option])]
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode > 1:
+        raise Stale(shlex.join(words) + "\n" + done.stderr)
+    return json.loads(done.stdout)["findings"]
+
+
+def check_consoles(overlay, feeler, consoles):
+    with tempfile.TemporaryDirectory() as home:
+        shell = tutorial.Shell(feeler, overlay.folder, home)
+        for number, lines in consoles:
+            for command, shown in tutorial.commands_of(lines):
+                printed = shell.run(command)
+                if not tutorial.matches(shown, printed):
+                    raise Stale(f"docs/recipes.md:{number}: $ {command}\nprints\n" + "\n".join(printed)
+                                + "\nthe recipe shows\n" + "\n".join(shown))
+
+
+def carry_out(root, build):
+    text = (root / "docs" / "recipes.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        overlay = Overlay(root, pathlib.Path(folder).resolve())
+        consoles = apply_recipes(text, overlay)
+        feeler = link_feeler(overlay, build, objects_of(overlay, build))
+        overlay.complete_folders_of_tests()
+        check_planted(overlay, feeler)
+        check_consoles(overlay, feeler, consoles)
+        mistakes = documentation.undocumented(overlay.folder, str(feeler)) \
+            + documentation.undocumented_rules(overlay.folder, str(feeler))
+        if mistakes:
+            raise Stale("\n".join(mistakes))
+
+
+def self_check():
+    """Edits that fit and edits that do not."""
+    text = "one\ntwo\nthree\ntwo\n"
+    assert edited(text, [" one", "+one and a half", "...", "-three"]) == "one\none and a half\ntwo\ntwo\n"
+    for wrong in (["+x", " two"], [" four"], [" one", " three"]):
+        try:
+            edited(text, wrong)
+        except Stale:
+            continue
+        raise AssertionError(wrong)
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder) / "tree"
+        root.mkdir()
+        (root / "a.txt").write_text("one\n")
+        overlay = Overlay(root, pathlib.Path(folder) / "overlay")
+        recipe = "```diff a.txt\n one\n+two\n```\n```text b/c.txt\nnew\n```\n```\nleft alone\n```\n```console\n$ true\n```"
+        assert apply_recipes(recipe, overlay) == [(11, ["$ true"])]
+        assert (root / "a.txt").read_text() == "one\n"
+        assert (overlay.folder / "a.txt").read_text() == "one\ntwo\n"
+        assert (overlay.folder / "b" / "c.txt").read_text() == "new\n"
+        for wrong in ("```diff z.txt\n one\n```", "```diff a.txt\n three\n```", "```text a.txt\nnew\n```"):
+            try:
+                apply_recipes(wrong, overlay)
+            except Stale:
+                continue
+            raise AssertionError(wrong)
+
+
+def main(arguments):
+    if arguments == ["--self-check"]:
+        self_check()
+        return 0
+    try:
+        carry_out(pathlib.Path(arguments[0]).resolve(), pathlib.Path(arguments[1]).resolve())
+    except Stale as stale:
+        print(stale)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
