@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/kinematics.h"
 #include "render/setup_scene.h"
 
 namespace render {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/motion/kinematics.h"
 #include "core/sim/setup.h"
 #include "render/scene.h"
 

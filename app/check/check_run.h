@@ -9,7 +9,9 @@
 #include "app/check/stock_file.h"
 #include "app/setup/setup_edits.h"
 #include "core/dbm/stock_mesh.h"
+#include "core/sim/part_comparison.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "gcode/exec/interpreter.h"
 
 namespace app {

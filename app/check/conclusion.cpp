@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/setup/inference/program_survey.h"
+#include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"
+#include "core/sim/part_comparison.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/verdict.h"
 

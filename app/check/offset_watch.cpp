@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/motion/kinematics.h"
 #include "core/sim/run/finding_text.h"
 
 namespace app {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "gcode/exec/interpreter.h"
 
 namespace app {

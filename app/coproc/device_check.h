@@ -2,8 +2,10 @@
 
 #include <map>
 
+#include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "hwsim/body_cover.h"
 #include "hwsim/driver.h"
 

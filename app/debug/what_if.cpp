@@ -9,6 +9,7 @@
 #include "app/debug/inspected_value.h"
 #include "core/base/text.h"
 #include "core/sim/clearance.h"
+#include "core/sim/leg/check_memory.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/exec/execution.h"
 

@@ -10,6 +10,7 @@
 #include "core/dbm/stock_record.h"
 #include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 
 namespace app {

@@ -14,6 +14,7 @@
 #include "app/setup/tool_table.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/base/file_reads.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 
 namespace app {

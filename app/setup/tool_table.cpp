@@ -5,7 +5,7 @@
 #include "app/setup/holder_library.h"
 #include "core/geom/mesh_file.h"
 #include "core/geom/profile.h"
-#include "core/sim/rules/centre_watch.h"
+#include "core/sim/rules/rules.h"
 
 namespace app {
 namespace {

@@ -14,12 +14,6 @@ bool is_turned_by_axes(const Machine& machine, LinkId link);
 /// Whether the link moves with the table's side of the machine.
 bool is_on_table_side(const Machine& machine, LinkId link);
 
-/// Something fixed to a link. Frame of the link: the machine's with all axes at 0.
-struct Mount {
-    LinkId link = LinkId::base;
-    Transform link_from_body;
-};
-
 /// The pose of one mounted body seen from another.
 Transform target_from_mover(const Machine& machine, const Mount& target, const Mount& mover,
                             const AxisValues& values);

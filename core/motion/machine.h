@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/transform.h"
 #include "core/distance/body_distance.h"
 #include "core/motion/event.h"
 
@@ -17,6 +18,12 @@ enum class Side : uint8_t { tool, table };
 enum class LinkId : uint8_t { base = 255 };
 
 constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
+
+/// Something fixed to a link. Frame of the link: the machine's with all axes at 0.
+struct Mount {
+    LinkId link = LinkId::base;
+    Transform link_from_body;
+};
 
 /// One axis. `direction` is the way the tool moves relative to the work as the axis grows, or for a
 /// rotary axis the line that it turns about by the right hand; an axis of the table side moves the

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
+
 namespace core {
 namespace {
 

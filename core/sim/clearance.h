@@ -1,16 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/motion/event.h"
-#include "core/motion/machine.h"
-#include "core/motion/path.h"
-#include "core/sim/setup.h"
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+#include "core/sim/tool_assembly.h"
 #include "core/sim/verdict.h"
 
 namespace core {
+
+struct Leg;
+struct Machine;
+struct PathModeChange;
+struct Setup;
 
 /// The largest allowance that may be asked for, mm; more is a typing error.
 inline constexpr double largest_allowance = 1000.0;

@@ -2,10 +2,14 @@
 
 #include <vector>
 
+#include "core/distance/body_distance.h"
 #include "core/motion/kinematics.h"
-#include "core/sim/setup.h"
+#include "core/sim/tool_assembly.h"
 
 namespace core {
+
+struct Fixture;
+struct Setup;
 
 /// A body of the tool's side as it is checked against the work: a part of the tool, or a body of
 /// the machine that the table does not carry.

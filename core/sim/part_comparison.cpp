@@ -5,8 +5,10 @@
 #include <map>
 
 #include "core/base/union_find.h"
+#include "core/dbm/stock_mesh.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/triangle_distance.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 
 namespace core {

@@ -1,20 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "core/dbm/stock_mesh.h"
+#include "core/base/vec.h"
 
 namespace core {
 
-/// What may differ from the part where nothing is said, mm.
-constexpr double default_part_tolerance = 0.1;
-
-/// What is to be made. Frame: that of the stock.
-struct Part {
-    SolidMesh solid;
-    double tolerance = default_part_tolerance; // mm, either way
-};
+struct CutModel;
+struct Part;
+struct StockMesh;
 
 /// gouge: the part has matter where nothing is left. excess: something is left outside of the part.
 enum class Deviation : uint8_t { gouge, excess };

@@ -1,17 +1,20 @@
 #pragma once
 
+#include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/distance/body_distance.h"
-#include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
 #include "core/sim/finding.h"
-#include "core/sim/part_comparison.h"
 #include "core/sim/tool_assembly.h"
 
 namespace core {
+
+struct CutterSweep;
 
 /// Something that holds the work, or a body of the machine on the work's side.
 struct Fixture {
@@ -21,6 +24,15 @@ struct Fixture {
     Mount mount = {};        // where its frame stands
     bool is_there = true;    // at the first block
     bool is_machine = false;
+};
+
+/// What may differ from the part where nothing is said, mm.
+constexpr double default_part_tolerance = 0.1;
+
+/// What is to be made. Frame: that of the stock.
+struct Part {
+    SolidMesh solid;
+    double tolerance = default_part_tolerance; // mm, either way
 };
 
 /// What a pair of bodies must keep, as the set-up says it. A name is a body's, or one of: flutes

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/motion/path.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

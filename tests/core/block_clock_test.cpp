@@ -7,6 +7,7 @@
 
 #include "core/motion/kinematics.h"
 #include "core/sim/run/block_clock.h"
+#include "core/sim/run/simulator.h"
 #include "tests/support/machines.h"
 
 namespace core {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/sim/run/finding_text.h"
+#include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 #include "tests/support/random_setup.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh_file.h"
 #include "core/geom/triangle_distance.h"
 #include "core/sim/part_comparison.h"
+#include "core/sim/setup.h"
 #include "tests/support/meshes.h"
 
 namespace core {

@@ -4,6 +4,7 @@
 
 #include "core/dbm/stock_pieces.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

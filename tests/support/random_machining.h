@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "tests/support/random_setup.h"
 
 namespace test_support {

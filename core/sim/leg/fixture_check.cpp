@@ -3,6 +3,7 @@
 #include "core/dbm/covered_path.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/leg/pair_entry.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

@@ -1,5 +1,6 @@
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/leg/pair_entry.h"
+#include "core/sim/setup.h"
 
 namespace core {
 

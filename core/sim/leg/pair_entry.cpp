@@ -1,5 +1,8 @@
 #include "core/sim/leg/pair_entry.h"
 
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
+
 namespace core {
 
 PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair, const Setup& setup) {

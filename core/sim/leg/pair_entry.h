@@ -5,6 +5,8 @@
 
 namespace core {
 
+struct Setup;
+
 /// What is known of a pair, begun here if nothing was. The reference lasts until the next one is
 /// begun.
 PairClearance& entry(std::vector<PairClearance>& pairs, const Pair& pair, const Setup& setup);

@@ -1,9 +1,9 @@
-#include "core/sim/rules/air_cut.h"
-
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "core/sim/rules/rules.h"
 
 namespace core {
 namespace {

@@ -1,7 +1,8 @@
-#include "core/sim/rules/centre_watch.h"
-
 #include "core/distance/stock_distance.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
+#include "core/sim/rules/rules.h"
+#include "core/sim/tool_description.h"
 
 namespace core {
 namespace {

@@ -1,9 +1,10 @@
-#include "core/sim/rules/loose_pieces.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "core/sim/rules/rules.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

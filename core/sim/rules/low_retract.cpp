@@ -1,9 +1,10 @@
-#include "core/sim/rules/low_retract.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
+#include "core/sim/leg/leg_check.h"
+#include "core/sim/rules/rules.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 
 namespace core {

@@ -1,5 +1,3 @@
-#include "core/sim/rules/singular.h"
-
 #include <algorithm>
 #include <numbers>
 
@@ -7,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
+#include "core/sim/rules/rules.h"
 
 namespace core {
 namespace {

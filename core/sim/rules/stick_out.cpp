@@ -1,8 +1,10 @@
-#include "core/sim/rules/stick_out.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
+
+#include "core/sim/leg/leg_check.h"
+#include "core/sim/rules/rules.h"
+#include "core/sim/setup.h"
 
 namespace core {
 namespace {

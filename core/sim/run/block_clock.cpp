@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/sim/run/simulator.h"
+
 namespace core {
 namespace {
 

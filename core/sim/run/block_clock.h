@@ -3,10 +3,14 @@
 #include <deque>
 #include <vector>
 
+#include "core/base/ids.h"
+#include "core/motion/machine.h"
 #include "core/motion/timing.h"
-#include "core/sim/run/simulator.h"
 
 namespace core {
+
+struct BlockEvents;
+struct BlockResult;
 
 /// A part of a block in which one motion takes place, or none.
 struct BlockStretch {

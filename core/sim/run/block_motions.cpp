@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/sim/leg/pair_entry.h"
-#include "core/sim/rules/low_retract.h"
-#include "core/sim/rules/singular.h"
 #include "core/sim/run/block_run.h"
 #include "core/sim/verdict.h"
 

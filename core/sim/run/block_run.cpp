@@ -84,6 +84,10 @@ void BlockRun::check_tool_change() {
     add(unsafe_change(setup, *nearest, *state.tool));
 }
 
+bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool) {
+    return spindle.direction == tool.description.cuts && spindle.speed > 0.0;
+}
+
 bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
     if (tool.description.shape != ToolShape::drill || motion.tip) return true;
     const auto way = [&](size_t i) {

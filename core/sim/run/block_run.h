@@ -3,6 +3,7 @@
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 
 namespace core {
 

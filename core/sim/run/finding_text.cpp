@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 
 namespace core {

@@ -1,8 +1,11 @@
 #pragma once
 
-#include "core/sim/run/simulator.h"
+#include "core/sim/block_result.h"
 
 namespace core {
+
+struct Setup;
+struct SimulatorState;
 
 /// What a motion is a part of, if its block has several.
 enum class MoveWithin : uint8_t { nothing, block, cycle, way_home };

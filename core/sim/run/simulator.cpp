@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "core/sim/run/block_run.h"
+#include "core/sim/setup.h"
 
 namespace core {
 

@@ -1,18 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "core/base/result.h"
 #include "core/dbm/cut_model.h"
-#include "core/motion/path.h"
+#include "core/motion/event.h"
+#include "core/sim/block_result.h"
 #include "core/sim/clearance.h"
-#include "core/sim/finding.h"
-#include "core/sim/leg/leg_check.h"
-#include "core/sim/rules/centre_watch.h"
-#include "core/sim/rules/loose_pieces.h"
-#include "core/sim/rules/stick_out.h"
+#include "core/sim/leg/check_memory.h"
+#include "core/sim/rules/rules.h"
 
 namespace core {
+
+struct Setup;
 
 /// Everything a run leaves behind for its next block. A plain value: copy it to go back in time.
 struct SimulatorState {
@@ -36,36 +40,11 @@ struct SimulatorState {
 };
 
 /// Whether the spindle turns, the way round that the tool cuts. At 0 rev/min it stands.
-inline bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool) {
-    return spindle.direction == tool.description.cuts && spindle.speed > 0.0;
-}
+bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool);
 
 /// Whether the tool cuts the way a motion goes: a drill cuts along its axis alone. Motions on which
 /// rotary axes move are taken to go such a way.
 bool cuts_along(const ToolAssembly& tool, const Motion& motion);
-
-/// What a block did and how near it came.
-struct BlockResult {
-    BlockMotion motion = BlockMotion::none;
-    std::optional<ToolNumber> tool;
-    double time = 0.0;     // of its start, seconds, at full speed unless settle_time was called
-    double duration = 0.0; // seconds, likewise
-    double removed = 0.0;  // mm3
-    bool checked = true;   // false: it moves, but nothing can be said about its clearance
-    Verdict verdict = Verdict::clear;
-    std::vector<PairClearance> pairs;
-    std::optional<size_t> deciding; // the pair that the report shows; empty beyond the limit
-    std::vector<Finding> findings;
-};
-
-/// What somebody other than the distance core says of a block.
-struct Judgement {
-    Verdict verdict = Verdict::clear;
-    std::vector<PairClearance> pairs = {}; // that were looked at
-    std::optional<Finding> finding = {};   // its severity is left open
-    bool checked = true;                   // false: nothing can be said about its clearance
-    bool runs_into_stock = false;          // with flutes that do not cut
-};
 
 /// What a run needs to know of a block.
 struct BlockEvents {
