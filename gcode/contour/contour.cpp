@@ -34,7 +34,7 @@ core::Error no_motion(const CornerWord& word, std::string_view what) {
                                what));
 }
 
-/// A feed as the plane sees it; empty where it does not stay in the plane.
+/// A feed move in the plane; empty when it does not stay in the plane.
 std::optional<CornerSide> side_of(const CanonicalCommand& command, const Position& start,
                                   Plane plane) {
     const PlaneAxes axes = axes_of(plane);
@@ -59,7 +59,7 @@ Position moved_in_plane(Position place, Plane plane, FlatPoint to) {
     return place;
 }
 
-/// The motion of a block that stands behind a corner; empty where the corner goes on waiting.
+/// The motion of a block after a corner; empty when the corner must wait longer.
 core::Result<std::optional<CornerSide>> motion_behind(const Corners& corners,
                                                       const ExecutedBlock& block) {
     const CornerWord& word = *corners.word;
@@ -109,7 +109,7 @@ core::Result<CornerCut> cut_between(const CornerWord& word, const CornerSide& fi
     return cut;
 }
 
-/// Lets the block end in the corner.
+/// Adds the corner at the end of the block.
 void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& cut) {
     std::vector<CanonicalCommand>& commands = block.result.commands;
     const Plane plane = block.after.plane;
@@ -127,7 +127,7 @@ void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& c
     const Position to = moved_in_plane(corner, plane, cut.to);
     if (auto* arc = std::get_if<ArcFeed>(&motion)) arc->end = from;
     if (auto* line = std::get_if<StraightFeed>(&motion)) line->end = from;
-    // An arc that ends where it begins would be a whole turn.
+    // An arc that ends where it starts would be a full circle.
     if (cut.takes_first) {
         commands.pop_back();
         block.result.columns.pop_back();
@@ -140,7 +140,7 @@ void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& c
     block.result.columns.push_back(word.where.column);
 }
 
-/// Makes the first motion of the block begin where the corner ends.
+/// Moves the start of the block's first motion to the end of the corner.
 void begin_behind_corner(ExecutedBlock& block, const CornerCut& cut) {
     block.before.position = moved_in_plane(block.before.position, block.after.plane, cut.to);
     if (!cut.takes_second) return;
@@ -151,7 +151,7 @@ void begin_behind_corner(ExecutedBlock& block, const CornerCut& cut) {
         }
 }
 
-/// Lets a block wait for the motion behind its corner.
+/// Holds back a block until the motion after its corner is known.
 core::Result<void> wait_for_motion(Corners& corners, const CornerWord& word, ExecutedBlock block) {
     Position start = block.before.position;
     const std::vector<CanonicalCommand>& commands = block.result.commands;
@@ -282,8 +282,8 @@ double feed_of(const CanonicalCommand& command) {
     return 0.0;
 }
 
-/// A move of the tool's centre as a command of the point that is controlled, which is `tip` away.
-/// Round a corner the other axes stand still.
+/// A move of the tool centre as a command for the controlled point, which is `tip` away. The other
+/// axes stand still round a corner.
 CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand& programmed,
                             const Position& start, Plane plane, FlatPoint tip) {
     const Position end =
@@ -294,7 +294,7 @@ CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand&
     return ArcFeed{end, plane, {centre.u, centre.v}, move.arc->turns, feed_of(programmed)};
 }
 
-/// Identifies a command by its block, counted from the start of the run, and its place there.
+/// A command is identified by its block, counted from the start of the run, and its index in it.
 constexpr size_t commands_of_a_block = size_t(1) << 20;
 
 void place_move(Contour& contour, const CompensatedMove& move) {
@@ -313,7 +313,7 @@ void place_move(Contour& contour, const CompensatedMove& move) {
              "backwards here and cuts into the contour"});
 }
 
-/// Blocks that wait for nothing more are ready, in order.
+/// Moves the blocks without waiting motions to the ready ones, in order.
 void release(Contour& contour) {
     while (!contour.pending.empty()) {
         PendingBlock& block = contour.pending.front();
@@ -345,8 +345,8 @@ core::Result<void> end_path(Contour& contour) {
     return {};
 }
 
-/// Fanuc controls look a few blocks ahead. Where too many of them do not move in the plane, the
-/// tool ends beside the end of the move before them, and cuts into an inside corner.
+/// Fanuc controls look ahead a few blocks. Where too many of them have no move in the plane, the
+/// tool ends beside the end of the previous move and cuts into an inside corner.
 void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
     constexpr size_t harmless = 1;
     const RadiusCompensation& path = *contour.path;
@@ -361,7 +361,7 @@ void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& 
                      number - before - 1)});
 }
 
-/// One motion of the block that was pushed last.
+/// Adds one motion of the last pending block.
 core::Result<void> take_motion(Contour& contour, size_t index) {
     PendingBlock& block = contour.pending.back();
     const CanonicalCommand& command = block.result.commands[index];
@@ -385,8 +385,9 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
     return {};
 }
 
-/// Where the controlled point of a turning tool lies, seen from the centre of its nose of radius 1:
-/// the crossing of the lines along X and Z that touch the nose on the side the tool points to.
+/// The controlled point of a turning tool relative to the centre of its nose, for a radius of 1:
+/// the crossing of the lines along X and Z that touch the nose on the side to which the tool
+/// points.
 FlatPoint tip_of(int orientation, Plane plane) {
     constexpr int along_x[] = {0, -1, -1, 1, 1, 0, -1, 0, 1, 0};
     constexpr int along_z[] = {0, 1, -1, -1, 1, 1, 0, -1, 0, 0};

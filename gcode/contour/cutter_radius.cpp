@@ -11,15 +11,15 @@ namespace {
 
 using core::ErrorCode;
 
-// What LinuxCNC refuses between G41 and G40, in tenths; probed with its interpreter.
+// Codes that LinuxCNC refuses between G41 and G40, in tenths; probed with its interpreter.
 constexpr int rs274_g[] = {50,  51,  52,  53,  280, 281, 300, 301, 330, 331, 382, 383,
                            384, 385, 430, 431, 432, 490, 520, 530, 540, 550, 560, 570,
                            580, 590, 591, 592, 593, 610, 640, 710, 720, 730, 740, 760,
                            810, 820, 830, 840, 850, 860, 870, 880, 890, 920, 980};
 constexpr int rs274_m[] = {60, 480, 490, 500, 510, 520, 530, 620, 630, 640, 650, 660, 670, 680};
 
-// What takes a Fanuc tool away from its contour: reference points, machine coordinates, offsets,
-// canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
+// Codes with which the tool leaves its contour on Fanuc controls: reference points, machine
+// coordinates, offsets, canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
 constexpr int fanuc_g[] = {270, 280, 290,  300, 520, 530,  540, 541, 550, 560, 570, 580,
                            590, 730, 740,  760, 810, 820,  830, 840, 850, 860, 870, 880,
                            890, 920, 1540, 120, 130, 1500, 700, 710, 720, 770};
@@ -31,7 +31,7 @@ bool is_among(std::span<const int> codes, int code) {
 
 bool changes_plane(const Execution& execution, const CodeWord& entry) {
     constexpr int planes[] = {170, 180, 190, 171, 181, 191};
-    const Contour& contour = execution.state.contour; // of the mode the new plane is there already
+    const Contour& contour = execution.state.contour; // the mode already has the new plane
     const Plane plane = contour.path ? contour.plane : execution.modal().plane;
     return entry.code->group == ModalGroup::plane
            && planes[static_cast<size_t>(plane)] != entry.code->tenths;
@@ -49,7 +49,7 @@ bool breaks_contour(const Execution& execution, const CodeWord& entry) {
            || (rs274 ? is_among(rs274_g, code) : is_among(fanuc_g, code));
 }
 
-/// While the tool runs beside the contour, some codes would take it away from there.
+/// Reports codes that would take the tool off its contour.
 core::Result<void> check_contour(Execution& execution) {
     const char* const on = execution.modal().compensation == Side::left ? "G41" : "G42";
     for (const CodeWord& entry : execution.statement.codes()) {
@@ -71,7 +71,7 @@ core::Result<void> check_contour(Execution& execution) {
     return {};
 }
 
-/// The number of the offset: of the D word, else of the one before, else of the tool.
+/// The number of the offset: from the D word, else from an earlier one, else that of the tool.
 core::Result<int> radius_number(Execution& execution) {
     const Word* word = execution.statement.word('D');
     ModalState& modal = execution.modal();
@@ -87,7 +87,8 @@ core::Result<int> radius_number(Execution& execution) {
     return number;
 }
 
-/// The way a turning tool points: of the L word with G41.1, else of the tool's entry. 0 is a mill.
+/// The orientation of a turning tool: from the L word with G41.1, else from the tool table. 0 is a
+/// mill.
 core::Result<int> turning_orientation(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('L');
     int orientation = 0;
@@ -110,7 +111,7 @@ core::Result<int> turning_orientation(Execution& execution, const CodeWord& entr
                       word ? word->span : entry.word->span);
 }
 
-/// How much G51 scales the contour, which leaves the tool as it is.
+/// The scaling factor of G51 in the plane. It scales the contour but not the tool.
 core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord& entry) {
     const auto& scaling = execution.modal().transforms.scaling;
     if (!scaling) return 1.0;
@@ -145,7 +146,7 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
                                        written(*entry.word)));
         return 0.0;
     }
-    // D31 for tool 1 is a habit of many shops: only the number of another tool is a mistake.
+    // Many shops use D31 for tool 1, so only the number of another tool is a mistake.
     const ModalState& modal = execution.modal();
     const bool is_another = modal.tool && number != value_of(*modal.tool)
                             && execution.environment.tool_diameters.count(core::ToolNumber(number));

@@ -39,7 +39,7 @@ namespace {
 
 constexpr double fuzz = 1e-9;
 
-/// The point of a motion's line or circle that is nearest to another.
+/// The point on a motion's line or circle nearest to another point.
 FlatPoint nearest_on(const CornerSide& side, FlatPoint to) {
     if (!side.arc) {
         const FlatPoint along = heading_at(side, side.start);
@@ -49,7 +49,7 @@ FlatPoint nearest_on(const CornerSide& side, FlatPoint to) {
     return centre + length(side.start - centre) * direction(to - centre);
 }
 
-/// How far along the motion a point is: 0 at its start, 1 at its end.
+/// The position of a point along the motion: 0 at its start, 1 at its end.
 double share_of(const CornerSide& side, FlatPoint at) {
     if (!side.arc) {
         const FlatPoint way = side.end - side.start;
@@ -65,7 +65,7 @@ double share_of(const CornerSide& side, FlatPoint at) {
     return angle_to(at) / (whole < fuzz ? 2.0 * std::numbers::pi : whole);
 }
 
-/// The line or circle at a distance to the left of a motion; to the right when it is negative.
+/// The line or circle offset to the left of a motion; to the right when the distance is negative.
 struct Beside {
     bool is_line;
     FlatPoint point; // of the line, or the centre
@@ -88,7 +88,7 @@ FlatPoint nearer(const Crossings& crossings, FlatPoint to) {
     return first ? crossings.first : crossings.second;
 }
 
-/// Where two of them meet, nearest to the corner.
+/// The point where two of them meet, nearest to the corner.
 std::optional<FlatPoint> meeting_point(const Beside& a, const Beside& b, FlatPoint corner) {
     if (a.is_line && b.is_line) {
         const double sine = cross(a.along, b.along);
@@ -116,7 +116,7 @@ bool round_off(const CornerSide& first, const CornerSide& second, double radius,
     return true;
 }
 
-/// The point of a motion that is as far from the corner, on its way there or on its way from it.
+/// The point on a motion at a distance from the corner, before or after it.
 std::optional<FlatPoint> point_away(const CornerSide& side, FlatPoint corner, double distance,
                                     bool before) {
     const FlatPoint along = (before ? -1.0 : 1.0) * heading_at(side, corner);

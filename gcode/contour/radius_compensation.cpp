@@ -12,20 +12,20 @@ namespace {
 /// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
 constexpr double slight_bend = 0.05;
 
-/// A move that inside corners leave no more of than this, mm, has no direction.
+/// A move left shorter than this by inside corners, mm, has no direction.
 constexpr double degenerate = 1e-6;
 
 tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string message) {
     return core::fail(core::ErrorCode::invalid_value, std::move(message), where);
 }
 
-/// The way from a point of the contour to the tool's centre beside it.
+/// The displacement from a point of the contour to the tool centre beside it.
 FlatPoint beside(const RadiusCompensation& compensation, FlatPoint heading) {
     const FlatPoint left = compensation.radius * left_of(heading);
     return compensation.side == ContourSide::left ? left : -1.0 * left;
 }
 
-/// Whether the tool runs on the side of the arc's centre.
+/// Whether the tool runs on the same side as the centre of the arc.
 bool is_inside(ContourSide side, const FlatArc& arc) {
     return (side == ContourSide::left) == (arc.turns > 0);
 }
@@ -37,11 +37,11 @@ double compensated_radius(const RadiusCompensation& compensation, const FlatArc&
                                              : radius + compensation.radius;
 }
 
-/// The programmed end of the last move, and how the contour goes on from it.
+/// The programmed end of the last move and the directions of the contour there.
 struct Corner {
     FlatPoint at;
     FlatPoint arriving, leaving;           // directions of the contour
-    FlatPoint tool_arriving, tool_leaving; // the tool's centre beside either
+    FlatPoint tool_arriving, tool_leaving; // the tool centre beside each
 };
 
 Corner corner_before(const RadiusCompensation& compensation, const ContourMove& move) {
@@ -61,8 +61,8 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
-        // Between an arc the tool passes outside and what touches the arc there is a wedge. The
-        // reference asks the arc that leaves, and only before a line the one that arrives.
+        // There is a gap between an arc that the tool passes on the outside and whatever is tangent
+        // to it. LinuxCNC tests the arc that leaves, and the one that arrives only before a line.
         const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
         const bool between = arc && !is_inside(compensation.side, *arc);
         return between ? Bend::inside : Bend::outside;
@@ -71,7 +71,7 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
     return to_tool > 0.0 ? Bend::inside : Bend::outside;
 }
 
-/// Where the tool's centre is when it touches both sides of an inside corner.
+/// The tool centre when it touches both sides of an inside corner.
 std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, const Corner& corner,
                                        const ContourMove& move) {
     const std::optional<FlatArc>& before = compensation.waiting.front().arc;
@@ -104,7 +104,7 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
     return corner.at + (dot(arriving, arriving) / dot(arriving, both)) * both;
 }
 
-/// Whether the waiting move would have to go backwards to end at a point.
+/// Whether the waiting move would have to run backwards to end at a point.
 bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
     const std::optional<FlatArc>& arc = compensation.waiting.front().arc;
     const FlatPoint way = end - compensation.reached;
@@ -114,7 +114,7 @@ bool turns_round(const RadiusCompensation& compensation, FlatPoint end) {
            > compensation.waiting_angle + 2.0 * slight_bend;
 }
 
-/// Lets the waiting moves end at a point and returns them; they wait no longer.
+/// Ends the waiting moves at a point and returns them.
 CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
     if (compensation.waiting.empty()) return {};
     const bool turned = turns_round(compensation, end);
@@ -126,8 +126,8 @@ CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
     return moves;
 }
 
-/// What LinuxCNC checks where the contour bends to the inside, and at G40: that the waiting move
-/// keeps its direction. Of the entry it does not.
+/// The check of LinuxCNC at inside corners and at G40: the waiting move must keep its direction.
+/// The entry is not checked.
 core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
     if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
         return {};
@@ -141,7 +141,7 @@ core::Result<void> check_direction(const RadiusCompensation& compensation, FlatP
                                    : ""));
 }
 
-/// Puts the move, at its end as far as that is known, in the place of what waited.
+/// Makes the move the waiting one, with its end as far as that is known.
 void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPoint tool_end,
                const std::optional<FlatArc>& arc) {
     compensation.waiting.push_back(
@@ -154,7 +154,7 @@ void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPo
     compensation.tool = tool_end;
 }
 
-/// The circle through the tool's start that meets the end as the programmed arc does.
+/// The circle through the start of the tool that meets the end as the programmed arc does.
 std::optional<FlatArc> entry_arc(FlatPoint start, FlatPoint end, const FlatArc& programmed) {
     const FlatPoint to_centre = direction(programmed.centre - end);
     const FlatPoint chord = start - end;
@@ -173,7 +173,7 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
                                compensation.radius, radius));
 }
 
-/// Fanuc's entry ends beside the start of the move after it, wherever that is.
+/// On Fanuc the entry ends beside the start of the next move, wherever that is.
 core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
                                               const ContourMove& move) {
     if (move.arc)
@@ -209,7 +209,7 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     }
     wait_with(compensation, move, end, arc);
     if (arc) {
-        // A circle that bends the other way passes the end against the programmed direction.
+        // A circle that curves the other way passes the end against the programmed direction.
         const bool against = dot(arc->centre - end, move.arc->centre - end) < 0.0;
         compensation.waiting_angle = against ? -1.0 : turned_angle(*arc, compensation.reached, end);
     }
@@ -223,8 +223,8 @@ void add_straight(CompensatedMoves& moves, const ContourMove& move, FlatPoint en
         {.id = move.id, .rapid = move.rapid, .rounds_corner = true, .end = end, .arc = {}});
 }
 
-/// Fanuc's way round an outside corner: on along both tangents to where they meet, or, where the
-/// contour comes back by more than a right angle, by the tool's radius and straight across.
+/// Outside corner on Fanuc: straight on along both tangents to their intersection or, where the
+/// contour turns back by more than a right angle, by the tool radius and then straight across.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, 6.6.3, "Tool movement around the outside of a
 ///         corner", linear connection (parameter 19607#2 = 0).
@@ -247,7 +247,7 @@ core::Result<CompensatedMoves> pass_straight(RadiusCompensation& compensation, c
     return moves;
 }
 
-/// LinuxCNC's way round an outside corner: an arc, or a straight line before a rapid.
+/// Outside corner on LinuxCNC: an arc, or a straight line before a rapid.
 CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corner,
                             const ContourMove& move) {
     CompensatedMoves moves = end_waiting(compensation, corner.tool_arriving);
@@ -258,7 +258,7 @@ CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corn
     return moves;
 }
 
-/// Ends what waits where the contour goes on as it came, or bends towards the tool.
+/// Ends the waiting moves where the contour continues straight or bends towards the tool.
 core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, const Corner& corner,
                                            Bend bend, const ContourMove& move) {
     FlatPoint met = corner.tool_arriving;
@@ -278,12 +278,12 @@ core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, con
     return end_waiting(compensation, met);
 }
 
-/// Ends what waits, and leads the tool to where the next move begins.
+/// Ends the waiting moves and moves the tool to the start of the next move.
 core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corner& corner,
                                     const ContourMove& move) {
     if (compensation.extends_corners && compensation.entering) {
         CompensatedMoves moves = end_waiting(compensation, corner.tool_leaving);
-        moves.front().turned_round = false; // an entry may lead anywhere
+        moves.front().turned_round = false; // an entry may have any direction
         return moves;
     }
     const Bend bend = bend_of(compensation, corner, move);

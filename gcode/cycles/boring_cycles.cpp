@@ -11,7 +11,7 @@ bool shifts_by_words(const CannedCycle& cycle) {
     return cycle.shift[0] != 0.0 || cycle.shift[1] != 0.0 || cycle.shift[2] != 0.0;
 }
 
-/// How far the tool leaves the middle: I, J and K of the plane, else Q along its first axis.
+/// The shift off centre: I, J and K of the plane, else Q along its first axis.
 std::array<double, 2> shift_of(const Drilling& hole) {
     const CannedCycle& cycle = hole.cycle;
     if (!shifts_by_words(cycle)) return {cycle.peck.value_or(0.0), 0.0};
@@ -27,7 +27,7 @@ void warn_of_direction(Drilling& hole) {
                         Severity::note);
 }
 
-/// Away from the middle, or with -1 back to it.
+/// Shifts the tool off centre, or with -1 back to it.
 void shift(Drilling& hole, double sign) {
     const std::array<double, 2> by = shift_of(hole);
     Position end = hole.execution.modal().position;
@@ -92,7 +92,7 @@ void bore(Drilling& hole) {
 
 namespace {
 
-/// Down to a level and out to R, the spindle reversed at the level.
+/// Feeds down to a level and out to R, with the spindle reversed at the level.
 void thread_to(Drilling& hole, double level, SpindleDirection in, SpindleDirection out) {
     hole.feed(level);
     if (level == hole.bottom) hole.dwell();

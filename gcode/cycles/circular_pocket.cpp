@@ -8,7 +8,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// G12 or G13 with its words worked out: radii of the tool's centre, mm.
+/// The evaluated words of G12 or G13: radii of the tool centre, mm.
 struct CircularPocket {
     double first = 0.0, last = 0.0, step = 0.0;
     int turn = 1;
@@ -70,7 +70,7 @@ void add_arc(Execution& execution, const CircularPocket& pocket, double centre_x
     execution.emit(ArcFeed{end, Plane::xy, {centre_x, y}, pocket.turn, pocket.feed});
 }
 
-/// Out by a half circle, round, out by the next half circle to the other side, and back.
+/// Spiral of half circles: outwards, a full circle, outwards to the next circle, and back.
 void mill_circles(Execution& execution, const CircularPocket& pocket) {
     const double x = *execution.modal().position[0], y = *execution.modal().position[1];
     double side = 1.0, before = 0.0;

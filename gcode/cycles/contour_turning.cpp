@@ -10,14 +10,15 @@ namespace {
 
 using core::ErrorCode;
 
-/// A and C of a block are the size of its corner; while it is traced these axes are unknown.
+/// A and C of a block give the size of its corner; these axes are unknown while the contour is
+/// traced.
 constexpr size_t fillet_axis = 3, chamfer_axis = 5;
 
 TurningPoint point_of(const Position& position) { return {*position[0], *position[2]}; }
 
 core::Result<void> check_turning(const Execution& execution) {
     const Word& mover = moving_word(execution);
-    // Mach3 and others say their units with these codes.
+    // On Mach3 and other controls these codes select the units.
     const std::string_view instead = execution.statement.word('Q') ? ""
                                      : mover.value == 70.0 ? "; where it means inches, write G20"
                                      : mover.value == 71.0
@@ -39,7 +40,7 @@ core::Result<void> check_turning(const Execution& execution) {
     return {};
 }
 
-/// The subprogram's blocks, carried out on a copy of the state.
+/// Runs the blocks of the subprogram on a copy of the state.
 struct Tracing {
     Execution& execution;
     InterpreterState state;
@@ -66,7 +67,7 @@ core::Result<void> Tracing::enter() {
         {execution.library, execution.environment, execution.dialect, call, state, unused});
 }
 
-/// A block of the contour: its one motion, and the corner behind it.
+/// A block of the contour: its single motion and the corner after it.
 core::Result<void> Tracing::take(const BlockResult& block, const Position& before) {
     for (size_t i = 0; i < block.commands.size(); ++i) {
         const auto* arc = std::get_if<ArcFeed>(&block.commands[i]);

@@ -13,14 +13,15 @@ using core::ErrorCode;
 
 bool pecks(int code) { return code == tenths(73) || code == tenths(83); }
 
-/// Haas: I is the first peck, each after it is smaller by J, and none smaller than K.
+/// Haas: I is the first peck, each further one is shorter by J but not shorter than K.
 ///
 /// Source: Haas mill operator's manual 96-8000, G73 and G83.
 bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.shift[0] > 0.0; }
 
 bool taps(int code) { return code == tenths(74) || code == tenths(84); }
 
-/// How often Fanuc's scaling stretches the drilling axis; Q and what G73 and G83 draw back are not.
+/// The factor by which Fanuc's scaling stretches the drilling axis. Q and the retract of G73 and
+/// G83 are not scaled.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Scaling", invalid scaling.
 double stretch_along(const Execution& execution, size_t normal) {
@@ -36,7 +37,7 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
                       moving_word(execution).span);
 }
 
-/// I, J or K of a cycle that shifts the tool; K may be how often the cycle is repeated.
+/// I, J or K of a cycle that shifts the tool; K may instead be the number of repetitions.
 const Word* shift_word(const Execution& execution, int code, size_t axis) {
     if (hole_pattern(execution)) return nullptr;
     const bool bores_back = execution.dialect.cycles_are_rs274 && code == tenths(87);
@@ -48,8 +49,8 @@ const Word* shift_word(const Execution& execution, int code, size_t axis) {
     return execution.statement.word("IJK"[axis]);
 }
 
-/// R and the bottom. Those said under G90 are places also for holes of G91, except where a control
-/// has them follow the mode.
+/// R and the bottom. Values programmed with G90 stay absolute for holes in G91, except where a
+/// control applies the current mode.
 void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) {
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
     if (const Word* word = execution.statement.word(axis_letters[normal])) {
@@ -64,7 +65,7 @@ void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) 
         cycle.r_is_way = cycle.bottom_is_way = incremental;
 }
 
-/// The modal cycle with the words of this block taken in.
+/// The modal cycle updated with the words of this block.
 core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
     CannedCycle cycle = *execution.modal().cycle;
     const Statement& statement = execution.statement;
@@ -103,7 +104,7 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
     return cycle;
 }
 
-/// Whether the cycle can be carried out between its levels, and ends.
+/// Checks that the levels of the cycle fit together and that the cycle ends.
 core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
                                 double bottom) {
     const core::SourceSpan where = moving_word(execution).span;
@@ -144,7 +145,7 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
     return {};
 }
 
-/// A tap that is driven with the spindle needs no spindle that turns already.
+/// A tap synchronised with the spindle does not need the spindle to turn already.
 core::Result<double> cycle_rate(const Execution& execution, const CannedCycle& cycle) {
     const ModalState& modal = execution.modal();
     const bool with_spindle =
@@ -173,7 +174,7 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
 }
 
-/// G83: out of the hole after each peck; G73: only a little back.
+/// G83 retracts out of the hole after each peck, G73 only a little.
 void peck(Drilling& hole, bool out_of_the_hole) {
     const double stretch = stretch_along(hole.execution, hole.normal);
     const double back = hole.execution.dialect.peck_clearance / stretch;
@@ -199,7 +200,7 @@ void bore_with_stop(Drilling& hole) {
     hole.execution.emit(Spindle{modal.spindle, modal.speed});
 }
 
-/// G85 and G89 come out as they went in; on some controls up to R only.
+/// G85 and G89 feed out the way they fed in; on some controls only up to R.
 void feed_out(Drilling& hole) {
     const bool only_bores = hole.cycle.code == tenths(85);
     const Dialect& rules = hole.execution.dialect;
@@ -263,7 +264,7 @@ core::Result<int> repeats_of(const Execution& execution) {
     return whole_number(*word, execution.dialect.cycles_are_rs274 ? 1 : 0, 10000);
 }
 
-/// To the next hole, and down to R.
+/// Moves to the next hole, then down to R.
 void approach(Drilling& hole, const Position& target) {
     Execution& execution = hole.execution;
     const bool climbs = execution.dialect.g98_cycle_starts_high
@@ -280,7 +281,7 @@ void approach(Drilling& hole, const Position& target) {
     if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
 }
 
-/// The same step again, for the holes of L under G91; of polar words, about the origin.
+/// The next hole of L with G91: the same step again, or the same polar words about the origin.
 core::Result<Position> next_hole(const Execution& execution, Position target,
                                  const Position& step) {
     if (execution.statement.polar_radius || execution.statement.polar_angle)
@@ -311,8 +312,8 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     if (repeats == 0) return {};
     FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
 
-    // RS274/NGC 3.5.16: if the axis is below R, it first goes up to R. Elsewhere the way to the
-    // hole is made at the level the axis has.
+    // RS274/NGC 3.5.16: an axis below R first goes up to R. On other controls the move to the hole
+    // is made at the current level.
     const bool rs274 = execution.dialect.cycles_are_rs274;
     const std::optional<double> level = rs274 ? cycle.initial_level : modal.position[normal];
     const bool is_low = level && *level < hole.r;
@@ -359,7 +360,7 @@ core::Result<double> needed(const Execution& execution, const CodeWord& entry, c
                       entry.word->span);
 }
 
-/// From a place in a direction.
+/// The point at a distance and direction from another.
 Position placed(const Position& from, const PlaneAxes& axes, double distance, double degrees) {
     const core::Mat3 turn = turned_about(2, degrees);
     Position place = from;
@@ -400,7 +401,7 @@ core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
 
 core::Result<void> run_hole_pattern(Execution& execution) {
     const CodeWord& entry = *hole_pattern(execution);
-    if (execution.statement.of(ModalGroup::cycle)) return {}; // drilled where the cycle is run
+    if (execution.statement.of(ModalGroup::cycle)) return {}; // drilled by the cycle
     if (!execution.modal().cycle)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} has no cycle to drill its holes with: write one such as "

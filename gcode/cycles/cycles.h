@@ -6,13 +6,13 @@
 
 namespace gcode {
 
-/// A cycle with its levels along the drilling axis, program coordinates.
+/// A drilling cycle with its levels along the drilling axis, in program coordinates.
 struct Drilling {
     Execution& execution;
     CannedCycle cycle;
     size_t first, second, normal;
     double r, bottom;
-    std::optional<double> clear; // where it retracts to
+    std::optional<double> clear; // retract level
     double rate;
 
     void traverse(std::optional<double> level) {
@@ -34,33 +34,34 @@ struct Drilling {
     }
 };
 
-/// G84, and G74 for left-hand threads: down to the bottom and back to R in feeds, the spindle
-/// reversed between them; with Q in steps, out to R after each.
+/// G84, and G74 for left-hand threads: feed to the bottom and back to R, with the spindle reversed
+/// in between; with Q in pecks, out to R after each.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Rigid tapping" and "Peck rigid tapping cycle".
 void tap(Drilling& hole);
 
-/// Boring in which the tool is shifted or the operator retracts. G76: it leaves the wall at the
-/// bottom, before it comes out. G87, on Haas G77: through the hole off its middle, up from R to Z
-/// in a feed, out off the middle. G88, on Haas G87 too: the spindle stops, the operator retracts.
+/// Boring cycles that shift the tool or leave the retract to the operator. G76 moves off the wall
+/// at the bottom before it retracts. G87 (on Haas G77) goes off centre through the hole, feeds up
+/// from R to Z and retracts off centre. G88 (on Haas also G87) stops the spindle and the operator
+/// retracts.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Fine boring cycle (G76)", "Back boring cycle
 ///         (G87)", "Boring cycle (G88)"; Haas mill operator's manual 96-8000, G77, G87, G88.
 void bore(Drilling& hole);
 
-/// G70, G71 or G72 of a block, Haas's patterns of holes; null without.
+/// The G70, G71 or G72 of a block, a hole pattern of Haas; null if it has none.
 const CodeWord* hole_pattern(const Execution& execution);
 
-/// Where a pattern's holes are: on a circle (G70), on an arc (G71), on a line from the start (G72).
+/// The holes of a pattern: on a circle (G70), on an arc (G71), on a line from the start (G72).
 ///
 /// Source: Haas mill operator's manual 96-8000, "Bolt hole patterns".
 core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
                                                      const CodeWord& entry, const Position& start);
 
-/// Drills a pattern with the cycle that is active; one in the same block does it by itself.
+/// Drills a pattern with the active cycle. A cycle in the same block drills the pattern itself.
 core::Result<void> run_hole_pattern(Execution& execution);
 
-/// Whether a cycle works upwards, so that R lies below Z.
+/// Whether a cycle works upwards, with R below Z.
 bool works_from_the_back(const Dialect& dialect, int code);
 
 } // namespace gcode

@@ -46,7 +46,7 @@ core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cy
     return {};
 }
 
-/// G87 says all three words once; they are kept for the blocks that follow.
+/// G87 needs all three words once; they stay for the blocks that follow.
 core::Result<void> check_shift(const Execution& execution, const CannedCycle& cycle) {
     const bool is_first = !execution.modal().cycle->bottom;
     if (cycle.code != tenths(87) || !is_first) return {};
@@ -92,7 +92,7 @@ core::Result<void> check_spindle(const Execution& execution, int code) {
     return {};
 }
 
-/// A shift of the tool off the middle: I, J and K are those of the plane's axes.
+/// Shifts the tool off centre; I, J and K belong to the axes of the plane.
 void shift_off_middle(Drilling& hole, double sign) {
     Position end = hole.execution.modal().position;
     for (const size_t axis : {hole.first, hole.second})
@@ -100,8 +100,8 @@ void shift_off_middle(Drilling& hole, double sign) {
     hole.execution.traverse(end);
 }
 
-/// A feed of a tap. LinuxCNC 2.9 takes the axes of G18 for those of G19 and the other way round, so
-/// that the tool leaves its hole; it goes on as if it had not.
+/// A feed move of a tap. LinuxCNC 2.9 swaps the axes of G18 and G19, so the tool leaves its hole,
+/// and continues as if it had not.
 void feed_tapping(Drilling& hole, std::optional<double> level) {
     Position& position = hole.execution.modal().position;
     position[hole.normal] = level;
@@ -123,7 +123,7 @@ void warn_of_plane(Drilling& hole) {
 }
 
 void enable_overrides(Execution& execution, bool enabled) {
-    // They are taken away after M49, too: G76 leaves that of the feed on.
+    // They are switched off after M49 too: G76 leaves the feed override on.
     if (!enabled || execution.modal().feed_override)
         execution.emit(EnableOverride{OverrideKind::feed, enabled});
     if (!enabled || execution.modal().speed_override)

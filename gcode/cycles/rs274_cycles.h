@@ -4,30 +4,29 @@
 
 namespace gcode {
 
-/// Whether a canned cycle of LinuxCNC can be carried out, with the words of its block.
+/// Checks whether a canned cycle of LinuxCNC can run with the words of its block.
 ///
-/// Errors: syntax for cutter radius compensation, axes outside of the plane and a block without
-///         axis words; missing_value for P of the cycles that wait, for I, J and K of G87, and for
-///         a spindle that does not turn as the cycle needs it; invalid_value for a negative time.
+/// Errors: syntax for cutter radius compensation, axes outside the plane and a block without axis
+///         words; missing_value for P of the cycles that dwell, for I, J and K of G87, and for a
+///         spindle that does not turn as the cycle needs; invalid_value for a negative time.
 /// Source: NISTIR 6556 (RS274/NGC v3), 3.5.16; behaves as LinuxCNC 2.9.
 core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle);
 
-/// Exact path while a cycle runs, and what was there before it again.
+/// Set exact path mode for a cycle, and restore the previous mode.
 void begin_exact_path(Execution& execution);
 void end_exact_path(Execution& execution);
 
-/// G84 and G74: down in a feed, the spindle reversed, P waited for, and out in a feed, overrides
-/// off.
+/// G84 and G74: feed down, reverse the spindle, dwell for P, and feed out, with overrides off.
 void tap_with_reversal(Drilling& hole);
 
-/// G87: down off the middle, up to K in a feed, back, and out off the middle.
+/// G87: down off centre, feed up to K on centre, back down, and out off centre.
 void bore_back_to_middle(Drilling& hole);
 
-/// G88: the spindle and the program stop at the bottom. The control does not come out by itself,
-/// and takes the tool as being outside again.
+/// G88: the spindle and the program stop at the bottom. The control does not retract but assumes
+/// afterwards that the tool is out of the hole.
 void bore_and_stop(Drilling& hole);
 
-/// Lets the words a cycle keeps count in other units: LinuxCNC keeps the numbers.
+/// Reinterprets the stored words of a cycle in other units: LinuxCNC keeps the numbers.
 void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to);
 
 } // namespace gcode

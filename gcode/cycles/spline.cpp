@@ -14,7 +14,7 @@ using core::ErrorCode;
 
 SplinePoint sum(SplinePoint a, SplinePoint b) { return {a.x + b.x, a.y + b.y}; }
 
-/// A control point times its weight, with the weight as third coordinate.
+/// A control point multiplied by its weight, with the weight as third coordinate.
 struct Homogeneous {
     double x, y, weight;
 };
@@ -116,8 +116,8 @@ core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve) {
     const double last = curve.spans();
     const double step = last / static_cast<double>(curve.points.size() * 15);
     std::vector<SplinePoint> chords;
-    // The steps are added up, not multiplied: whether the sum still falls short of the last knot
-    // after the last but one of them decides about one more chord.
+    // The parameter is accumulated, not multiplied: whether the sum is still below the last knot
+    // after the last step but one decides whether there is one more chord.
     for (double parameter = step; parameter < last; parameter += step) {
         const SplinePoint at = point_at(curve, parameter);
         if (!std::isfinite(at.x) || !std::isfinite(at.y))

@@ -7,7 +7,7 @@
 
 namespace gcode {
 
-/// A place in the XY plane, mm.
+/// A point in the XY plane, mm.
 struct SplinePoint {
     double x = 0.0, y = 0.0;
 
@@ -22,50 +22,51 @@ struct ControlPoint {
 };
 
 /// A rational B-spline that starts at its first control point and ends at its last. Its parameter
-/// runs from 0 to `spans`, and the knots between are whole numbers.
+/// runs from 0 to `spans`, and the inner knots are whole numbers.
 struct NurbsCurve {
     std::vector<ControlPoint> points; // at least `order` of them
-    int order = 3;                    // the degree and one
+    int order = 3;                    // degree + 1
 
     int spans() const { return static_cast<int>(points.size()) - order + 1; }
     bool operator==(const NurbsCurve&) const = default;
 };
 
-/// The words of a G5 block besides its end; lengths in mm.
+/// The words of a G5 block besides its end point; lengths in mm.
 struct CubicWords {
     std::optional<double> i, j; // from the start to the first inner control point
     std::optional<double> p, q; // from the end to the second
     SplinePoint end;
 };
 
-/// A cubic spline, and the I and J of the next one if that block has none.
+/// A cubic spline, and I and J for a next G5 without them.
 struct CubicSpline {
     NurbsCurve curve;
     SplinePoint next_tangent;
 };
 
-/// The curve of G5. `tangent` stands for I and J where the block has neither: `next_tangent` of the
-/// last G5 of the program, whatever moved since then, and 0, 0 before the first.
+/// The curve of G5. `tangent` is used where the block has neither I nor J: `next_tangent` of the
+/// previous G5 in the program, whatever moved in between, and 0, 0 before the first.
 ///
 /// Errors: I without J or J without I; P or Q missing.
 core::Result<CubicSpline> cubic_spline(SplinePoint start, SplinePoint tangent,
                                        const CubicWords& words);
 
-/// The curve of G5.1: I and J lead from the start to the inner control point.
+/// The curve of G5.1: I and J are the offset from the start to the inner control point.
 ///
 /// Errors: I or J missing.
 core::Result<NurbsCurve> quadratic_spline(SplinePoint start, std::optional<double> i,
                                           std::optional<double> j, SplinePoint end);
 
-/// The words of a G5.2 block, or of a block without a G code while G5.2 is on. X and Y are ends in
-/// program coordinates, mm: under G91 they count from where the curve starts, in every block.
+/// The words of a G5.2 block, or of a block without a G code while G5.2 is active. X and Y are end
+/// points in program coordinates, mm. With G91 they are relative to the start of the curve in each
+/// block.
 struct ControlPointWords {
     std::optional<double> x, y;
     std::optional<double> weight; // P
     std::optional<int> order;     // L
 };
 
-/// What G5.2 has gathered so far; a default one before the first of them.
+/// The control points that G5.2 has collected so far; empty before the first.
 struct NurbsGathering {
     std::vector<ControlPoint> points;
     int order = 3;
@@ -73,41 +74,42 @@ struct NurbsGathering {
     bool operator==(const NurbsGathering&) const = default;
 };
 
-/// Orders above this are refused: LinuxCNC, which doubles its effort with each, would not finish.
+/// Highest order accepted: the effort of LinuxCNC doubles with each order, so it would not finish.
 constexpr int greatest_nurbs_order = 20;
 
-/// Takes in a block of G5.2. The first one adds the start as well: with the weight P if the block
-/// has no X and Y, else with 1. L raises the order from 3; a smaller one than that, or than an
-/// earlier one, behaves as in LinuxCNC: up to 3 it is passed over.
+/// Adds a block of G5.2. The first block also adds the start point: with the weight P if the block
+/// has no X and Y, else with 1. L raises the order from 3. An L that is smaller than that or than
+/// an earlier one is treated as in LinuxCNC: up to 3 it is ignored.
 ///
-/// A first block with X and Y but without P gives that control point the weight -1, as in LinuxCNC:
-/// the curve then leaves the hull of its points, so the caller should warn.
+/// A first block with X and Y but without P gives its control point the weight -1, as in LinuxCNC.
+/// The curve then leaves the hull of its points, so the caller should warn.
 ///
 /// Errors: X without Y or Y without X; after the first block, P without X and Y, or no positive P;
-/// an order above greatest_nurbs_order. The gathering is then as before.
+///         an order above greatest_nurbs_order. Nothing is added then.
 core::Result<void> add_control_point(NurbsGathering& gathering, SplinePoint start,
                                      const ControlPointWords& words);
 
-/// The curve of G5.3.
+/// The curve that G5.3 ends.
 ///
-/// Errors: nothing gathered, or fewer control points than the order.
+/// Errors: no control points, or fewer than the order.
 core::Result<NurbsCurve> finish_nurbs(const NurbsGathering& gathering);
 
-/// The place on the curve at a parameter from 0 to `spans`.
+/// The point on the curve at a parameter from 0 to `spans`.
 ///
-/// Result: infinite where weights cancel, which takes one that is not positive.
+/// Result: infinite where weights cancel out, which needs one that is not positive.
 /// Cost: the square of the order.
 /// Source: C. de Boor, "On calculating with B-splines", Journal of Approximation Theory 6 (1972).
 SplinePoint point_at(const NurbsCurve& curve, double parameter);
 
-/// The ends of the straight feeds by which LinuxCNC's preview follows the curve: 15 to a control
-/// point, at equal steps of the parameter.
+/// The ends of the straight feed moves with which LinuxCNC's preview follows the curve: 15 for each
+/// control point, at equal steps of the parameter.
 ///
-/// Result: the last one is the last control point. Rounding may add one just before it, as there.
-/// Errors: weights cancel on the way.
+/// Result: the last one is the last control point. Rounding may add one just before it, as in
+///         LinuxCNC.
+/// Errors: the weights cancel out somewhere.
 core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve);
 
-/// What the blocks of splines leave behind for one another.
+/// The state that spline blocks pass on to each other.
 struct SplineState {
     NurbsGathering gathering{}; // since G5.2
     SplinePoint next_tangent{}; // I and J of a G5 that has none
@@ -115,11 +117,11 @@ struct SplineState {
     bool operator==(const SplineState&) const = default;
 };
 
-/// The ends of straight feeds along a curve, of which none is farther from it than the tolerance,
-/// in mm. Where knots join the spans of the curve there is an end as well.
+/// The ends of straight feed moves along a curve, none farther from it than the tolerance, in mm.
+/// Each knot between spans is an end too.
 ///
 /// Result: the last one is the last control point.
-/// Errors: weights cancel on the way; more than a million chords would be needed.
+/// Errors: the weights cancel out somewhere; more than a million chords would be needed.
 core::Result<std::vector<SplinePoint>> chords_within(const NurbsCurve& curve, double tolerance);
 
 } // namespace gcode

@@ -13,7 +13,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// How far the chords may be from the curve that they stand for, mm.
+/// Largest distance of a chord from its curve, mm.
 constexpr double spline_chord_error = 0.001;
 
 core::Result<SplinePoint> start_of(const Execution& execution) {
@@ -175,7 +175,7 @@ double distance_from_chord(SplinePoint place, SplinePoint from, SplinePoint to) 
     return std::hypot(place.x - from.x - share * x, place.y - from.y - share * y);
 }
 
-/// The curve from a knot to the next in equal steps of its parameter.
+/// The curve between two knots in equal steps of its parameter.
 std::vector<SplinePoint> chords_of_span(const NurbsCurve& curve, int span, int count) {
     std::vector<SplinePoint> ends;
     for (int i = 1; i <= count; ++i)
@@ -183,9 +183,9 @@ std::vector<SplinePoint> chords_of_span(const NurbsCurve& curve, int span, int c
     return ends;
 }
 
-/// Whether chords stay near the curve. Between knots a curve of this order bends at most a few
-/// times, so that within one of many chords it is seen at its quarters; half of the tolerance is
-/// kept for what lies between them.
+/// Whether chords stay within the tolerance of the curve. Between knots a curve of this order bends
+/// only a few times, so testing one of many chords at its quarter points is enough; half of the
+/// tolerance is reserved for what lies between them.
 bool are_near(const NurbsCurve& curve, int span, SplinePoint from,
               const std::vector<SplinePoint>& ends, double tolerance) {
     const auto count = static_cast<double>(ends.size());

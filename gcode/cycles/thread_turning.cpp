@@ -11,8 +11,8 @@ namespace {
 
 using core::ErrorCode;
 
-/// Passes are made with the feed as it is programmed. The control leaves the override on, even
-/// where M49 or M50 had switched it off.
+/// Passes run at the programmed feed. The control leaves the override on afterwards, even where M49
+/// or M50 had switched it off.
 void enable_feed_override(Execution& execution, bool enabled) {
     execution.emit(EnableOverride{OverrideKind::feed, enabled});
 }
@@ -49,7 +49,7 @@ core::Result<void> check_thread(const Execution& execution) {
 
 core::Result<ThreadingWords> words_of(const Execution& execution) {
     const Statement& statement = execution.statement;
-    // A word of -1 counts as one that is not there.
+    // A word with the value -1 counts as missing.
     const auto value = [&](char letter) -> std::optional<double> {
         const Word* word = statement.word(letter);
         return word && word->value != -1.0 ? std::optional(word->value) : std::nullopt;

@@ -10,14 +10,14 @@ namespace {
 
 using core::ErrorCode;
 
-/// A thread seen from its drive line: heights count from there towards the material.
+/// A thread relative to its drive line: heights count from there towards the material.
 struct ThreadPath {
     TurningPoint start, end;
-    double inward;       // +1 for an internal thread, -1 for an external one: X of a height
+    double inward;       // X per height: +1 for an internal thread, -1 for an external one
     double along;        // +1 or -1: the direction of cutting on Z
-    double crest, depth; // heights of the crest, and of the root above that
+    double crest, depth; // heights of the crest, and of the root above it
     double pitch, ramp;  // per revolution, along the thread and along a taper
-    double slope;        // of the flank that the passes follow, Z per height
+    double slope;        // Z per height of the flank that the passes follow
     double entry, exit;  // lengths of the tapers
 };
 
@@ -65,7 +65,7 @@ ThreadPath thread_from_words(TurningPoint start, TurningPoint end, const Threadi
     if (words.taper_length > 0.0) {
         if (words.tapered_ends & 1) thread.entry = words.taper_length;
         if (words.tapered_ends & 2) thread.exit = words.taper_length;
-        // While Z runs along the taper, it must advance by the pitch with each turn.
+        // Along the taper, Z must advance by the pitch with each revolution.
         thread.ramp *= std::hypot(words.taper_length, thread.depth) / words.taper_length;
     }
     return thread;

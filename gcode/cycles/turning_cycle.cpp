@@ -13,65 +13,66 @@
 
 namespace gcode {
 
-/// A place of the ZX plane, program units: Z is the real part, X the imaginary one.
+/// A point in the ZX plane, program units: Z is the real part, X the imaginary part.
 using ZxPoint = std::complex<double>;
 
-/// A piece of an outline. A chamfer is a line, a fillet an arc once their places are known.
+/// A segment of an outline. A corner becomes a line (chamfer) or an arc (fillet) once its position
+/// is known.
 struct OutlinePiece {
     enum class Kind : uint8_t { line, arc };
     Kind kind = Kind::line;
     ZxPoint start, end;
     ZxPoint centre{}; // of an arc
     bool counterclockwise = false;
-    bool is_corner = false; // to be put between its neighbours
+    bool is_corner = false; // to be fitted between its neighbours
     double corner_size = 0.0;
 
     bool is_arc() const { return kind == Kind::arc; }
 };
 
-/// The contour of a turning cycle in the frame in which it is cut: it runs down in Z and, on the
-/// whole, up in X. The first piece is the way in, from the tool's place to the contour.
+/// The contour of a turning cycle in the frame in which it is cut: it runs in -Z and, overall, in
+/// +X. The first segment leads from the tool to the contour.
 struct Outline {
     std::vector<OutlinePiece> pieces;
     bool turned = false, x_mirrored = false, z_mirrored = false;
 };
 
-/// How near is the same place, program units (as LinuxCNC).
+/// Points closer than this are the same, program units (as LinuxCNC).
 constexpr double zx_tolerance = 1e-6;
 
-/// Turns the outline by a right angle, so that X takes the place of Z.
+/// Rotates the outline by 90 degrees, so that X takes the place of Z.
 void turn(Outline& outline);
 
-/// Mirrors the outline so that its pieces lead from great Z and small X to small Z and great X.
+/// Mirrors the outline so that it leads from large Z and small X to small Z and large X.
 void face_cutting_direction(Outline& outline);
 
-/// The place in the lathe's frame of one in the outline's frame.
+/// Transforms a point from the outline's frame to the lathe's frame.
 ZxPoint lathe_from_outline(const Outline& outline, ZxPoint place);
 
-/// Whether mirrors have turned the sense of arcs round.
+/// Whether mirroring has reversed the direction of arcs.
 bool is_reversed(const Outline& outline);
 
-/// Whether a piece never runs back in Z; an arc must also stay on one side of its centre.
+/// Whether a segment never runs back in Z; an arc must also stay on one side of its centre.
 bool runs_down(const OutlinePiece& piece);
 
-/// Whether the outline can be cut; a way in that runs back is made straight down first.
+/// Checks that the outline can be cut. A lead-in that runs back is first made vertical.
 ///
-/// Errors: a piece runs back.
+/// Errors: a segment runs back.
 core::Result<void> check_runs_down(Outline& outline);
 
-/// Puts fillets and chamfers between their neighbours, and drops what has no length.
+/// Fits fillets and chamfers between their neighbours and removes segments without length.
 ///
 /// Errors: a corner does not fit.
 core::Result<void> shape_corners(Outline& outline);
 
-/// Moves the outline away from the material by a distance, its way in apart.
+/// Offsets the outline, except its lead-in, away from the material.
 ///
-/// Errors: neighbours that are parallel; nothing is left of the outline.
-/// Source: behaves as LinuxCNC's offset, which goes in steps of half of the smallest piece.
+/// Errors: consecutive segments are parallel; nothing is left of the outline.
+/// Source: behaves as LinuxCNC's offset, which proceeds in steps of half the smallest segment.
 core::Result<void> offset_outline(Outline& outline, double distance);
 
-/// The Z of the places where a piece has an X: none, one or two, in the order of the piece's ends
-/// if it is level, else the greater first.
+/// The Z values at which a segment has an X: none, one or two, in the direction of the segment if
+/// it is level, else the greater first.
 std::vector<double> crossings(const OutlinePiece& piece, double x);
 
 namespace {
@@ -80,7 +81,7 @@ using core::ErrorCode;
 
 constexpr double nearby = 1e-3; // program units: arcs shorter than this are not cut
 
-/// Collects moves given in the outline's frame.
+/// Collects moves, given in the outline's frame.
 struct MoveWriter {
     const Outline& outline;
     double mm_per_unit;
@@ -156,8 +157,8 @@ tl::unexpected<core::Error> endless() {
                       "I, or a contour without arcs that come back, may help");
 }
 
-/// Roughing: levels are cut from the way in, `depth` apart; then the contour is followed upwards
-/// until it dives into a pocket, in which the same begins again.
+/// Roughing: cuts levels from the lead-in on, `depth` apart, then follows the contour upwards until
+/// it descends into a pocket, where the same starts again.
 struct Roughing {
     const std::vector<OutlinePiece>& pieces;
     MoveWriter& out;
@@ -169,7 +170,7 @@ struct Roughing {
     size_t piece = 0;
     double level = 0.0; // X of the next cut
     bool follows_pockets = false;
-    std::int64_t budget = 20'000'000; // visits of pieces, so that it ends
+    std::int64_t budget = 20'000'000; // segment visits, to guarantee an end
 };
 
 void go(Roughing& roughing, ZxPoint end, bool rapid) {
@@ -220,10 +221,10 @@ PassResult dive_along_arc(Roughing& roughing, const OutlinePiece& piece, double 
         go_round(roughing, piece, piece.end, false);
     else if (places.front() >= top)
         go_round(roughing, piece, {places.front(), level}, false);
-    return PassResult::done; // also where only the far side is met: the level comes down to it
+    return PassResult::done; // also where only the far side is reached: the level comes down to it
 }
 
-/// Goes down along a piece to a level, or to its end if that is higher.
+/// Moves down along a segment to a level, or to its end if that is higher.
 core::Result<PassResult> dive(Roughing& roughing, double level) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (piece.is_arc()) return dive_along_arc(roughing, piece, level);
@@ -236,7 +237,7 @@ ZxPoint top_of(const OutlinePiece& piece) {
     return piece.centre + ZxPoint(0, std::abs(piece.start - piece.centre));
 }
 
-/// Goes up along a piece from where the tool is.
+/// Moves up along a segment from the tool position.
 core::Result<PassResult> climb(Roughing& roughing) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (!piece.is_arc()) {
@@ -250,11 +251,11 @@ core::Result<PassResult> climb(Roughing& roughing) {
     const double across = roughing.at.real() - piece.centre.real();
     if (piece.counterclockwise ? across < 0.0 : across > 0.0) return PassResult::not_this_way;
     go_round(roughing, piece, top_of(piece), true);
-    // At its top a counter-clockwise arc may go down again.
+    // A counterclockwise arc may descend again after its top.
     return piece.counterclockwise ? PassResult::not_this_way : PassResult::done;
 }
 
-/// Goes straight across to a piece that rises from the level of the tool, and up along it.
+/// Moves straight across to a segment that rises from the level of the tool, and up along it.
 void climb_across(Roughing& roughing) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (!piece.is_arc() && piece.end.imag() < piece.start.imag()) return;
@@ -272,7 +273,7 @@ void climb_across(Roughing& roughing) {
         go(roughing, piece.end, false);
 }
 
-/// One cut at the level of the tool, to the first piece that stands in the way, and back.
+/// One cut at the level of the tool, to the first segment in the way, and back.
 void cut_level(Roughing& roughing) {
     const ZxPoint from = roughing.at;
     for (size_t i = roughing.piece; i < roughing.pieces.size(); ++i) {
@@ -300,7 +301,7 @@ void cut_level(Roughing& roughing) {
     }
 }
 
-/// Leaves a level that the contour does not go below: up along it to the next pocket.
+/// Leaves a level below which the contour does not go: up along it to the next pocket.
 ///
 /// Result: whether there is one.
 core::Result<bool> follow_to_pocket(Roughing& roughing) {
@@ -323,7 +324,7 @@ core::Result<bool> follow_to_pocket(Roughing& roughing) {
     return false;
 }
 
-/// Goes down the first pocket without cutting its levels: G71.1 has cut them before.
+/// Moves down the first pocket without cutting its levels, which G71.1 has already cut.
 core::Result<void> skip_first_descent(Roughing& roughing) {
     for (; roughing.piece < roughing.pieces.size(); ++roughing.piece) {
         FEELER_TRY(const PassResult step, dive(roughing, -1e9));
@@ -354,7 +355,7 @@ core::Result<void> cut(Roughing& roughing) {
     return {};
 }
 
-/// Turns the outline as G70 must to follow it: by a right angle if it runs back otherwise.
+/// Orients the outline for G70: rotated by 90 degrees if it would run back otherwise.
 core::Result<void> orient_for_finishing(Outline& outline) {
     Outline contour = outline;
     contour.pieces.erase(contour.pieces.begin());
@@ -455,10 +456,10 @@ core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoin
 
 namespace {
 
-constexpr double vanishing = 1e-3;   // program units: pieces smaller than this are dropped
-constexpr double gap_for_arc = 1e-2; // likewise: a wider gap at a corner gets an arc
+constexpr double vanishing = 1e-3;   // program units: smaller segments are removed
+constexpr double gap_for_arc = 1e-2; // program units: a wider gap at a corner gets an arc
 
-/// Smaller than half of this, a step moves no piece past its own centre.
+/// An offset step below half of this moves no arc past its own centre.
 double size_of(const OutlinePiece& piece) {
     const double length = std::abs(piece.start - piece.end);
     return piece.is_arc() ? std::min(length, std::abs(piece.start - piece.centre)) : length;
@@ -474,8 +475,8 @@ void map_points(Outline& outline, Map map, bool mirrors) {
     }
 }
 
-/// Moves a piece sideways: a line to the left as one walks back along it, an arc outwards if it
-/// turns counter-clockwise.
+/// Offsets a segment: a line to the left when seen against its direction, a counterclockwise arc
+/// outwards.
 void move_aside(OutlinePiece& piece, double distance) {
     if (piece.is_arc()) {
         const double radius = std::abs(piece.start - piece.centre);
@@ -490,7 +491,7 @@ void move_aside(OutlinePiece& piece, double distance) {
     piece.end += aside;
 }
 
-/// Where a line crosses the circle through `on_circle`: of the two places the one nearer to `near`.
+/// Where a line crosses the circle through `on_circle`: the intersection nearer to `near`.
 ZxPoint line_and_circle(const OutlinePiece& line, ZxPoint centre, ZxPoint on_circle, ZxPoint near) {
     const ZxPoint level = std::conj(line.start - line.end) / std::abs(line.start - line.end);
     const ZxPoint c = (centre - line.end) * level;
@@ -501,7 +502,7 @@ ZxPoint line_and_circle(const OutlinePiece& line, ZxPoint centre, ZxPoint on_cir
     return std::abs(near - a) < std::abs(near - b) ? a : b;
 }
 
-/// Where two circles cross, on the left of the way from the second's centre to the first's.
+/// Where two circles cross, to the left of the line from the second centre to the first.
 ZxPoint circle_and_circle(const OutlinePiece& first, const OutlinePiece& second) {
     const double a = std::abs(second.start - second.centre);
     const double b = std::abs(first.start - first.centre);
@@ -511,7 +512,7 @@ ZxPoint circle_and_circle(const OutlinePiece& first, const OutlinePiece& second)
     return turned * (first.centre - second.centre) / c * a + second.centre;
 }
 
-/// Makes the end of a piece and the start of the next the place where they cross.
+/// Moves the end of a segment and the start of the next to their intersection.
 core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
     ZxPoint at;
     if (first.is_arc() && second.is_arc()) {
@@ -541,7 +542,7 @@ tl::unexpected<core::Error> nothing_left() {
                       "nothing is left of the contour at this distance from it");
 }
 
-/// Puts one fillet or chamfer in its place.
+/// Fits one fillet or chamfer between its neighbours.
 core::Result<void> shape_corner(OutlinePiece& before, OutlinePiece& corner, OutlinePiece& after) {
     OutlinePiece p, n;
     const auto overlap = [&](double size) {
@@ -578,7 +579,7 @@ void drop_vanishing(std::vector<OutlinePiece>& pieces) {
     std::erase_if(pieces, [](const OutlinePiece& piece) { return size_of(piece) < vanishing; });
 }
 
-/// Fills the gaps that an offset by `step` has opened at outside corners with arcs about them.
+/// Fills the gaps that an offset by `step` opens at outside corners with arcs about them.
 void fill_gaps(std::vector<OutlinePiece>& pieces, double step, bool outwards) {
     for (size_t i = 0; i + 1 < pieces.size(); ++i) {
         if (!((pieces[i].end - pieces[i + 1].start).real() > gap_for_arc)) continue;
@@ -592,8 +593,8 @@ void fill_gaps(std::vector<OutlinePiece>& pieces, double step, bool outwards) {
     }
 }
 
-/// Joins all neighbours; a piece that the offset has turned round, or its smaller neighbour before
-/// it, is dropped. After a loss it goes on with the second piece, as LinuxCNC does.
+/// Joins all consecutive segments. A segment that the offset has reversed, or its smaller
+/// predecessor, is removed. After a removal it continues with the second segment, as LinuxCNC does.
 core::Result<void> join_all(std::vector<OutlinePiece>& pieces) {
     const auto drop = [&](size_t i) {
         pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));

@@ -9,7 +9,7 @@
 
 namespace gcode {
 
-/// The centre of an arc and its sense: G3, counter-clockwise from +Z to +X.
+/// The centre of an arc and its direction: G3 is counterclockwise from +Z to +X.
 struct TurningArc {
     TurningPoint centre;
     bool counterclockwise = false;
@@ -19,15 +19,15 @@ struct TurningArc {
 
 enum class CornerShape : uint8_t { sharp, fillet, chamfer }; // A, C
 
-/// A part of a programmed contour, from where the last one ended.
+/// A segment of a programmed contour; it starts where the previous one ended.
 struct TurningSegment {
     TurningPoint end;
-    std::optional<TurningArc> arc{};         // straight when empty
-    CornerShape corner = CornerShape::sharp; // where the next segment begins
-    double corner_size = 0.0;                // the fillet's radius, or from each side of a chamfer
+    std::optional<TurningArc> arc{};         // empty: straight
+    CornerShape corner = CornerShape::sharp; // at the start of the next segment
+    double corner_size = 0.0;                // radius of the fillet, or leg of the chamfer
 };
 
-/// A contour: its first segment is the way from the tool to the first point that is cut.
+/// A contour. Its first segment leads from the tool to the first point that is cut.
 using TurningContour = std::vector<TurningSegment>;
 
 struct TurningMove {
@@ -40,53 +40,53 @@ struct TurningMove {
 
 using TurningMoves = std::vector<TurningMove>;
 
-/// What roughing does with the pockets of a contour: the last digit of G71.n and G72.n.
+/// How roughing treats the pockets of a contour: the last digit of G71.n and G72.n.
 enum class PocketCutting : uint8_t { all, none, rest };
 
-/// The words of G71 and G72, lengths in mm. None of them is halved under G7.
+/// The words of G71 and G72, lengths in mm. G7 halves none of them.
 struct RoughingWords {
     bool facing = false; // G72: cuts along X; G71: along Z
     PocketCutting pockets = PocketCutting::all;
-    double allowance = 0.0;              // D: left on the contour
-    std::optional<double> depth{};       // I of a cut; 1 program unit when not given
-    std::optional<double> retract{};     // R; half a program unit when not given
+    double allowance = 0.0;              // D: stock left on the contour
+    std::optional<double> depth{};       // I, depth of cut; default 1 program unit
+    std::optional<double> retract{};     // R; default half a program unit
     double shift_x = 0.0, shift_z = 0.0; // U, W
 };
 
 /// The words of G70.
 struct FinishingWords {
-    double first_distance = 0.0; // D from the contour, of the first pass
-    double last_distance = 0.0;  // E
-    double passes = 1.0;         // P: its whole part counts
+    double first_distance = 0.0; // D, from the contour, for the first pass
+    double last_distance = 0.0;  // E, for the last pass
+    double passes = 1.0;         // P; only its whole part is used
 };
 
-/// Contours with more segments, and finishing with more moves, are refused.
+/// Highest number of contour segments, and of moves in finishing, that is accepted.
 constexpr size_t greatest_contour = 10'000;
 constexpr size_t greatest_turning_moves = 1'000'000;
 
-/// The moves of G71 or G72 from `start`, to which the caller has moved the tool by a rapid.
+/// The moves of G71 or G72 from `start`, to which the caller has moved the tool with a rapid.
 ///
-/// The contour begins at `start` too; one of a single segment gives no moves. `mm_per_unit` is 25.4
-/// under G20: LinuxCNC's tolerances are in program units.
+/// The contour starts at `start` too; a contour of one segment gives no moves. `mm_per_unit` is
+/// 25.4 with G20, as the tolerances of LinuxCNC are in program units.
 ///
-/// Result: as LinuxCNC 2.9, to the move. After the last of them the tool is at the end of the
-/// contour or above it.
-/// Errors: I not positive; a contour that, on the way in which it runs, comes back (LinuxCNC: not
-/// monotonic); an allowance that its lines or corners do not have room for; and wherever LinuxCNC
-/// would go on for ever or past the end of its lists.
+/// Result: the same moves as LinuxCNC 2.9. After the last one the tool is at the end of the contour
+///         or above it.
+/// Errors: I not positive; a contour that turns back against its main direction (LinuxCNC: not
+///         monotonic); an allowance for which its lines or corners have no room; and every case in
+///         which LinuxCNC would loop forever or run past the end of its lists.
 core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningContour& contour,
                                           const RoughingWords& words, double mm_per_unit = 1.0);
 
-/// The moves of G70: along the contour in passes whose distance from it falls from D towards E.
+/// The moves of G70: along the contour in passes at distances decreasing from D towards E.
 ///
-/// Result: as `roughing_moves`. The last pass has the distance E.
-/// Errors: as there.
+/// Result: as `roughing_moves`. The last pass is at distance E.
+/// Errors: as `roughing_moves`.
 core::Result<TurningMoves> finishing_moves(TurningPoint start, const TurningContour& contour,
                                            const FinishingWords& words, double mm_per_unit = 1.0);
 
-/// The arc of a block with R instead of its centre: the shorter way, whatever R's sign.
+/// The arc of a block with R instead of a centre: the shorter arc, whatever the sign of R.
 ///
-/// Errors: R is less than half of the way.
+/// Errors: R is less than half the distance.
 core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoint end,
                                                  double radius, bool counterclockwise);
 

@@ -13,7 +13,7 @@ namespace {
 using core::ErrorCode;
 using enum CommandKind;
 
-/// Whether the block's code of a group is one that counts from the block's beginning.
+/// Whether the block has a code of a group that takes effect at the start of the block.
 bool begins_block(const Execution& execution, ModalGroup group, int last_tenths) {
     const CodeWord* entry = execution.statement.of(group);
     return entry && entry->code->tenths != last_tenths;
@@ -37,7 +37,7 @@ void warn_of_m_codes(Execution& execution) {
 
 core::Result<void> take_feed(Execution& execution) {
     const CommandKind kind = execution.block.command.kind;
-    if (kind == rounding || kind == chamfer) return {}; // it holds there alone
+    if (kind == rounding || kind == chamfer) return {}; // it applies to the corner only
     if (const Word* word = execution.statement.word('E')) {
         if (!execution.state.klartext->call_feed)
             return core::fail(ErrorCode::missing_value,
@@ -83,7 +83,7 @@ bool is_motion(CommandKind kind) {
     return kind >= straight && kind <= tangent_polar && kind != pole;
 }
 
-/// M99 calls once, M89 after every motion from its own on, until M99 or another cycle.
+/// M99 calls once; M89 calls after each motion from its own on, until M99 or another cycle.
 core::Result<void> call_cycle(Execution& execution) {
     const Command& command = execution.block.command;
     KlartextState& klartext = execution.state.klartext.write();
@@ -153,7 +153,7 @@ namespace {
 using core::OffsetNumber;
 using core::ToolNumber;
 
-// Q parameters in which the control shows the tool.
+// Q parameters with the data of the current tool.
 constexpr int q_radius = 108, q_axis = 109, q_length_of_tool = 114;
 
 void put_into_spindle(Execution& execution, ToolNumber tool) {
@@ -174,7 +174,7 @@ double radius_of(const Execution& execution, int number) {
     return entry == lengths.end() ? 0.0 : entry->second.diameter / 2.0 + entry->second.radius_wear;
 }
 
-/// The tool's length counts from here on, and its size is shown to the program.
+/// Activates the length of the tool and shows its size to the program.
 void use_length(Execution& execution, int number, const Word& tool) {
     const std::optional<double> length =
         number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, number);
@@ -200,7 +200,7 @@ void use_length(Execution& execution, int number, const Word& tool) {
     parameters.set_numbered(q_length_of_tool, from_mm(offsets.tool[normal], unit));
 }
 
-/// The length that the set-up gives a tool, where the program says another.
+/// Warns if the program gives a tool another length than the set-up.
 void warn_of_other_length(Execution& execution, int number, double length, const Word& word) {
     const auto known = length_under(*execution.state.tables, number);
     if (!known || std::abs(*known - length) < 1e-6) return;
@@ -235,7 +235,7 @@ core::Result<void> define_klartext_tool(Execution& execution) {
     FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
     const Word* length = statement.word('L');
     const Word* radius = statement.word('R');
-    if (!length && !radius) { // the next tool, to be brought near
+    if (!length && !radius) { // preselection of the next tool
         execution.modal().selected_tool = ToolNumber(number);
         execution.emit(SelectTool{ToolNumber(number)});
         return {};

@@ -5,10 +5,11 @@
 
 namespace gcode {
 
-/// Carries out a block of Klartext: what begins with the block, its statement, what ends it.
+/// Runs a block of Klartext: the codes that act before its statement, the statement, then the codes
+/// that act after it.
 core::Result<void> run_klartext(Execution& execution);
 
-// The statements, a source for each topic.
+// The statements.
 core::Result<void> move_in_klartext(Execution& execution);     // L LP CC C CP CR CT CTP
 core::Result<void> make_corner(Execution& execution);          // RND CHF
 core::Result<void> call_klartext_tool(Execution& execution);   // TOOL CALL
@@ -19,26 +20,25 @@ core::Result<void> change_coordinates(Execution& execution);   // CYCL DEF 7, 8,
 core::Result<void> call_defined_cycle(Execution& execution);   // M99, M89, CYCL CALL
 core::Result<void> run_pattern(Execution& execution);          // CYCL DEF 220 and 221
 
-/// The end of a motion, shortened where a rounding or chamfer follows it, which is remembered then.
+/// The end of a motion, shortened if a rounding or chamfer follows, which is then stored.
 ///
 /// `centre` and `turn` are those of an arc; turn 0 is a straight line.
-/// Errors: invalid_value when the corner does not fit in; those of the blocks up to the motion
-///         behind it.
+/// Errors: invalid_value when the corner does not fit; those of the blocks up to the next motion.
 core::Result<Position> end_before_corner(Execution& execution, const Position& end,
                                          const PlanePoint& centre, int turn);
 
 /// LBL, CALL LBL, CALL PGM, IF..GOTO LBL, END PGM.
 core::Result<void> run_klartext_flow(const FlowStep& step);
 
-/// What a statement is refused with: its words first.
+/// An error about the statement; its message starts with the words of the statement.
 tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why);
 
 /// The feed of the statement in mm/min.
 ///
-/// Errors: missing_value when no F came before it.
+/// Errors: missing_value when no F has been programmed yet.
 core::Result<double> klartext_feed(const Execution& execution);
 
-/// A length that a cycle's Q parameter gives, in mm; a plain number.
+/// The value of a Q parameter of a cycle: as a length in mm, and as a plain number.
 double q_length(const Execution& execution, int number);
 double q_number(const Execution& execution, int number);
 

@@ -18,7 +18,7 @@ struct KlartextHole {
     Execution& execution;
     const DefinedCycle& cycle;
     PlaneAxes axes;
-    double surface, above, bottom; // above: the set-up clearance
+    double surface, above, bottom; // above: at the set-up clearance
 
     void go(std::optional<double> height, bool rapid, double feed) {
         Position end = execution.modal().position;
@@ -43,8 +43,9 @@ struct KlartextHole {
     }
 };
 
-/// Cycle 1, which starts where the tool is; a pause before the bottom of the last peck as in the
-/// manual of the TNC 426: 0.6 mm, for holes deeper than 30 mm a fiftieth, at most 7 mm.
+/// Cycle 1, which starts at the current position. Rapids stop before the last depth as in the
+/// manual of the TNC 426: 0.6 mm, for holes deeper than 30 mm a fiftieth of the depth, at most 7
+/// mm.
 void peck_from_here(KlartextHole& hole) {
     const double depth = hole.surface - hole.bottom;
     const double pause = depth <= 30.0 ? 0.6 : std::min(depth / 50.0, 7.0);
@@ -59,7 +60,8 @@ void peck_from_here(KlartextHole& hole) {
     hole.rapid(hole.above);
 }
 
-/// Cycle 200: out of the hole after each peck, back to the set-up clearance above its bottom.
+/// Cycle 200: retract out of the hole after each peck, back to the set-up clearance above its
+/// bottom.
 void drill(KlartextHole& hole) {
     const DefinedCycle& cycle = hole.cycle;
     const double step = cycle.peck > 0.0 ? cycle.peck : hole.surface - hole.bottom;
@@ -74,7 +76,7 @@ void drill(KlartextHole& hole) {
     hole.rapid(hole.above);
 }
 
-/// Cycles 203 and 205: pecks that become shorter, with chips broken in between.
+/// Cycles 203 and 205: pecks of decreasing depth with chip breaking.
 void drill_universal(KlartextHole& hole) {
     const DefinedCycle& cycle = hole.cycle;
     const bool by_count = cycle.number == 203;
@@ -108,7 +110,7 @@ void drill_universal(KlartextHole& hole) {
         hole.rapid(hole.above);
 }
 
-/// Cycle 202: off the wall with a spindle that stands.
+/// Cycle 202: off the wall with the spindle stopped.
 void bore(KlartextHole& hole) {
     const core::SpindleDirection turning = hole.execution.modal().spindle;
     hole.feed(hole.bottom);
@@ -131,7 +133,7 @@ void bore(KlartextHole& hole) {
     hole.turn_spindle(turning);
 }
 
-/// Cycles 206, 207 and 209: the thread is cut on the way in, the spindle turns back on the way out.
+/// Cycles 206, 207 and 209: the thread is cut on the way in; the spindle reverses for the way out.
 void tap(KlartextHole& hole) {
     const ModalState& modal = hole.execution.modal();
     const bool rigid = hole.cycle.number != 206;
@@ -152,7 +154,7 @@ void tap(KlartextHole& hole) {
     if (rigid) hole.execution.modal().spindle = core::SpindleDirection::stopped;
 }
 
-/// Cycle 208: a helix down to the bottom, a full circle there, and back over the centre.
+/// Cycle 208: a helix to the bottom, a full circle there, and out at the centre.
 core::Result<void> mill_bore(KlartextHole& hole) {
     Execution& execution = hole.execution;
     const double tool = to_mm(q_number(execution, 108), execution.modal().unit);
@@ -340,7 +342,7 @@ core::Result<void> call_defined_cycle(Execution& execution) {
     const DefinedCycle cycle = execution.state.klartext->cycle;
     if (cycle.number == 0)
         return refuse_statement(execution, "there is no cycle to call: no CYCL DEF came before it");
-    if (cycle.depth == 0.0) return {}; // as the control does
+    if (cycle.depth == 0.0) return {}; // as on the control
     if (auto checked = check(execution, cycle); !checked) return checked;
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -364,7 +366,7 @@ namespace {
 
 constexpr double most_places = 10000.0;
 
-/// The holes of a circle or its part (220), or of rows that are turned about the first (221).
+/// The holes of a full or partial circle (220), or of rows rotated about the first hole (221).
 core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };
@@ -374,7 +376,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
         if (!(count >= 1.0 && count <= most_places))
             return refuse_statement(execution, "Q241 is the number of holes, from 1");
         double step = plain(247);
-        // Q246 counts when no step is given; a full circle has no hole twice.
+        // Q246 is used if no step is given. On a full circle the first hole is not repeated.
         const double sweep = plain(246) - plain(245);
         const bool full = std::abs(std::abs(sweep) - 360.0) < 1e-9;
         if (step == 0.0 && count > 1.0) step = sweep / (full ? count : count - 1.0);
@@ -392,7 +394,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     const double turn = plain(224) * core::radians_per_degree;
     for (int row = 0; row < static_cast<int>(rows); ++row)
         for (int i = 0; i < static_cast<int>(columns); ++i) {
-            // Every other line is gone along backwards.
+            // Every other row is drilled backwards.
             const int column = row % 2 == 0 ? i : static_cast<int>(columns) - 1 - i;
             const double along = column * length(237), across = row * length(238);
             places.push_back({length(225) + along * std::cos(turn) - across * std::sin(turn),

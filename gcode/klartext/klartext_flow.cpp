@@ -33,20 +33,21 @@ core::Result<uint32_t> line_of_label(const FlowStep& step) {
     return refuse(step, fmt::format("there is no LBL {} in this program to go to", name));
 }
 
-/// A level that `CALL LBL` began stays in the program of its caller, one of `CALL PGM` does not.
+/// Whether the current call level was started by `CALL LBL`. Such a level stays in the program of
+/// its caller, one of `CALL PGM` does not.
 bool is_label_call(const InterpreterState& state) {
     const Frame& frame = state.frames.back();
     return state.frames.size() > 1 && frame.begin.source == frame.called_from.source;
 }
 
-/// LBL 0 ends a subprogram that was called; come across otherwise, it is nothing.
+/// LBL 0 ends a called subprogram. Without a call it has no effect.
 core::Result<void> pass_label(const FlowStep& step) {
     FEELER_TRY(const std::string name, label_name(step));
     if (name == "0" && is_label_call(step.state)) leave(step.state);
     return {};
 }
 
-/// `CALL LBL 1 REP 5`: the part of the program from the label to here five times more.
+/// `CALL LBL 1 REP 5`: repeats the program part from the label to here five more times.
 core::Result<void> repeat_part(const FlowStep& step, uint32_t label) {
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value count, evaluate(step.block.pool, step.block.flow.condition,
@@ -73,7 +74,7 @@ core::Result<void> call_label(const FlowStep& step) {
     return enter(step.state, step.environment, std::move(next), step.block.flow.span);
 }
 
-/// Of the path the control knows only the name counts: files come from the search path.
+/// Only the file name of the path is used: files come from the search path.
 core::Result<void> call_program(const FlowStep& step) {
     const std::string& path = step.block.pool.names[step.block.flow.label_name];
     const std::string name = path.substr(path.find_last_of("\\/:") + 1);

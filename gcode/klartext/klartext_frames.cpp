@@ -9,7 +9,7 @@ namespace {
 
 using Kind = Transforms::Kind;
 
-/// Puts a transform behind those that are there, or takes it out.
+/// Appends a transformation to the active ones, or removes it.
 void keep_order(Transforms& transforms, Kind kind, bool is_on) {
     auto& order = transforms.order;
     const auto found = std::find(order.begin(), order.end(), kind);
@@ -40,7 +40,7 @@ core::Mat3 linear_of(const Transforms& transforms, Kind kind, const PlaneAxes& a
     return linear;
 }
 
-/// Makes the transforms count. A shift alone is the local offset, which asks for no frame.
+/// Activates the transformations. A shift alone is the local offset and needs no frame.
 void use_transforms(Execution& execution) {
     const Transforms& transforms = execution.state.klartext->transforms;
     const PlaneAxes axes = axes_of(execution.modal().plane);
@@ -114,7 +114,7 @@ core::Result<void> tilt(Execution& execution) {
 
 } // namespace
 
-/// The first line of such a cycle names it, or for mirror images takes away what was there.
+/// The first line of such a cycle names it; for mirror images it also cancels the previous one.
 core::Result<void> change_coordinates(Execution& execution) {
     const Command& command = execution.block.command;
     if (command.number == 19) return tilt(execution);

@@ -15,19 +15,19 @@ namespace {
 
 using enum CommandKind;
 
-constexpr double shortest = 1e-9; // mm: what is shorter has no direction
+constexpr double shortest = 1e-9; // mm: anything shorter has no direction
 
-/// A motion of the contour: where it ends, and how it gets there.
+/// A motion of the contour: its end and its shape.
 struct PathElement {
     Position end;
     PlanePoint centre{};
     int turn = 0;  // 0 for a straight line
-    int turns = 1; // of an arc, as ArcFeed has them, without their sign
+    int turns = 1; // of an arc, as in ArcFeed but without sign
 };
 
 PlaneAxes plane_of(const Execution& execution) { return axes_of(execution.modal().plane); }
 
-/// The place that increments count from.
+/// The position to which incremental words refer.
 Position base_of(const Execution& execution) {
     const auto& corner = execution.state.klartext->corner;
     return corner ? corner->point : execution.modal().position;
@@ -50,7 +50,7 @@ core::Result<PlanePoint> known_pole(const Execution& execution) {
     return PlanePoint{*pole[0], *pole[1]};
 }
 
-/// Where the axis words lead, from the programmed corner where there is one.
+/// The target of the axis words, relative to the programmed corner if there is one.
 core::Result<Position> klartext_target(Execution& execution) {
     ModalState& modal = execution.modal();
     const Position before = modal.position;
@@ -60,7 +60,7 @@ core::Result<Position> klartext_target(Execution& execution) {
     return target;
 }
 
-/// The place that PR and PA name; a missing one is as it is now.
+/// The target of PR and PA; a missing one keeps its current value.
 core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
     const PlaneAxes axes = plane_of(execution);
     FEELER_TRY(Position target, klartext_target(execution));
@@ -91,14 +91,14 @@ core::Result<int> turn_of(const Execution& execution) {
     return turn;
 }
 
-/// An arc that is none.
+/// The error for an arc that is geometrically impossible.
 tl::unexpected<core::Error> refuse_arc(const Execution& execution, std::string_view why) {
     tl::unexpected<core::Error> error = refuse_statement(execution, why);
     error.value().code = wrong_arc;
     return error;
 }
 
-/// The radii to start and end of an arc around the pole may differ by what the control allows.
+/// Checks that the radii at start and end of an arc differ by no more than the control allows.
 core::Result<void> check_radii(Execution& execution, const PlanePoint& start, const PlanePoint& end,
                                const PlanePoint& centre) {
     const double to_start = std::hypot(start[0] - centre[0], start[1] - centre[1]);
@@ -165,7 +165,7 @@ core::Result<PathElement> of_radius(Execution& execution) {
     return contour;
 }
 
-/// The arc that goes on in the direction of the motion before it.
+/// The arc that continues the previous motion tangentially.
 core::Result<PathElement> tangent(Execution& execution) {
     PathElement contour;
     if (execution.block.command.kind == tangent_polar) {
@@ -217,7 +217,7 @@ core::Result<PathElement> contour_of(Execution& execution) {
     }
 }
 
-/// Remembers the direction in which a motion ends.
+/// Stores the direction at the end of a motion.
 void remember_direction(Execution& execution, const Position& start, const PathElement& contour,
                         const Position& end) {
     const PlaneAxes axes = plane_of(execution);
@@ -263,7 +263,7 @@ core::Result<void> go_along(Execution& execution, const PathElement& contour) {
     return {};
 }
 
-/// CC: the pole; without axis words, where the tool is.
+/// CC: sets the pole; without axis words, to the current position.
 core::Result<void> set_pole(Execution& execution) {
     const PlaneAxes axes = plane_of(execution);
     const Statement& statement = execution.statement;
@@ -317,7 +317,7 @@ using core::ErrorCode;
 
 constexpr int most_blocks_ahead = 1000;
 
-/// The block behind this one, when it rounds or chamfers.
+/// The next block, if it is a rounding or chamfer.
 core::Result<std::optional<Block>> corner_behind(const Execution& execution) {
     const Program& program = execution.library.program(execution.state.next.source);
     Block block;
@@ -343,7 +343,7 @@ core::Result<std::optional<Block>> corner_behind(const Execution& execution) {
     return std::optional<Block>{};
 }
 
-/// The size of the corner: a radius, or the length of the chamfer's legs.
+/// The size of the corner: a radius, or the leg of the chamfer.
 core::Result<double> size_of_corner(Execution& execution, const Block& block) {
     const ProgramParameters parameters(execution.state, execution.environment);
     for (const Word& word : block.words) {
@@ -374,7 +374,7 @@ bool is_known(const Position& place, const PlaneAxes& axes) {
     return place[axes.first] && place[axes.second];
 }
 
-/// The motion behind the corner, found by running the program ahead on a copy of the state.
+/// The motion after the corner, found by running the program ahead on a copy of the state.
 core::Result<std::optional<CornerSide>> motion_ahead(Execution& execution, const Position& end,
                                                      const CornerSide& before) {
     InterpreterState ahead = execution.state;
@@ -409,7 +409,7 @@ core::Error refusal(const Block& corner, std::string_view why) {
             fmt::format("{}: {}", rounds ? "RND" : "CHF", why)};
 }
 
-/// Why a corner cannot be laid; empty when it can, or need not be.
+/// Why a corner is impossible; empty when it is possible or not needed.
 std::string_view fault_of(const CornerCut& cut, CornerKind kind) {
     switch (cut.fit) {
     case CornerFit::no_length:
@@ -424,7 +424,7 @@ std::string_view fault_of(const CornerCut& cut, CornerKind kind) {
     }
 }
 
-/// Lays the corner between two motions, and remembers it.
+/// Fits the corner between two motions and stores it.
 core::Result<Position> lay_corner(Execution& execution, const Block& block, const Position& end,
                                   const CornerSide& first, double corner_size) {
     FEELER_TRY(const auto second, motion_ahead(execution, end, first));
@@ -475,7 +475,7 @@ core::Result<Position> end_before_corner(Execution& execution, const Position& e
     return lay_corner(execution, *block, end, before, corner_size);
 }
 
-/// RND, CHF: what end_before_corner has laid.
+/// RND, CHF: makes the corner that end_before_corner has stored.
 core::Result<void> make_corner(Execution& execution) {
     const KlartextState& before = *execution.state.klartext;
     if (before.looks_ahead || !before.corner || before.corner->is_done) return {};
@@ -495,7 +495,7 @@ core::Result<void> make_corner(Execution& execution) {
     }
     KlartextState& klartext = execution.state.klartext.write();
     klartext.corner->is_done = true;
-    // CT goes on in the direction of the motion that the rounding leads into.
+    // CT continues in the direction of the motion into which the rounding leads.
     klartext.direction = corner.direction;
     return {};
 }

@@ -65,7 +65,7 @@ core::Result<void> read_begin(KlartextReader& reader) {
     return {};
 }
 
-/// Tilted planes: what switches them off is read, what tilts is refused.
+/// Tilted planes: PLANE RESET is accepted, all others are refused.
 core::Result<void> read_plane(KlartextReader& reader) {
     if (!reader.accept("RESET"))
         return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
@@ -94,7 +94,7 @@ core::Result<void> read_keyword(KlartextReader& reader, const std::string& first
         reader.block.flow.span = reader.span_from(reader.begin);
         return {};
     }
-    if (first == "BLK" && reader.accept("FORM")) { // the stock is the set-up's
+    if (first == "BLK" && reader.accept("FORM")) { // the stock comes from the set-up
         reader.lexer.at = reader.lexer.line.size();
         return {};
     }
@@ -115,7 +115,7 @@ core::Result<void> read_keyword(KlartextReader& reader, const std::string& first
                          reader.begin, known ? ErrorCode::unsupported : ErrorCode::syntax);
 }
 
-/// Statements whose keyword may run into a number: `LBL1`, `FN18:`, `Q5`, `M3`, `X+10`.
+/// Statements whose keyword may be joined to a number: `LBL1`, `FN18:`, `Q5`, `M3`, `X+10`.
 core::Result<void> read_statement(KlartextReader& reader) {
     const std::string first = reader.letters();
     if (first == "LBL") return read_label(reader);
@@ -132,7 +132,7 @@ core::Result<void> read_statement(KlartextReader& reader) {
     return read_keyword(reader, first);
 }
 
-/// The block number, the comment and the `/` that may stand before a statement.
+/// Reads a block: its number, comment and `/` before the statement, then the statement.
 core::Result<void> read_block(KlartextReader& reader) {
     Lexer& lexer = reader.lexer;
     if (lexer.accept('/')) reader.block.block_delete = 1;
@@ -158,7 +158,7 @@ core::Result<void> read_block(KlartextReader& reader) {
     return reader.next() == '\0' ? core::Result<void>{} : core::Result<void>(reader.stray());
 }
 
-/// The part of a line that decides whether the next one belongs to it.
+/// Whether a line ends with `~`, so that the next line belongs to the same block.
 bool goes_on(std::string_view line) {
     while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
     return line.ends_with('~');
@@ -224,7 +224,7 @@ FlowIndex klartext_index(const Program& program, const Dialect& dialect) {
 
 namespace {
 
-constexpr int first_new_cycle = 200; // whose parameters are Q parameters
+constexpr int first_new_cycle = 200; // cycles from here on have Q parameters
 
 constexpr int cycles[] = {1,   7,   8,   9,   10,  11,  13,  19,  32,  200, 201,
                           202, 203, 205, 206, 207, 208, 209, 220, 221, 247};
@@ -238,7 +238,7 @@ void set_label(KlartextReader& reader, std::string name) {
 
 } // namespace
 
-/// A number, or a name in quotation marks, which it keeps.
+/// A number, or a name with its quotation marks.
 core::Result<void> read_label_name(KlartextReader& reader) {
     Lexer& lexer = reader.lexer;
     const char c = reader.next();
@@ -288,12 +288,13 @@ core::Result<void> read_repeats(KlartextReader& reader) {
     if (!reader.accept("REP")) return {};
     FEELER_TRY(reader.block.flow.condition, reader.operand());
     reader.block.flow.has_condition = true;
-    if (!reader.lexer.accept('/')) return {}; // what is left to do, shown by the control
+    if (!reader.lexer.accept('/')) return {}; // repetitions left, shown by the control
     if (auto left = reader.operand(); !left) return tl::unexpected(std::move(left).error());
     return {};
 }
 
-/// Of `TNC:\dir\name.h` the name, as written.
+/// Reads the path of a program, such as `TNC:\dir
+/// ame.h`, as written.
 core::Result<void> read_program_name(KlartextReader& reader) {
     reader.next();
     const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
@@ -312,7 +313,7 @@ core::Result<void> read_program_name(KlartextReader& reader) {
 
 core::Result<void> read_call(KlartextReader& reader) {
     Flow& flow = reader.block.flow;
-    // `CALL LBL1`: the keyword may run into the number.
+    // `CALL LBL1`: the keyword may be joined to the number.
     if (reader.accept("LBL")) {
         if (auto named = read_label_name(reader); !named) return named;
         if (auto repeats = read_repeats(reader); !repeats) return repeats;
@@ -389,7 +390,7 @@ core::Result<void> read_tool(KlartextReader& reader) {
 
 namespace {
 
-/// `Q200=2`; what stands before it is the cycle's name.
+/// `Q200=2`; the text before it is the name of the cycle.
 core::Result<void> read_cycle_parameters(KlartextReader& reader) {
     while (reader.next()) {
         Lexer& lexer = reader.lexer;
@@ -414,7 +415,7 @@ core::Result<void> read_cycle_parameters(KlartextReader& reader) {
     return {};
 }
 
-/// `X+10 IY-5`; for mirror images the letters alone.
+/// `X+10 IY-5`; for mirror images only the letters.
 core::Result<void> read_axes(KlartextReader& reader, bool with_values) {
     while (is_letter(reader.next())) {
         const size_t from = reader.lexer.at;
@@ -441,7 +442,7 @@ core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
                              from, ErrorCode::unsupported);
     if (cycle == 7 || cycle == 19) return read_axes(reader, true);
     if (cycle == 8) return read_axes(reader, false);
-    if (cycle == 13 || cycle == 32) { // the spindle's angle, tolerances
+    if (cycle == 13 || cycle == 32) { // spindle angle, tolerances
         reader.lexer.at = reader.lexer.line.size();
         return {};
     }

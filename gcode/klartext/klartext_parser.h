@@ -6,21 +6,21 @@
 
 namespace gcode {
 
-/// Reads a block of Heidenhain Klartext. With the lines that `~` joins to it, it is one text.
+/// Parses a block of Heidenhain Klartext. Lines joined by `~` are one text.
 ///
-/// Effect: `block` is overwritten but for its line and text.
-/// Errors: syntax with line, column and what stands there; unsupported for keywords, functions and
-///         cycles that this version does not carry out.
+/// Effect: overwrites `block` except its line and text.
+/// Errors: syntax with line, column and the text in question; unsupported for keywords, functions
+///         and cycles that are not implemented.
 core::Result<void> parse_klartext(std::string_view text, uint32_t line, const Dialect& dialect,
                                   Block& block);
 
-/// The text of a block that begins at a line: `~` at the end of a line joins the next one to it.
+/// The text of the block that starts at a line: `~` at the end of a line joins the next line to it.
 std::string_view klartext_block(const Program& program, uint32_t line);
 
-/// How many lines a block has.
+/// The number of lines of a block.
 uint32_t lines_of(std::string_view text);
 
-/// Where a place in a block of several lines is: its line, and the column in that.
+/// Converts a position in a block of several lines to its line and the column in that line.
 core::SourceSpan place_in_lines(std::string_view text, core::SourceSpan where);
 
 /// The labels of a program.

@@ -14,7 +14,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// `F500`, `FQ5`, `FMAX`, `FAUTO`, or an F that says nothing.
+/// `F500`, `FQ5`, `FMAX`, `FAUTO`, or an F without a value, which has no effect.
 core::Result<void> read_feed(KlartextReader& reader) {
     Lexer& lexer = reader.lexer;
     const size_t from = lexer.at;
@@ -38,7 +38,7 @@ core::Result<void> read_feed(KlartextReader& reader) {
     return reader.word('F', from);
 }
 
-/// R0, RL and RR; the radius of CR and RND; or an R that says nothing.
+/// R0, RL and RR; the radius of CR and RND; or an R without a value, which has no effect.
 core::Result<void> read_radius(KlartextReader& reader) {
     Lexer& lexer = reader.lexer;
     const size_t from = lexer.at;
@@ -72,7 +72,7 @@ core::Result<void> read_turn(KlartextReader& reader) {
     return {};
 }
 
-/// M codes that other words follow which are not those of the motion.
+/// Skips the words after an M code that belong to it and not to the motion.
 core::Result<void> skip_arguments(KlartextReader& reader, int code) {
     if (code == 140) reader.lexer.at = reader.lexer.line.size(); // MB MAX; it is refused
     const std::string_view letters = code == 118                  ? "XYZABCUVW"
@@ -188,7 +188,7 @@ tl::unexpected<core::Error> KlartextReader::stray() {
 core::Result<void> read_m_word(KlartextReader& reader) {
     Lexer& lexer = reader.lexer;
     const size_t from = lexer.at++;
-    if (!lexer.is_at_number()) return {}; // an M that says nothing
+    if (!lexer.is_at_number()) return {}; // an M without a number has no effect
     FEELER_TRY(const Number number, lexer.number());
     const auto code = static_cast<int>(std::clamp(number.value, -1.0, 1e6));
     Command& command = reader.block.command;
@@ -204,8 +204,8 @@ core::Result<void> read_m_word(KlartextReader& reader) {
     case 91:
         reader.add_word('G', 53.0, from);
         return {};
-    case 97: // small steps of a compensated contour
-    case 98: // its open corners
+    case 97: // small steps in a compensated contour
+    case 98: // open corners in a compensated contour
         return {};
     case 99:
         command.calls_cycle = true;
@@ -261,10 +261,10 @@ core::Result<int> read_target(KlartextReader& reader) {
 
 namespace {
 
-/// What FN 1 to FN 8 and FN 13 write between their operands.
+/// The operators of FN 1 to FN 8 and FN 13.
 struct ArithmeticFunction {
     int number;
-    std::string_view sign; // empty: there is one operand, after the name
+    std::string_view sign; // empty: one operand after the name
     std::string_view name;
     Operation operation;
 };
@@ -377,7 +377,7 @@ core::Result<void> read_function(KlartextReader& reader) {
         if (comparison.number == number) return read_jump(reader, comparison);
     if (number == 14) return read_error(reader);
     if (number == 18) return read_system_datum(reader);
-    if (number == 15 || number == 16 || number == 20) { // prints, or waits for the machine
+    if (number == 15 || number == 16 || number == 20) { // prints or waits for the machine
         reader.lexer.at = reader.lexer.line.size();
         reader.block.command.kind = CommandKind::note;
         return {};

@@ -8,25 +8,24 @@
 
 namespace gcode {
 
-/// A block of Klartext while it is read.
+/// A block of Klartext while it is parsed.
 struct KlartextReader {
     Lexer lexer;
     const Dialect& dialect;
     Block& block;
     size_t begin = 0; // of the statement
 
-    /// The next character that counts, which stays to be read; comments on the way are taken. NUL
-    /// at the end.
+    /// The next significant character, not consumed; comments before it are stored. NUL at the end.
     char next();
 
-    /// The letters that stand together here, upper case; they stay to be read.
+    /// The run of letters at this position, in upper case, not consumed.
     std::string letters();
 
-    /// Whether exactly this word, or letters that begin like this, come next; read then.
+    /// Consumes exactly this word, or this prefix, if it comes next.
     bool accept(std::string_view keyword);
     bool accept_prefix(std::string_view prefix);
 
-    /// Reads a number or parameter and adds it as a word. The word begins where `from` says.
+    /// Reads a number or parameter and adds it as a word that starts at `from`.
     core::Result<void> word(char letter, size_t from, Addressing addressing = Addressing::absolute);
     void add_word(char letter, double value, size_t from);
 
@@ -37,7 +36,7 @@ struct KlartextReader {
     tl::unexpected<core::Error> refuse(std::string message, size_t from,
                                        core::ErrorCode code = core::ErrorCode::syntax);
 
-    /// That what stands here has no meaning in this statement.
+    /// The error that the text at this position is not allowed in this statement.
     tl::unexpected<core::Error> stray();
 };
 
@@ -57,7 +56,7 @@ core::Result<int> read_whole(KlartextReader& reader, std::string_view behind);
 core::Result<int> read_target(KlartextReader& reader);
 core::Result<void> set_result(KlartextReader& reader, int target, Expression value);
 
-// What stands behind the first keyword of a statement.
+// Read the rest of a statement after its first keyword.
 core::Result<void> read_tool(KlartextReader& reader);       // TOOL CALL, TOOL DEF
 core::Result<void> read_cycle(KlartextReader& reader);      // CYCL DEF, CYCL CALL
 core::Result<void> read_function(KlartextReader& reader);   // FN 0: ...

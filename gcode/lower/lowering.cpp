@@ -12,11 +12,11 @@ bool is_known(const core::AxisPosition& position) {
     return position[0] && position[1] && position[2];
 }
 
-/// How far a chord may be from the arc that it stands for.
+/// Largest distance of a chord from its arc, mm.
 constexpr double chord_error = 0.001;
 
-/// An arc's axis in the machine: 0 X, 1 Y, 2 Z, and whether it keeps its direction; empty when the
-/// offsets turn it out of these.
+/// The axis of an arc in the machine (0 X, 1 Y, 2 Z) and whether the arc keeps its direction; empty
+/// when the offsets tilt it away from these axes.
 struct ArcAxis {
     int normal;
     bool is_mirrored;
@@ -34,13 +34,13 @@ std::optional<ArcAxis> arc_axis(const Offsets& offsets, const PlaneAxes& axes) {
         if (linear[axis][normal] != 0.0 || linear[normal][axis] != 0.0) return std::nullopt;
     const double a = linear[first][first], b = linear[second][first];
     const double c = linear[first][second], d = linear[second][second];
-    // A circle stays one where both directions keep their angle and are stretched alike.
+    // A circle stays a circle if both directions stay perpendicular and are scaled alike.
     if (std::abs(a * b + c * d) > 1e-12 || std::abs(a * a + c * c - b * b - d * d) > 1e-12)
         return std::nullopt;
     return ArcAxis{normal, a * d - b * c < 0.0};
 }
 
-/// The arc of a command in program coordinates.
+/// The angle of an arc command, in program coordinates.
 double angle_of(const ArcFeed& command, const Position& from) {
     const PlaneAxes axes = axes_of(command.plane);
     const double start[2] = {*from[axes.first], *from[axes.second]};
@@ -90,7 +90,7 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
     return ends;
 }
 
-/// One overload per command that does something to the machine or to the offsets.
+/// One overload for each command that affects the machine or the offsets.
 struct Visitor {
     Lowering& lowering;
     std::vector<core::Event> events;
@@ -111,7 +111,7 @@ struct Visitor {
         }
     }
 
-    /// The way of the tip seen from the work, where both of its ends are known.
+    /// The path of the tip relative to the work, if both of its ends are known.
     void follow_tip(core::Motion& motion) const {
         const Offsets& offsets = lowering.offsets;
         if (!offsets.machine) return;
@@ -132,7 +132,7 @@ struct Visitor {
         motion.kind = kind;
         motion.from = lowering.machine;
         Position there = machine_from_program(lowering.offsets, end);
-        // An axis that was not told to move is where it was, to the last bit.
+        // An axis that does not move keeps its value exactly.
         const Position here = program_from_machine(lowering.offsets, lowering.machine);
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const bool stays = here[axis] == end[axis] || is_fixed_to_work(lowering.offsets);

@@ -7,27 +7,26 @@
 
 namespace gcode {
 
-/// Turns canonical commands into motions of the machine. A plain value: where the machine is, and
-/// which offsets are active, at the next command.
+/// Turns canonical commands into motions of the machine. A plain value: the position of the machine
+/// and the active offsets before the next command.
 struct Lowering {
     Offsets offsets;
     Position machine;                   // gauge line
     double spindle_speed = 0.0;         // rev/min
-    std::optional<size_t> other_axis{}; // the first axis that moved and that the machine lacks
-    bool moved_tilted = false; // moved while the tool is meant to leave the direction of Z, and
-                               // nobody knows how
+    std::optional<size_t> other_axis{}; // first axis that moved but that the machine does not have
+    bool moved_tilted = false;          // moved with the tool tilted, in a way that is not known
 
-    /// What a command does to the machine, in machine coordinates; empty for most modes and for
-    /// messages. A program stop is a dwell of no length: the machine comes to rest.
+    /// The events of a command in machine coordinates; empty for most modes and for messages. A
+    /// program stop is a dwell of zero length: the machine comes to rest.
     ///
-    /// A motion along an arc keeps its shape; one whose ends are not all known becomes a feed
-    /// between the coordinates that are, and one whose plane the offsets tilt or distort becomes
-    /// chords within 0.001 mm of it. Where the machine is known, a rotary axis that takes the
-    /// short way does, and a control that follows the tip gives paths of the tip.
+    /// An arc keeps its shape. An arc whose ends are not all known becomes a feed move between the
+    /// known coordinates; one whose plane the offsets tilt or distort becomes chords within 0.001
+    /// mm of it. If the machine is known, rotary axes that take the short way do so, and tool
+    /// centre point control gives paths of the tip.
     std::vector<core::Event> lower(const CanonicalCommand& command);
 };
 
-/// Before the first command; of a run that begins in a state.
+/// The state before the first command, or of a run that starts in a state.
 Lowering initial_lowering(const InterpreterState& state);
 Lowering initial_lowering(const Environment& environment);
 

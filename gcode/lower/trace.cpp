@@ -9,7 +9,7 @@
 namespace gcode {
 namespace {
 
-/// To a millionth, without trailing zeros and without a negative zero.
+/// Rounded to a millionth, without trailing zeros or negative zero.
 std::string number(double value) {
     std::string text = fmt::format("{:.6f}", value);
     text.erase(text.find_last_not_of('0') + 1);
@@ -19,7 +19,7 @@ std::string number(double value) {
 
 std::string place(const Position& position) {
     std::string text;
-    // Axes beyond X, Y and Z that stand at zero are mostly not there.
+    // Axes other than X, Y and Z that are at zero usually do not exist.
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (position[axis] && (axis < 3 || *position[axis] != 0.0))
             text += fmt::format(" {}={}", lower(axis_letters[axis]), number(*position[axis]));
@@ -56,7 +56,7 @@ std::string frame(const ProgramFrame& frame) {
     return text + number(frame.shift.x) + "," + number(frame.shift.y) + "," + number(frame.shift.z);
 }
 
-/// What stands behind the name of a command.
+/// The text after the name of a command.
 struct Details {
     std::string operator()(const StraightTraverse& command) const { return place(command.end); }
     std::string operator()(const StraightFeed& command) const {

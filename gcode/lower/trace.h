@@ -6,18 +6,18 @@
 
 namespace gcode {
 
-/// A command on one line without a line end, as `straight_feed x=10 y=0 z=-1 feed=200`. Numbers to
-/// a millionth; coordinates that nobody knows are left out.
+/// A command on one line without line end, such as `straight_feed x=10 y=0 z=-1 feed=200`. Numbers
+/// are rounded to a millionth; unknown coordinates are left out.
 std::string to_text(const CanonicalCommand& command);
 
-/// G54 to G59.3, P1 and on, or G500 without an offset.
+/// G54 to G59.3, P1 and up, or G500 without an offset.
 std::string name_of_offset(size_t index);
 
 /// XY, ZX, YZ, UV, WU or VW.
 std::string_view name_of(Plane plane);
 
-/// The commands of a program, one a line behind the line they come from, then the warnings of each
-/// block, and the error that stopped it: what golden files hold.
+/// The commands of a program, one on each line after its line number, then the warnings of each
+/// block and the error that stopped it: the format of golden files.
 std::string to_text(const Run& run);
 
 } // namespace gcode

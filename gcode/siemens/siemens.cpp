@@ -26,7 +26,7 @@ core::Result<void> say(Execution& execution) {
         FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), part));
         text += fmt::format("{:.12g}", value);
     }
-    if (text.empty()) return {}; // takes the last one off the screen
+    if (text.empty()) return {}; // clears the last one from the screen
     execution.column = use->span.column;
     execution.emit(Message{std::move(text)});
     return {};
@@ -96,7 +96,7 @@ core::Result<void> note_keywords(Execution& execution) {
     return {};
 }
 
-/// G25 and G26 with axes: limits of the working area; with S: of the spindle.
+/// G25 and G26 with axes set working-area limits, with S spindle limits.
 core::Result<void> note_limits(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     if (!entry || (entry->code->tenths != tenths(25) && entry->code->tenths != tenths(26)))
@@ -154,7 +154,7 @@ bool has_moved(const Execution& execution) {
                        });
 }
 
-/// What MCALL calls behind every block that moves.
+/// Runs the modal call of MCALL after each block with a move.
 core::Result<void> call_modal(Execution& execution) {
     const SiemensState& siemens = *execution.state.siemens;
     if (!siemens.modal_cycle && !siemens.modal_call) return {};
@@ -171,7 +171,7 @@ core::Result<void> call_modal(Execution& execution) {
                  {.line = execution.block.line, .column = 1});
 }
 
-/// M2, M30 and M17: a program that another one called goes back to it.
+/// M2, M30 and M17: a called program returns to its caller.
 core::Result<void> end_block(Execution& execution) {
     const CodeWord* stopping = execution.statement.of(ModalGroup::stopping);
     const bool ends =
@@ -269,7 +269,7 @@ std::optional<Value> siemens_variable(const InterpreterState& state, std::string
                                        : 0);
     if (name == "$p_f") return Value(from_mm(modal.feed.value_or(0.0), modal.unit));
     if (name == "$p_s" || name == "$p_s[1]") return Value(modal.speed);
-    // $AA_IM: in the machine's coordinates; $AA_IW and $P_EP: in those of the program.
+    // $AA_IM is in machine coordinates; $AA_IW and $P_EP are in program coordinates.
     const bool machine = name.starts_with("$aa_im[") || name.starts_with("$aa_mm[");
     const bool program =
         name.starts_with("$aa_iw[") || name.starts_with("$p_ep[") || name.starts_with("$aa_mw[");
@@ -289,7 +289,8 @@ namespace {
 using core::OffsetNumber;
 using core::ToolNumber;
 
-/// The number of T="NAME": itself where it is one, else names are counted as they come.
+/// The number of T="NAME": the name itself if it is a number, else its number in order of
+/// appearance.
 int number_of_name(Execution& execution, const SiemensArgument& name) {
     int number = 0;
     const char* end = name.text.data() + name.text.size();
@@ -309,7 +310,7 @@ int number_of_name(Execution& execution, const SiemensArgument& name) {
     return number;
 }
 
-/// The length of the edge that is on counts along the axis of the plane's normal.
+/// Applies the length of the active edge along the normal of the plane.
 void use_length(Execution& execution, core::SourceSpan where) {
     ModalState& modal = execution.modal();
     const int edge = execution.state.siemens->edge;
@@ -343,7 +344,7 @@ void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {
         turn_siemens_spindle(execution, 5);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
-    // MD20270 as delivered: the first edge is on behind a change.
+    // MD20270 as delivered: the first edge is active after a tool change.
     const Word* edge = execution.statement.word('D');
     execution.state.siemens.write().edge = 1;
     if (!edge) use_length(execution, where);
@@ -389,7 +390,7 @@ core::Result<void> use_siemens_edge(Execution& execution) {
     execution.column = word->span.column;
     const ModalState& modal = execution.modal();
     const SiemensState& siemens = *execution.state.siemens;
-    // MD22550: where no M6 is said, the tool is changed with T.
+    // MD22550: on a machine without M6, T changes the tool.
     const bool with_t = edge > 0 && !siemens.changes_with_m6 && !siemens.changes_with_t
                         && modal.selected_tool && !modal.tool;
     if (with_t) {
@@ -408,7 +409,7 @@ core::Result<void> use_siemens_edge(Execution& execution) {
 core::Result<void> set_siemens_radius(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
     if (!entry && execution.modal().compensation == Side::none) return {};
-    // D is an edge of the tool here, and no number of an offset.
+    // D is the cutting edge here, not the number of an offset.
     Statement without = execution.statement;
     without.words['D' - 'A'] = nullptr;
     Execution shared{execution.library, execution.environment, execution.dialect, execution.block,

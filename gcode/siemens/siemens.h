@@ -6,22 +6,21 @@
 
 namespace gcode {
 
-/// Carries out a block of native Siemens that is no flow statement.
+/// Runs a block of native Siemens that is not a flow statement.
 core::Result<void> run_siemens(Execution& execution);
 
-/// G290 behind G291: the program goes on in native Siemens.
+/// G290 after G291: the program continues in native Siemens.
 ///
-/// Errors: unsupported where the program began in the ISO language.
+/// Errors: unsupported if the program started in the ISO language.
 core::Result<void> leave_iso(Execution& execution);
 
-/// Whether the state may change its levels of calls in this block.
+/// Whether the call level may change in this block.
 bool changes_levels_in_siemens(const Statement& statement, const InterpreterState& state);
 
-/// The value of a variable in which the control shows its state, such as `$aa_im[x]`; empty when
-/// it is none that is known here.
+/// The value of a system variable such as `$aa_im[x]`; empty if it is not supported.
 std::optional<Value> siemens_variable(const InterpreterState& state, std::string_view name);
 
-// The topics, a source for each.
+// Parts of a block.
 core::Result<void> use_siemens_words(Execution& execution);     // unused words, units, feed
 core::Result<void> use_siemens_tool(Execution& execution);      // T, M6
 core::Result<void> use_siemens_edge(Execution& execution);      // D
@@ -29,25 +28,25 @@ core::Result<void> select_siemens_offset(Execution& execution); // G54 G500 G505
 core::Result<void> set_siemens_radius(Execution& execution);    // G40 G41 G42
 core::Result<void> change_siemens_frame(Execution& execution);  // TRANS ROT SCALE MIRROR
 core::Result<void> set_pole(Execution& execution);              // G110 G111 G112
-core::Result<void> move_in_siemens(Execution& execution);       // G0 to G3, CIP, CT, polar places
-core::Result<void> go_to_fixed_place(Execution& execution);     // G74 G75
+core::Result<void> move_in_siemens(Execution& execution);   // G0 to G3, CIP, CT, polar positions
+core::Result<void> go_to_fixed_place(Execution& execution); // G74 G75
 core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordUse& use);
-/// The drilling cycles and patterns of holes.
+/// Drilling cycles and hole patterns.
 core::Result<void> run_hole_cycle(Execution& execution, const SiemensKeywordUse& use);
 core::Result<void> drill_here(Execution& execution, const SiemensDrilling& cycle);
 core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordUse& use);
 
-/// The values of a cycle's brackets in their order; empty where one is left out.
+/// The parameters of a cycle in order; empty where one is left out.
 core::Result<std::vector<std::optional<double>>> cycle_values(Execution& execution,
                                                               const SiemensKeywordUse& use);
 
-/// The keyword of a kind that the block has; null when it has none.
+/// The block's keyword of a kind; null when it has none.
 const SiemensKeywordUse* use_of(const Execution& execution, SiemensAction action);
 
 /// The flow step of the block, for values of arguments and for calls.
 FlowStep flow_step_of(Execution& execution);
 
-/// Turns the spindle as M3, M4 or M5 does; other numbers are M5.
+/// Sets the spindle as with M3, M4 or M5; other numbers act as M5.
 void turn_siemens_spindle(Execution& execution, int code);
 
 } // namespace gcode

@@ -10,7 +10,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// The values of a cycle's brackets.
+/// The parameters of a cycle.
 class Values {
 public:
     Values(std::vector<std::optional<double>> values, LengthUnit unit)
@@ -25,7 +25,7 @@ public:
         return static_cast<int>(std::clamp(plain(index, absent), -1e6, 1e6));
     }
 
-    /// A digit of a value that tells how others are meant, from the right.
+    /// A digit of a mode parameter, counted from the right.
     int digit(size_t index, int place) const {
         return static_cast<int>(
             std::fmod(std::floor(std::abs(plain(index)) / std::pow(10.0, place)), 10.0));
@@ -50,7 +50,7 @@ constexpr SiemensThread threads[] = {
     {14, 2},   {16, 2},   {18, 2.5}, {20, 2.5}, {22, 2.5}, {24, 3},   {27, 3},
     {30, 3.5}, {33, 3.5}, {36, 4},   {39, 4},   {42, 4.5}, {45, 4.5}, {48, 5}};
 
-/// MPIT, a size, or PIT, a pitch; the sign is the direction of the thread.
+/// The pitch from MPIT, a thread size, or PIT, a pitch; the sign gives the direction of the thread.
 core::Result<double> pitch_of(const SiemensKeywordUse& use, const Values& values, size_t mpit,
                               size_t pit, size_t unit) {
     if (values.plain(unit) > 1.0)
@@ -69,7 +69,7 @@ core::Result<double> pitch_of(const SiemensKeywordUse& use, const Values& values
                                   std::abs(size)));
 }
 
-/// Which values stand behind those of the older controls: GMODE, DMODE and AMODE.
+/// Index of the first parameter that the older controls do not have: GMODE, DMODE and AMODE.
 size_t first_mode_of(int number) {
     switch (number) {
     case 81:
@@ -86,7 +86,7 @@ size_t first_mode_of(int number) {
     }
 }
 
-/// What the geometry's mode says and is not done here.
+/// Refuses modes that are not implemented.
 core::Result<void> check_modes(const Execution& execution, const SiemensKeywordUse& use,
                                const Values& values, int number) {
     const size_t first = first_mode_of(number);
@@ -213,7 +213,7 @@ core::Result<SiemensDrilling> drilling_of(Execution& execution, const SiemensKey
     cycle.retract = values.length(0);
     cycle.reference = values.length(1);
     cycle.safety = std::abs(values.length(2));
-    // The relative depth counts where both are given.
+    // The relative depth is used if both are given.
     const bool relative = values.plain(4) != 0.0 || !values.has(3);
     cycle.bottom = relative ? cycle.reference - std::abs(values.length(4)) : values.length(3);
     if (auto checked = check_modes(execution, use, values, cycle.number); !checked)

@@ -19,7 +19,7 @@ struct SiemensHole {
     const SiemensDrilling& cycle;
     size_t normal;
     double rate;  // mm/min
-    double above; // the reference plane with the safety distance
+    double above; // reference plane plus safety distance
 
     void rapid(double height) {
         Position end = execution.modal().position;
@@ -33,7 +33,7 @@ struct SiemensHole {
     }
     void feed(double height) { feed(height, rate); }
 
-    /// Below zero: in turns of the spindle.
+    /// A negative time is in spindle revolutions.
     void dwell(double time) {
         const double speed = execution.modal().speed;
         if (time > 0.0) execution.emit(Dwell{time});
@@ -59,11 +59,11 @@ core::Result<double> modal_rate(const Execution& execution, int number) {
     return *modal.feed * modal.speed;
 }
 
-/// How deep the strokes of CYCLE83 lead below the reference plane.
+/// The depths of the strokes of CYCLE83 below the reference plane.
 ///
 /// Source: SINUMERIK 840D, Programming Guide Cycles (PGZ), "Deep hole drilling - CYCLE83": each
-/// stroke is shorter by the degression until it would be less than that; then as long as that, and
-/// the last two alike.
+///         stroke is shorter than the previous one by the degression until it would be shorter than
+///         that amount; then the strokes have that length, and the last two are equal.
 std::vector<double> depths_of(const SiemensDrilling& cycle) {
     const double total = cycle.reference - cycle.bottom, degression = cycle.degression;
     double stroke = cycle.reference - cycle.first_depth;
@@ -110,7 +110,7 @@ core::Result<void> drill_deep(SiemensHole& hole) {
     return {};
 }
 
-/// CYCLE84 and CYCLE840: in and out in feeds, the spindle reversed between them.
+/// CYCLE84 and CYCLE840: feed in and out with the spindle reversed in between.
 core::Result<void> tap_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     Execution& execution = hole.execution;
@@ -137,7 +137,7 @@ core::Result<void> tap_hole(SiemensHole& hole) {
     return {};
 }
 
-/// CYCLE86: off the wall with a spindle that stands, and back over the middle.
+/// CYCLE86: off the wall with the spindle stopped, out, and back to the centre.
 void bore_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     Execution& execution = hole.execution;
@@ -159,7 +159,7 @@ void bore_hole(SiemensHole& hole) {
     turn_siemens_spindle(execution, cycle.direction);
 }
 
-/// CYCLE87 and CYCLE88: the operator starts the way out.
+/// CYCLE87 and CYCLE88: the operator starts the retract.
 void bore_and_wait(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     turn_siemens_spindle(hole.execution, cycle.direction);
@@ -205,8 +205,8 @@ struct HolePlace {
     double first, second;
 };
 
-/// The holes of HOLES1 (SPCA, SPCO, STA1, FDIS, DBH, NUM) in the order that begins at the end of
-/// the row nearer to the tool, or of HOLES2 (CPA, CPO, RAD, STA1, INDA, NUM).
+/// The holes of HOLES1 (SPCA, SPCO, STA1, FDIS, DBH, NUM), starting at the end of the row nearer to
+/// the tool, or of HOLES2 (CPA, CPO, RAD, STA1, INDA, NUM).
 std::vector<HolePlace> places_of(const Execution& execution, bool row,
                                  const std::vector<double>& given, int count) {
     const auto mm = [&](double value) { return to_mm(value, execution.modal().unit); };

@@ -19,7 +19,7 @@ tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string messag
     return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
 }
 
-/// A flow statement, with what it needs of the program around it.
+/// A flow statement with the parts of the program that it needs.
 class SiemensFlowing {
 public:
     explicit SiemensFlowing(const FlowStep& step)
@@ -54,7 +54,7 @@ private:
     const FlowIndex& index_;
 };
 
-/// The mark of this line that is no label.
+/// The mark of this line that is not a label.
 const FlowMark* SiemensFlowing::structure() const {
     const FlowMark* mark = index_.at(line_);
     while (mark && mark->kind == label) {
@@ -98,8 +98,8 @@ std::optional<uint32_t> SiemensFlowing::last_in(const std::string& name, uint32_
     return found;
 }
 
-/// GOTOF looks towards the end of the program, GOTOB towards its beginning, GOTO and GOTOC first
-/// there, then here.
+/// GOTOF searches towards the end of the program, GOTOB towards its start, GOTO and GOTOC first
+/// forwards, then backwards.
 std::optional<uint32_t> SiemensFlowing::line_of(const SiemensJump& jump) const {
     const ProgramLines lines = lines_around(index_, line_);
     if (jump.way == JumpWay::to_start) return lines.begin;
@@ -143,7 +143,7 @@ core::Result<void> SiemensFlowing::begin_loop(std::string_view end) {
     return go_behind(line);
 }
 
-/// FOR, whose variable has its first value, or ENDFOR, which counts on.
+/// FOR, whose variable has its first value, or ENDFOR, which increments it.
 core::Result<void> SiemensFlowing::count_on() {
     ProgramParameters parameters(step_.state, step_.environment);
     const bool begins = step_.block.flow.kind == for_loop;
@@ -180,8 +180,8 @@ core::Result<void> SiemensFlowing::count_on() {
     return begins ? go_behind(other) : core::Result<void>{};
 }
 
-/// `REPEAT BEGIN END P=5`: the lines from one label to the other, or to this block, five times
-/// more. Only blocks before this one are looked at, as on the control.
+/// `REPEAT BEGIN END P=5`: repeats the lines from one label to the other, or to this block, five
+/// more times. Only blocks before this one are searched, as on the control.
 core::Result<void> SiemensFlowing::repeat_part() {
     const auto& jumps = step_.block.siemens.jumps;
     auto& repeats = step_.state.frames.back().repeats;
@@ -244,7 +244,7 @@ core::Result<void> SiemensFlowing::run() {
         if (auto found = partner("IF"); !found) return tl::unexpected(std::move(found).error());
         return {};
     default:
-        return {}; // LOOP and REPEAT, which only mark a place
+        return {}; // LOOP and REPEAT only mark a position
     }
 }
 
@@ -290,11 +290,11 @@ core::Result<void> run_siemens_flow(const FlowStep& step) {
     switch (step.block.flow.kind) {
     case endless_loop:
     case repeat:
-        return {}; // says where something is; not worth an index of all lines
+        return {}; // they only mark a position; an index of all lines is not needed
     case declaration:
         return declare_variables(step);
     case procedure:
-        return {}; // its parameters were set by the call
+        return {}; // the call has set its parameters
     case call_program:
         return call_siemens_program(step);
     case FlowKind::give_back:
@@ -306,7 +306,7 @@ core::Result<void> run_siemens_flow(const FlowStep& step) {
 
 namespace {
 
-/// NAME of NAME, NAME.SPF, `/_N_SPF_DIR/_N_NAME_SPF`, in capitals.
+/// Reduces NAME, NAME.SPF and `/_N_SPF_DIR/_N_NAME_SPF` to NAME, in upper case.
 std::string plain_name(const std::string& written) {
     std::string name = written.substr(written.find_last_of("/\\:") + 1);
     std::transform(name.begin(), name.end(), name.begin(), upper);
@@ -324,7 +324,7 @@ std::optional<Place> place_in(ProgramLibrary& library, uint32_t source, const st
     return mark ? std::optional(Place{source, mark->line + 1}) : std::nullopt;
 }
 
-/// Where a program begins: behind its header in this file or the main one, else in a file of the
+/// The start of a program: after its header in this file or the main one, else in a file of the
 /// search path.
 core::Result<Place> place_of_program(const FlowStep& step, const std::string& name) {
     if (const auto own = place_in(step.library, step.state.next.source, name)) return *own;
@@ -345,7 +345,7 @@ core::Result<Place> place_of_program(const FlowStep& step, const std::string& na
                       step.block.siemens.name_span);
 }
 
-/// PROC of a program: the first block that says something.
+/// The PROC of a program: its first block that is not empty.
 core::Result<Block> head_of(const FlowStep& step, Place begin) {
     const Program& program = step.library.program(begin.source);
     Block block;

@@ -28,7 +28,7 @@ core::Mat3 rotation_of_words(const Execution& execution) {
     return turn;
 }
 
-/// What one statement does to coordinates; of TRANS along the axes beyond Z as well.
+/// The transformation of one statement; for TRANS also along the axes beyond Z.
 core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction action,
                                    AxisValues& others) {
     ProgramFrame step;
@@ -62,7 +62,7 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
     return step;
 }
 
-/// Puts the frame into effect. A shift alone is the local offset, which asks for no frame.
+/// Activates the frame. A shift alone is the local offset and needs no frame.
 void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues& others) {
     execution.state.siemens.write().frame = frame;
     Offsets offsets = execution.modal().offsets;

@@ -9,14 +9,14 @@ namespace {
 
 using enum FlowKind;
 
-/// Whether a line may hold a label or a statement: it goes on with a name behind its number.
+/// Whether a line may hold a label or a statement, that is, a name after its number.
 bool may_hold_mark(std::string_view rest) {
     if (rest.size() < 2) return false;
     const auto names = [](char c) { return is_letter(c) || c == '_'; };
     return names(rest[0]) && names(rest[1]);
 }
 
-/// Finds what belongs together while the lines go by.
+/// Matches the starts and ends of statements line by line.
 class Matching {
 public:
     explicit Matching(FlowIndex& index) : index_(index) {}
@@ -34,7 +34,7 @@ public:
             return;
         case otherwise:
             if (!close(self, {if_branch})) return;
-            index_.marks[self].partner = 0; // until its ENDIF comes
+            index_.marks[self].partner = 0; // until its ENDIF is found
             open_.push_back(self);
             return;
         case end_if:

@@ -41,7 +41,7 @@ constexpr std::string_view no_space_contour =
     "cutter radius compensation in space is not supported yet";
 constexpr std::string_view no_zones = "protection zones of the program are not supported";
 
-// Sorted by name. SINUMERIK 840D sl, Programming Manual Job Planning, "Tables", has them all.
+// Sorted by name. All are in SINUMERIK 840D sl, Programming Manual Job Planning, "Tables".
 constexpr SiemensKeyword keywords[] = {
     {"ACC", noted_address},
     {"ACCLIMA", noted_address},

@@ -14,7 +14,7 @@ namespace {
 using core::ErrorCode;
 using Point = std::array<double, 2>;
 
-// Motions that keywords begin and that stay on, as G codes do.
+// Modal motions that are started by keywords, not G codes.
 constexpr MotionCode by_point = 9010;   // CIP
 constexpr MotionCode by_tangent = 9020; // CT
 
@@ -38,7 +38,7 @@ core::Result<Point> plane_point(const Execution& execution, const Position& plac
     return Point{*place[axes.first], *place[axes.second]};
 }
 
-/// Emits an arc of the plane and goes there.
+/// Emits an arc in the plane and moves to its end.
 core::Result<void> go_along_arc(Execution& execution, const Position& end, const Point& centre,
                                 int turns) {
     ModalState& modal = execution.modal();
@@ -82,7 +82,7 @@ core::Result<void> go_straight(Execution& execution, const Position& end) {
     return {};
 }
 
-/// The place of RP and AP about the pole; what is not said is as it was said last.
+/// The target of RP and AP about the pole; a missing one keeps its last value.
 core::Result<Position> polar_target(Execution& execution) {
     const Statement& statement = execution.statement;
     const PlaneAxes axes = axes_of(execution.modal().plane);
@@ -145,7 +145,7 @@ const Word* between_word(const Execution& execution, size_t axis) {
     return nullptr;
 }
 
-/// CIP: the circle through where the tool is, the point of I1, J1, K1 and the end.
+/// CIP: the circle through the current position, the point of I1, J1, K1 and the end point.
 core::Result<void> move_by_point(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -179,7 +179,7 @@ core::Result<void> move_by_point(Execution& execution) {
     return go_along_arc(execution, end, centre, cross > 0.0 ? 1 : -1);
 }
 
-/// CT: the arc that goes on in the direction of the motion before it.
+/// CT: the arc that continues the previous motion tangentially.
 core::Result<void> move_tangentially(Execution& execution) {
     FEELER_TRY(const Position end, target_of(execution));
     const Point& direction = execution.modal().direction;
@@ -205,7 +205,7 @@ core::Result<void> move_tangentially(Execution& execution) {
     return go_along_arc(execution, end, centre, radius > 0.0 ? 1 : -1);
 }
 
-/// AR=: the angle that the arc opens, with its end or with its centre.
+/// AR=: the opening angle of the arc, with its end point or its centre.
 core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -239,7 +239,8 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     return go_along_arc(execution, end, centre, static_cast<int>(sign));
 }
 
-/// G331 and G332: with the spindle into the hole and back, the pitch along the tool.
+/// G331 and G332: synchronised with the spindle into the hole and out, with the pitch along the
+/// tool axis.
 core::Result<void> read_tapping(Execution& execution) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -255,7 +256,7 @@ core::Result<void> read_tapping(Execution& execution) {
     return {};
 }
 
-/// G33: the pitch is said for the axis that moves farther.
+/// G33: the pitch belongs to the axis with the longer travel.
 core::Result<void> cut_thread(Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* pitch = nullptr;
@@ -269,7 +270,7 @@ core::Result<void> cut_thread(Execution& execution) {
     return {};
 }
 
-/// Remembers the direction in which the block's last motion ends.
+/// Stores the direction at the end of the block's last motion.
 void remember_direction(Execution& execution, const Position& start) {
     if (execution.result.commands.empty()) return;
     const PlaneAxes axes = axes_of(execution.modal().plane);
@@ -351,11 +352,11 @@ core::Result<void> move_in_siemens(Execution& execution) {
         statement.has_axis_word()
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
-    if (!modal.motion) modal.motion = tenths(1); // as delivered: G1 is on at the start
+    if (!modal.motion) modal.motion = tenths(1); // as delivered: G1 is active at the start
     const Position start = modal.position;
     if (auto moved = move_by_mode(execution); !moved) return moved;
     remember_direction(execution, start);
-    // G63 is of its block alone.
+    // G63 is not modal.
     if (modal.motion == tenths(63)) modal.motion = tenths(1);
     return {};
 }
@@ -369,7 +370,7 @@ core::Result<void> set_pole(Execution& execution) {
     std::array<double, 2> pole{};
     const size_t plane_axes[] = {axes.first, axes.second};
     for (size_t i = 0; i < 2; ++i) {
-        // G110 counts from where the tool is, G111 from the program's zero, G112 from the last
+        // G110 is relative to the current position, G111 to the program zero, G112 to the last
         // pole.
         if (code == 110 && !modal.position[plane_axes[i]])
             return core::fail(ErrorCode::missing_value,

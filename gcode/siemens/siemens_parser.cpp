@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    /// A jump, loop or declaration shares its block with its number and label only.
+    /// A jump, loop or declaration may only have a block number and a label in its block.
     core::Result<void> check_flow() const {
         if (block_.flow.kind == FlowKind::none) return {};
         const auto numbers = [](const Word& some) { return some.letter == 'N'; };
@@ -73,7 +73,7 @@ private:
                           lexer_.span(begin, begin + length));
     }
 
-    /// `/`, `/0` to `/9`: first, or behind the block number.
+    /// `/`, `/0` to `/9`: first, or after the block number.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
         int number = 1;
@@ -155,7 +155,7 @@ private:
             begin, ErrorCode::unsupported);
     }
 
-    /// G74 and G75 name the machine's axes.
+    /// G74 and G75 take machine axes.
     bool names_machine_axes() const {
         return std::any_of(block_.words.begin(), block_.words.end(), [](const Word& some) {
             return some.letter == 'G' && (some.value == 74.0 || some.value == 75.0);
@@ -182,7 +182,7 @@ private:
                     .has_point = true});
     }
 
-    /// What stands behind `=`.
+    /// The value after `=`.
     core::Result<void> value(char letter, size_t begin, bool may_be_text) {
         Word entry{.letter = letter, .has_point = true};
         if (may_be_text && letter == 'T' && lexer_.peek() == '"') {
@@ -205,7 +205,7 @@ private:
         return add(entry);
     }
 
-    /// AC, IC, and of rotary axes DC, ACP and ACN.
+    /// AC, IC, and for rotary axes DC, ACP and ACN.
     bool take_addressing(Word& entry) {
         const size_t before = lexer_.at;
         lexer_.peek();
@@ -240,7 +240,8 @@ private:
         Number plain;
         FEELER_TRY(entry.number,
                    parse_value(lexer_, reader_.dialect.expressions, block_.pool, plain));
-        // What was read is the parameter's value; without its last step it is its number.
+        // The expression read so far gives the value of the parameter; without its last step it
+        // gives the number of the parameter.
         block_.pool.instructions.pop_back();
         --entry.number.count;
         return assignment(entry, begin);
@@ -305,7 +306,8 @@ private:
         ++lexer_.at;
         if (auto done = value(letter, begin, false); !done) return done;
         if (letter != 'P') return {};
-        // TURN counts the full turns before the arc itself, P of other controls all of them.
+        // TURN gives the number of full turns before the arc itself; P of other controls includes
+        // the arc.
         Word& turns = block_.words.back();
         if (!turns.expression) {
             turns.value += 1.0;
@@ -326,7 +328,7 @@ private:
     Block& block_;
 };
 
-/// The value of an address that has no effect on positions: `OVR=50`, `ACC[X]=80`.
+/// Skips the value of an address that has no effect on positions: `OVR=50`, `ACC[X]=80`.
 core::Result<void> SiemensLine::skip_value(size_t begin) {
     if (lexer_.accept('[')) {
         const size_t end = lexer_.line.find(']', lexer_.at);

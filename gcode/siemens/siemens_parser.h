@@ -6,11 +6,11 @@
 
 namespace gcode {
 
-/// Reads a line of native Siemens (SINUMERIK 840D).
+/// Parses a line of native Siemens (SINUMERIK 840D).
 ///
-/// Effect: `block` is overwritten but for its line and text.
-/// Errors: syntax with line, column and what stands there; unsupported for keywords and cycles that
-///         this version does not carry out.
+/// Effect: overwrites `block` except its line and text.
+/// Errors: syntax with line, column and the text in question; unsupported for keywords and cycles
+///         that are not implemented.
 core::Result<void> parse_siemens(std::string_view text, uint32_t line, const Dialect& dialect,
                                  Block& block);
 

@@ -63,7 +63,7 @@ core::Result<void> SiemensReader::arguments(std::vector<SiemensArgument>& values
             FEELER_TRY(const SiemensArgument value, argument());
             values.push_back(value);
         }
-        // `"R1 is "<<R1`: the parts of a text.
+        // `"R1 is "<<R1`: concatenation of strings.
         while (next() == '<' && lexer.line.substr(lexer.at).starts_with("<<")) {
             lexer.at += 2;
             FEELER_TRY(const SiemensArgument part, argument());
@@ -138,7 +138,7 @@ core::Result<void> ExpressionReader::siemens_constant() {
     return {};
 }
 
-/// `R5` and `R[...]`; the R is read.
+/// `R5` and `R[...]`; the R has been read.
 core::Result<void> ExpressionReader::siemens_parameter(size_t begin) {
     if (lexer_.peek() == '[') {
         ++lexer_.at;
@@ -184,7 +184,7 @@ core::Result<void> ExpressionReader::siemens_function(size_t begin, std::string_
     return expect(')');
 }
 
-/// A variable; of a system variable with the index in brackets, as part of its name.
+/// A variable; the index in brackets is part of the name of a system variable.
 core::Result<void> ExpressionReader::siemens_name(size_t begin, std::string_view name) {
     std::string stored;
     for (const char c : name) stored.push_back(lower(c));

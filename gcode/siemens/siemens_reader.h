@@ -8,23 +8,23 @@
 
 namespace gcode {
 
-/// The name that stands here, in capitals: letters, digits and `_`, before them a `$` of the
-/// control's own variables. It stays to be read.
+/// The name at this position in upper case, not consumed: letters, digits and `_`, for system
+/// variables with a leading `$`.
 std::string siemens_name_at(const Lexer& lexer);
 
-/// A block of native Siemens while it is read.
+/// A block of native Siemens while it is parsed.
 struct SiemensReader {
     Lexer lexer;
     const Dialect& dialect;
     Block& block;
 
-    /// The next character that counts, which stays to be read; NUL at the end and before a comment.
+    /// The next significant character, not consumed; NUL at the end and before a comment.
     char next() {
         const char c = lexer.peek();
         return c == ';' ? '\0' : c;
     }
 
-    /// Whether this name comes next, which is read then.
+    /// Consumes this name if it comes next.
     bool accept_name(std::string_view name);
 
     /// Whether a single `=` comes next.
@@ -32,10 +32,10 @@ struct SiemensReader {
 
     core::Result<void> expect(char wanted, std::string_view behind);
 
-    /// Reads an expression or a text.
+    /// Reads an expression or a string.
     core::Result<SiemensArgument> argument();
 
-    /// Reads `(...)`: values between commas, of which any may be left out.
+    /// Reads `(...)`: values separated by commas, of which any may be left out.
     core::Result<void> arguments(std::vector<SiemensArgument>& values);
 
     tl::unexpected<core::Error> refuse(std::string message, size_t from,
@@ -44,12 +44,12 @@ struct SiemensReader {
     }
 };
 
-/// Whether a name begins a statement that has the block for itself: IF, FOR, DEF, PROC, GOTOF ...;
-/// read then.
+/// Reads a statement that must have a block for itself, such as IF, FOR, DEF, PROC, GOTOF, if the
+/// name starts one.
 core::Result<bool> read_siemens_statement(SiemensReader& reader, const std::string& name,
                                           size_t begin);
 
-/// Reads the call of a program by its name, which is read: its arguments and how often.
+/// Reads the rest of a program call after its name: its arguments and the number of repetitions.
 core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, size_t begin);
 
 } // namespace gcode

@@ -10,27 +10,28 @@
 
 namespace gcode {
 
-/// A drilling cycle with its values as SINUMERIK's manuals name them, in mm, mm/min and s; program
-/// coordinates along the tool axis.
+/// A drilling cycle with its parameters named as in the SINUMERIK manuals, in mm, mm/min and s;
+/// program coordinates along the tool axis.
 struct SiemensDrilling {
     int number = 0;           // 81 to 89, 840
     double retract = 0.0;     // RTP
     double reference = 0.0;   // RFP
     double safety = 0.0;      // SDIS, above the reference plane
-    double bottom = 0.0;      // DP, or RFP less DPR
+    double bottom = 0.0;      // DP, or RFP minus DPR
     double dwell_below = 0.0; // DTB
     // CYCLE83
-    double first_depth = 0.0; // FDEP, or RFP less FDPR
-    double degression = 0.0;  // DAM; below zero a factor
+    double first_depth = 0.0; // FDEP, or RFP minus FDPR
+    double degression = 0.0;  // DAM; negative: a factor
     double dwell_above = 0.0; // DTS
     double feed_factor = 1.0; // FRF
     bool clears_chips = false;
     double least_peck = 0.0;  // MDEP
     double break_back = 1.0;  // VRT
     double dwell_final = 0.0; // DTD
-    double near = 0.0;        // DIS1: how far above the last depth a rapid ends; 0: by the depth
+    double near =
+        0.0; // DIS1: distance above the last depth at which a rapid ends; 0: from the depth
     // CYCLE84, CYCLE840
-    double pitch = 0.0; // below zero: to the left
+    double pitch = 0.0; // negative: left-hand thread
     double speed_in = 0.0, speed_out = 0.0;
     int direction_after = 5; // SDAC
     // CYCLE85
@@ -42,14 +43,14 @@ struct SiemensDrilling {
     bool operator==(const SiemensDrilling&) const = default;
 };
 
-/// What a control with native Siemens keeps between two blocks beside the modes.
+/// The state of a native Siemens control between two blocks besides the modes.
 struct SiemensState {
     std::array<double, 2> pole{};               // G110 to G112; program coordinates in the plane
-    std::optional<double> radius, angle_deg;    // RP and AP as said last
+    std::optional<double> radius, angle_deg;    // the last RP and AP
     std::optional<SiemensDrilling> modal_cycle; // MCALL
     std::optional<Frame> modal_call;            // MCALL of a program
     ProgramFrame frame;                         // TRANS, ROT, SCALE, MIRROR
-    int edge = 1;                               // D; 0 is none
+    int edge = 1;                               // D; 0: none
     bool changes_with_t = false;                // the machine has no M6
     bool changes_with_m6 = false;
     bool feeds_in_inches = false; // G700

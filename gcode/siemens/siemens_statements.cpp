@@ -22,7 +22,7 @@ constexpr Jump jump_ways[] = {{"GOTO", JumpWay::either},
                               {"GOTOF", JumpWay::forward},
                               {"GOTOS", JumpWay::to_start}};
 
-/// Statements that are a word alone.
+/// Statements of a single word.
 struct Mark {
     std::string_view name;
     FlowKind kind;
@@ -49,7 +49,7 @@ const Jump* jump_of(std::string_view name) {
     return found != std::end(jump_ways) ? &*found : nullptr;
 }
 
-/// Reads a statement whose name is read already.
+/// Reads a statement after its name.
 class Statements {
 public:
     Statements(SiemensReader& reader, size_t begin)
@@ -78,7 +78,7 @@ private:
         return true;
     }
 
-    /// Only a number, a label and what switches the block off may stand before a statement.
+    /// Only a block number, a label and `/` may come before a statement.
     core::Result<void> flow(FlowKind kind) {
         const auto numbers = [](const Word& word) { return word.letter == 'N'; };
         const bool clean =
@@ -99,7 +99,7 @@ private:
         return {};
     }
 
-    /// The target: a name, or the number of a block.
+    /// The target of a jump: a name or a block number.
     core::Result<std::string> target(std::string_view behind) {
         reader_.next();
         const size_t begin = reader_.lexer.at;
@@ -160,7 +160,7 @@ private:
         return alone(kind);
     }
 
-    /// `FOR I = 1 TO 10`: the variable's first value is an assignment of the block.
+    /// `FOR I = 1 TO 10`: the first value of the variable is an assignment of the block.
     core::Result<void> counting_loop() {
         if (auto begun = flow(for_loop); !begun) return begun;
         reader_.next();
@@ -195,7 +195,7 @@ private:
         return {};
     }
 
-    /// REPEAT alone begins a loop; with labels it runs a part of the program again.
+    /// REPEAT alone starts a loop; with labels it repeats a part of the program.
     core::Result<void> repeat() {
         if (reader_.next() == '\0') return alone(FlowKind::repeat);
         if (auto begun = flow(repeat_part); !begun) return begun;
@@ -240,7 +240,7 @@ private:
                               begin);
     }
 
-    /// A name, and `= value` where it has one.
+    /// A name, optionally with `= value`.
     core::Result<void> declare(SiemensType type, bool by_reference) {
         reader_.next();
         const size_t begin = reader_.lexer.at;
@@ -329,7 +329,7 @@ private:
         return read_siemens_call(reader_, std::string(named.text), begin_);
     }
 
-    /// `MCALL CYCLE81(...)`, `MCALL L100`, or MCALL alone, which ends it.
+    /// `MCALL CYCLE81(...)`, `MCALL L100`, or MCALL alone, which cancels it.
     core::Result<void> modal_call() {
         block_.siemens.is_modal_call = true;
         block_.command.kind = CommandKind::siemens;
@@ -372,7 +372,7 @@ core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, si
     block.siemens.name_span = reader.lexer.span_from(begin);
     if (reader.next() == '(')
         if (auto read = reader.arguments(block.siemens.arguments); !read) return read;
-    // P or P=: how often
+    // P or P=: number of repetitions
     if (reader.next() != '\0' && upper(reader.next()) == 'P') {
         ++reader.lexer.at;
         if (reader.is_at_equals()) ++reader.lexer.at;

@@ -13,7 +13,7 @@ using core::ErrorCode;
 
 constexpr std::string_view siemens_length_letters = "XYZIJKF";
 
-/// Whether a word other than those of axes, modes and tools has a use in its block.
+/// Whether a word other than those of axes, modes and tools is used in its block.
 bool is_used(const Execution& execution, const Word& word) {
     const auto* motion = execution.statement.of(ModalGroup::motion);
     const int code = motion ? motion->code->tenths : execution.modal().motion.value_or(tenths(1));
@@ -34,7 +34,7 @@ bool is_used(const Execution& execution, const Word& word) {
     case 'E':
         return !straight || by_point;
     default:
-        return word.letter != 'H'; // which goes to the machine's logic
+        return word.letter != 'H'; // H goes to the PLC
     }
 }
 
@@ -62,7 +62,7 @@ void note_assumed_siemens_units(Execution& execution) {
     }
 }
 
-/// G70 and G71 are of lengths alone; G700 and G710 of feeds as well, which are in mm otherwise.
+/// G70 and G71 affect lengths only; G700 and G710 also feeds, which are in mm otherwise.
 core::Result<void> set_siemens_feed(Execution& execution) {
     const CodeWord* units = execution.statement.of(ModalGroup::units);
     ModalState& modal = execution.modal();
@@ -87,7 +87,8 @@ core::Result<void> set_siemens_feed(Execution& execution) {
     return {};
 }
 
-/// The feed mode that a code of the spindle's surface speed brings along: G96 G95, G961 G94.
+/// Sets the feed mode that comes with the codes of constant surface speed: G95 with G96 and G97,
+/// G94 with G961 and G971.
 void set_mode_of_surface_speed(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
     if (!entry) return;
@@ -110,10 +111,11 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
-/// CYCLE800: what leaves the plane as it is, is read; a plane that is tilted is not.
+/// CYCLE800 is accepted if it leaves the plane unchanged; tilted planes are refused.
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
-    // FR, TC, ST, MODE, X0 Y0 Z0, A B C, X1 Y1 Z1, DIR, FR_I, DMODE; the name of TC is no value.
+    // FR, TC, ST, MODE, X0 Y0 Z0, A B C, X1 Y1 Z1, DIR, FR_I, DMODE; the name in TC is not a
+    // number.
     for (size_t i = 4; i < std::min<size_t>(values.size(), 13); ++i)
         if (values[i].value_or(0.0) != 0.0)
             return core::fail(ErrorCode::unsupported,
@@ -148,7 +150,7 @@ core::Result<void> select_siemens_offset(Execution& execution) {
     if (!entry) return {};
     const int code = static_cast<int>(std::lround(entry->word->value));
     Offsets offsets = execution.modal().offsets;
-    // G505 is the fifth of the settable offsets; G54 to G57 are the first four.
+    // G505 is the fifth settable offset; G54 to G57 are the first four.
     offsets.active = code == 500  ? no_work_offset
                      : code <= 57 ? static_cast<size_t>(code - 54)
                                   : static_cast<size_t>(code - 505 + 4);
