@@ -4,6 +4,7 @@ must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
     documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
+    documentation.py ROOT FEELER --update    first writes severity, meaning and cure of each rule into the manual
     documentation.py --self-check   checks this script against a small tree with known mistakes
 """
 import json
@@ -157,19 +158,43 @@ def undocumented(root, feeler):
     return found
 
 
-def undocumented_rules(root, feeler):
-    """Rules that SARIF lists and the manual does not, or with another severity."""
+RULE_ROW = re.compile(r"^\| `([a-z-]+)` \| .*\|$", flags=re.M)
+
+
+def cell(sentence):
+    """A sentence of the table of rules as a cell of the manual: without full stop and first capital."""
+    text = sentence.removesuffix(".")
+    return text[0].lower() + text[1:] if re.match(r"A |[A-Z][a-z]", text) else text
+
+
+def rule_rows(root, feeler):
+    """The rows that docs/manual/rules.md should have, by rule."""
     program = root / "assets" / "programs" / "clamped_plate.nc"
     sarif = subprocess.run([feeler, "check", str(program), "--format", "sarif"], capture_output=True, text=True,
                            check=False).stdout
+    return {rule["id"]: f"| `{rule['id']}` | {rule['defaultConfiguration']['level']} | "
+                        f"{cell(rule['shortDescription']['text'])} | {cell(rule['help']['text'])} |"
+            for rule in json.loads(sarif)["runs"][0]["tool"]["driver"]["rules"]}
+
+
+def undocumented_rules(root, feeler):
+    """Rules that SARIF lists and the manual does not, or in other words."""
     text = (root / "docs" / "manual" / "rules.md").read_text(encoding="utf-8")
-    listed = dict(re.findall(r"^\| `([a-z-]+)` \| (\w+) \|", text, flags=re.M))
-    found = []
-    for rule in json.loads(sarif)["runs"][0]["tool"]["driver"]["rules"]:
-        level = rule["defaultConfiguration"]["level"]
-        if listed.get(rule["id"]) != level:
-            found.append(f"docs/manual/rules.md: {rule['id']} should be listed with severity {level}")
-    return found
+    return [f"docs/manual/rules.md: missing: {row}" for row in rule_rows(root, feeler).values()
+            if row not in text.splitlines()]
+
+
+def update_rules(root, feeler):
+    """Writes the rows into the manual; a new one below that of the rule before it."""
+    page = root / "docs" / "manual" / "rules.md"
+    rows = rule_rows(root, feeler)
+    text = RULE_ROW.sub(lambda old: rows.get(old[1], old[0]), page.read_text(encoding="utf-8"))
+    before = None
+    for row in rows.values():
+        if row not in text.splitlines():
+            text = text.replace(before, before + "\n" + row)
+        before = row
+    page.write_text(text, encoding="utf-8")
 
 
 def self_check():
@@ -210,6 +235,8 @@ def main(arguments):
         self_check()
         return 0
     root = pathlib.Path(arguments[0] if arguments else ".").resolve()
+    if arguments[2:] == ["--update"]:
+        update_rules(root, arguments[1])
     found = undocumented(root, arguments[1]) + undocumented_rules(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
     for mistake in found:
         print(mistake)

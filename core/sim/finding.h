@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -31,7 +33,7 @@ struct Finding {
 /// What the set-up says about rules by name, in place of their own severity.
 using RuleSeverities = std::map<std::string, Severity>;
 
-/// The severity a rule has unless the set-up says otherwise; empty for a name that is no rule.
+/// The severity that a rule has unless the set-up changes it; empty if no rule has that name.
 std::optional<Severity> default_severity(const std::string& rule);
 
 /// The severity of a rule in this set-up.
@@ -45,16 +47,21 @@ void settle_severity(const Setup& setup, Finding& finding);
 /// one.
 std::string nearest_rule(const std::string& name);
 
-/// A rule by its stable name, with the severity that it has unless the set-up says otherwise.
+/// A kind of finding: one row of the table of rules. SARIF, HTML and the manual show its texts.
 struct RuleEntry {
-    const char* name;
-    Severity severity;
+    std::string_view name; // stable id; set-ups and comments in programs refer to it
+    Severity severity;     // unless the set-up says otherwise
+    std::string_view meaning;
+    std::string_view cure;
 };
 
-/// Every rule a set-up may name.
+/// All rules.
 std::span<const RuleEntry> rule_table();
 
-/// Their names.
+/// The rule of that name; null if there is none.
+const RuleEntry* find_rule(std::string_view name);
+
+/// The names of all rules.
 std::vector<std::string> rule_names();
 
 } // namespace core

@@ -10,7 +10,6 @@
 #include "app/base/sha256.h"
 #include "app/base/version.h"
 #include "app/library/result/program_diff.h"
-#include "app/report/exchange/rule_help.h"
 #include "app/report/text/batch_text.h"
 #include "core/sim/finding.h"
 
@@ -32,28 +31,25 @@ const char* level_of(core::Severity severity) {
     return severity == core::Severity::off ? "none" : core::name_of(severity);
 }
 
-Json rule_json(const std::string& name, const std::string& finds, const std::string& cure,
+Json rule_json(std::string_view name, std::string_view meaning, std::string_view cure,
                core::Severity severity) {
     return {{"id", name},
-            {"shortDescription", {{"text", finds}}},
-            {"fullDescription", {{"text", finds}}},
+            {"shortDescription", {{"text", meaning}}},
+            {"fullDescription", {{"text", meaning}}},
             {"help", {{"text", cure}}},
             {"defaultConfiguration", {{"level", level_of(severity)}}}};
 }
 
 Json rules_json() {
     Json rules = Json::array();
-    for (const core::RuleEntry& rule : core::rule_table()) {
-        const RuleHelp help = help_of(rule.name);
-        rules.push_back(
-            rule_json(rule.name, std::string(help.finds), std::string(help.cure), rule.severity));
-    }
-    rules.push_back(
-        rule_json(not_run, "The program could not be run to its end.",
-                  "Correct what the message says; what comes behind it was not checked.",
-                  core::Severity::error));
-    rules.push_back(rule_json(not_checked, "The check was ended before this program.",
-                              "Check it again: nothing is known of it.", core::Severity::error));
+    for (const core::RuleEntry& rule : core::rule_table())
+        rules.push_back(rule_json(rule.name, rule.meaning, rule.cure, rule.severity));
+    rules.push_back(rule_json(not_run,
+                              "The program, or its set-up, could not be read or run to its end.",
+                              "Correct what the message says; what comes after it was not checked.",
+                              core::Severity::error));
+    rules.push_back(rule_json(not_checked, "The run ended before this program was checked.",
+                              "Check it again.", core::Severity::error));
     return rules;
 }
 

@@ -9,11 +9,11 @@
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/library/result/batch_result.h"
-#include "app/report/exchange/rule_help.h"
 #include "app/report/html/html_facts.h"
 #include "app/report/html/html_page.h"
 #include "app/report/html/html_text.h"
 #include "app/report/text/batch_text.h"
+#include "core/sim/finding.h"
 #include "core/sim/verdict.h"
 
 namespace app {
@@ -317,13 +317,15 @@ std::string html_batch_summary(const BatchResult& batch) {
 
 std::string html_rules(const BatchResult& batch) {
     std::string rows;
-    for (const RuleTally& tally : rule_tallies(batch))
+    for (const RuleTally& tally : rule_tallies(batch)) {
+        const core::RuleEntry* rule = core::find_rule(tally.rule);
         rows += fmt::format(
             "<tr><td><span class=\"badge {0}\">{0}</span></td><td><button type=\"button\" "
             "class=\"link\" data-rule=\"{1}\">{1}</button></td><td class=\"number\">{2}</td>"
             "<td class=\"number\">{3}</td><td>{4}</td></tr>\n",
             core::name_of(tally.severity), html_text(tally.rule), tally.findings, tally.programs,
-            html_text(help_of(tally.rule).finds));
+            html_text(std::string(rule ? rule->meaning : "")));
+    }
     return rows;
 }
 
