@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the documentation: every relative link and #anchor in every *.md resolves, and the pages that
-must stay short are short.
+"""Checks the documentation: every relative link and #anchor in every *.md resolves, every source that a
+page names exists, and the pages that must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
     documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
@@ -26,6 +26,7 @@ INLINE_CODE = re.compile(r"(`+)(?:.*?)\1")
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*(<[^>]*>|[^()\s]*(?:\([^()]*\)[^()\s]*)*)"
                   r"""(?:\s+(?:"[^"]*"|'[^']*'))?\s*\)""")
 DEFINITION = re.compile(r"^ {0,3}\[[^\]]+\]:\s*(<[^>]*>|\S+)")
+SOURCE_NAME = re.compile(r"`([a-z][\w./-]*\.(?:h|cpp))`")
 HTML_SOURCE = re.compile(r"""<(?:img|a)\b[^>]*\b(?:src|href)\s*=\s*["']([^"']+)["']""")
 EXTERNAL = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]*:")
 
@@ -85,6 +86,19 @@ def links(text):
                 yield number, target.strip("<>")
 
 
+def unknown_sources(text, sources):
+    """Line numbers and names of C++ files that no path of the tree ends in."""
+    for number, line in prose_lines(text):
+        for name in SOURCE_NAME.findall(line):
+            if not any(f"/{source}".endswith(f"/{name}") for source in sources):
+                yield number, name
+
+
+def sources_of(root):
+    return [file.relative_to(root).as_posix() for ending in ("*.h", "*.cpp") for file in root.rglob(ending)
+            if not SKIPPED_FOLDERS.intersection(file.relative_to(root).parts)]
+
+
 def pages_of(root):
     for page in sorted(root.rglob("*.md")):
         if not SKIPPED_FOLDERS.intersection(page.relative_to(root).parts):
@@ -118,10 +132,12 @@ def mistakes(root):
             known[file] = anchors(file.read_text(encoding="utf-8"))
         return known[file]
 
-    found = []
+    found, sources = [], sources_of(root)
     for page in pages_of(root):
         name = page.relative_to(root).as_posix()
         text = page.read_text(encoding="utf-8")
+        for number, source in unknown_sources(text, sources):
+            found.append(f"{name}:{number}: there is no {source}")
         for number, target in links(text):
             mistake = mistake_of(root, page, target, anchors_of)
             if mistake:
@@ -211,7 +227,8 @@ def self_check():
         "<img src=\"docs/r.png\">",
         "```", "[no](link.md)", "```",
         "", "    [no](link.md)", "",
-        "[wrong](/docs/a.md)", "[wrong](../outside.md)"])
+        "[wrong](/docs/a.md)", "[wrong](../outside.md)",
+        "`a.h` and `docs/a.h` are there", "`s/a.h` is not"])
     long_readme = readme + "\n" * 150 + "end"
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder).resolve() / "tree"
@@ -221,9 +238,10 @@ def self_check():
         (root.parent / "outside.md").write_text("")
         (root / "docs" / "a.md").write_text("## Two words\n\n[up](../README.md)\n\n## Two words\n")
         (root / "docs" / "p.png").write_bytes(b"")
+        (root / "docs" / "a.h").write_text("")
         (root / "README.md").write_text(readme)
         lines = [int(m.split(":")[1]) for m in mistakes(root)]
-        assert sorted(lines) == [4, 5, 6, 7, 8, 9, 16, 17], mistakes(root)
+        assert sorted(lines) == [4, 5, 6, 7, 8, 9, 16, 17, 19], mistakes(root)
         (root / "README.md").write_text(long_readme)
         (root / "docs" / "architecture.md").write_text("x" * 8193)
         lengths = [m for m in mistakes(root) if "allowed" in m]
