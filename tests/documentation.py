@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the documentation: every relative link and #anchor in every *.md resolves, every source that a
-page names exists, and the pages that must stay short are short.
+page names and every type in the glossary exists, and the pages that must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
     documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
@@ -27,6 +27,7 @@ LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*(<[^>]*>|[^()\s]*(?:\([^()]*
                   r"""(?:\s+(?:"[^"]*"|'[^']*'))?\s*\)""")
 DEFINITION = re.compile(r"^ {0,3}\[[^\]]+\]:\s*(<[^>]*>|\S+)")
 SOURCE_NAME = re.compile(r"`([a-z][\w./-]*\.(?:h|cpp))`")
+TYPE = re.compile(r"\b(?:struct|class|enum class|using) (\w+)(?= final\b| :|:| \{|;| =)")
 HTML_SOURCE = re.compile(r"""<(?:img|a)\b[^>]*\b(?:src|href)\s*=\s*["']([^"']+)["']""")
 EXTERNAL = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]*:")
 
@@ -99,6 +100,22 @@ def sources_of(root):
             if not SKIPPED_FOLDERS.intersection(file.relative_to(root).parts)]
 
 
+def unknown_types(root, sources):
+    """Types in the last column of the glossary that no header declares."""
+    glossary = root / "docs" / "glossary.md"
+    if not glossary.exists():
+        return
+    declared = set()
+    for name in sources:
+        if name.endswith(".h"):
+            declared.update(TYPE.findall((root / name).read_text(encoding="utf-8")))
+    for number, line in prose_lines(glossary.read_text(encoding="utf-8")):
+        last = line.rstrip("| ").rpartition("|")[2] if line.startswith("|") else ""
+        for name in re.findall(r"`(\w+)(?:::\w+)?`", last):
+            if name not in declared:
+                yield number, name
+
+
 def pages_of(root):
     for page in sorted(root.rglob("*.md")):
         if not SKIPPED_FOLDERS.intersection(page.relative_to(root).parts):
@@ -146,6 +163,7 @@ def mistakes(root):
             found.append(f"{name}: {len(text.splitlines())} lines; at most {MAX_LINES[name]} are allowed")
         if name in MAX_BYTES and len(text.encode()) > MAX_BYTES[name]:
             found.append(f"{name}: {len(text.encode())} bytes; at most {MAX_BYTES[name]} are allowed")
+    found += [f"docs/glossary.md:{number}: no header declares {name}" for number, name in unknown_types(root, sources)]
     return found
 
 
@@ -238,10 +256,11 @@ def self_check():
         (root.parent / "outside.md").write_text("")
         (root / "docs" / "a.md").write_text("## Two words\n\n[up](../README.md)\n\n## Two words\n")
         (root / "docs" / "p.png").write_bytes(b"")
-        (root / "docs" / "a.h").write_text("")
+        (root / "docs" / "a.h").write_text("struct Body {\n};\n")
+        (root / "docs" / "glossary.md").write_text("| a | `b` | `Body`, `Body::part` |\n| b | c | |\n| c | d | `Bodies` |\n")
         (root / "README.md").write_text(readme)
         lines = [int(m.split(":")[1]) for m in mistakes(root)]
-        assert sorted(lines) == [4, 5, 6, 7, 8, 9, 16, 17, 19], mistakes(root)
+        assert sorted(lines) == [3, 4, 5, 6, 7, 8, 9, 16, 17, 19], mistakes(root)
         (root / "README.md").write_text(long_readme)
         (root / "docs" / "architecture.md").write_text("x" * 8193)
         lengths = [m for m in mistakes(root) if "allowed" in m]
