@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/dbm/solid.h"
 #include "core/geom/mesh.h"
 #include "core/geom/profile.h"
 

@@ -7,6 +7,10 @@
 #include "core/geom/profile.h"
 #include "render/triangle_mesh.h"
 
+namespace core {
+struct Solid;
+}
+
 namespace render {
 
 /// How far a drawn round may be off the true one, mm.

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "render/triangle_mesh.h"
 
 namespace render {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/motion/machine.h"
 #include "core/sim/moving_body.h"
 #include "render/body_mesh.h"
 

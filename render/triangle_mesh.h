@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/geom/mesh.h"
 
 namespace render {

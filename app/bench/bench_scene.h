@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/dbm/dbm.h"
 #include "core/distance/body_distance.h"
 #include "core/distance/distance_engine.h"

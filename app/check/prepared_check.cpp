@@ -9,6 +9,7 @@
 #include "app/check/program_runner.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "core/base/file_reads.h"
+#include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
 #include "core/sim/verdict.h"

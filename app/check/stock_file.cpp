@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/dbm/cut_model.h"
 #include "core/geom/mesh.h"
 #include "core/sim/verdict.h"
 

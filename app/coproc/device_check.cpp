@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/dbm/covered_path.h"
+#include "core/motion/path.h"
 #include "hwsim/body_cover.h"
 #include "hwsim/tool_model.h"
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
+#include "core/motion/machine.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/language/dialect.h"
 

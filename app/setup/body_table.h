@@ -7,7 +7,7 @@
 
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/motion/machine.h"
 
 namespace app {

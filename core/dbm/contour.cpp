@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/dbm/cut_model.h"
 #include "core/geom/triangle_distance.h"
 
 namespace core {

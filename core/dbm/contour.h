@@ -1,11 +1,20 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "core/base/vec.h"
-#include "core/dbm/cut_model.h"
 
 namespace core {
+
+struct CutModel;
+struct Dbm;
+struct Interval;
+struct ScanGrid;
+struct Triangle;
 
 /// The plane on which a surface lies near one of its points: normals are out of the body.
 struct TangentPlane {

@@ -1,5 +1,7 @@
 #include "core/dbm/covered_path.h"
 
+#include "core/dbm/cut_model.h"
+
 namespace core {
 namespace {
 

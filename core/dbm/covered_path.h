@@ -1,8 +1,12 @@
 #pragma once
 
-#include "core/dbm/cut_model.h"
+#include "core/base/vec.h"
 
 namespace core {
+
+class SweepLog;
+struct CutModel;
+struct RevolvedProfile;
 
 /// A straight move that asks whether its cutter has been there before.
 struct PathQuestion {

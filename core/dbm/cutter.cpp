@@ -1,5 +1,7 @@
 #include "core/dbm/cutter.h"
 
+#include "core/dbm/solid.h"
+
 namespace core {
 namespace {
 

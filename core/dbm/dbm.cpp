@@ -64,6 +64,18 @@ IntervalList line_of(const Cylinder& cylinder, int axis, double u, double v) {
 
 } // namespace
 
+ScanGrid scan_grid(const Aabb& bounds, double spacing) {
+    assert(spacing > 0.0 && !bounds.empty());
+    ScanGrid grid{.centre = bounds.center(), .spacing = spacing, .half_count = {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        // Line k on one side stands at (k + 0.5) h; a line on the border itself would meet nothing.
+        const double half_cells = 0.5 * bounds.size()[axis] / spacing;
+        grid.half_count[static_cast<size_t>(axis)] =
+            std::max(1, static_cast<int>(std::ceil(half_cells - 0.5)));
+    }
+    return grid;
+}
+
 Vec3 point_on_line(const ScanGrid& grid, int axis, int u, int v, double along) {
     Vec3 p;
     p[axis] = along;

@@ -11,7 +11,8 @@
 #include <hwy/foreach_target.h> // includes this file once for each instruction set
 #include <hwy/highway.h>
 
-#include "core/dbm/lane_reach.h"
+#include "core/dbm/lane_row.h"
+#include "core/dbm/lane_sweep.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace core {

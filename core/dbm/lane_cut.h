@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/dbm/dbm.h"
 #include "core/dbm/lane_plan.h"
-#include "core/dbm/scan_grid.h"
 #include "core/dbm/scan_lines.h"
 
 namespace core {

@@ -1,5 +1,7 @@
 #include "core/dbm/lane_plan.h"
 
+#include "core/dbm/scan_lines.h"
+
 namespace core {
 namespace {
 

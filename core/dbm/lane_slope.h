@@ -6,12 +6,181 @@
 #define FEELER_LANE_SLOPE_H
 #endif
 
-#include "core/dbm/lane_circle.h"
+#include "core/dbm/lane_row.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace core {
 namespace HWY_NAMESPACE {
 namespace {
+
+/// Moments of a move, first .. last for each line, while `met`.
+struct Moments {
+    Row first, last;
+    RowMask met;
+};
+
+/// Narrows the moments to those at which a point that moves evenly, and stands at `offset` from it,
+/// lies within low .. high; `per` is 1 / its way.
+HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, double per,
+                       Moments& at) {
+    const Row one = (offset - low) * per, other = (offset - high) * per;
+    at.first = most(at.first, least(one, other));
+    at.last = least(at.last, most(one, other));
+}
+
+/// Where lines along X or Y lie from where a circle starts: beside it and above it.
+struct AsideAndAbove {
+    Row s, z;
+};
+
+HWY_INLINE AsideAndAbove aside_and_above(const AcrossLanes& c, const Row& u, double v) {
+    return {(c.side_is_u ? u : row_of(v)) - c.from_side, (c.side_is_u ? row_of(v) : u) - c.from_z};
+}
+
+/// Circles of these radii, a line at `s` beside each, during these moments; `flatness` is the
+/// square of the part of the surface's normal that lies in their plane.
+HWY_INLINE void add_circles(const AcrossLanes& c, const Row& s, const Row& radius,
+                            const Row& flatness, Moments at, Swept& all) {
+    const Row other_side = row_of(0.0) - radius;
+    if (c.per_side == 0.0)
+        at.met = at.met & at_most(other_side, s) & at_most(s, radius);
+    else
+        narrow(s, other_side, radius, c.per_side, at);
+    const RowMask met = at.met & at_most(at.first, at.last);
+    if (!any(met)) return;
+    const auto half = [&](const Row& t) HWY_ATTR {
+        const Row aside = s - t * c.by_side;
+        return root((radius - aside) * (aside + radius));
+    };
+    const Row touching = s * c.per_side, shift = radius * c.by_radius;
+    const Row low = least(most(touching + c.low_at - shift, at.first), at.last);
+    const Row high = least(most(touching + c.high_at + shift, at.first), at.last);
+    const Row before = half(low), behind = half(high);
+    const Row per_square = flatness / most(radius * radius, row_of(1e-300));
+    unite_low(all, met, low * c.by_a + c.from_a - before, before * before * per_square);
+    unite_high(all, met, high * c.by_a + c.from_a + behind, behind * behind * per_square);
+}
+
+HWY_INLINE void add_across(const AcrossLanes& c, const Row& u, double v, Swept& all) {
+    const auto [s, z] = aside_and_above(c, u, v);
+    Moments at{row_of(0.0), row_of(1.0), {}};
+    if (c.per_z == 0.0) {
+        at.met = at_most(row_of(c.z0 + std::min(0.0, c.by_z)), z)
+                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z)));
+    } else {
+        at.met = at_most(at.first, at.last);
+        narrow(z, row_of(c.z0), row_of(c.z1), c.per_z, at);
+    }
+    add_circles(c, s, row_of(c.radius), row_of(1.0), at, all);
+}
+
+HWY_INLINE void add_level_across(const ElementLanes& level, const Row& u, double v, Swept& all) {
+    const AcrossLanes& c = level.across;
+    const ProfileElement& e = level.element;
+    const auto [s, z] = aside_and_above(c, u, v);
+    // The heights of the piece that come by: one, or a stretch on the way up or down.
+    const Row low = z - std::max(0.0, c.by_z), high = z - std::min(0.0, c.by_z);
+    Moments at{row_of(0.0), row_of(1.0), {}};
+    if (e.margin > 0.0) {
+        const Row off = most(most(low - e.z0, row_of(e.z0) - high), row_of(0.0));
+        const Row under = (row_of(e.margin) - off) * (off + e.margin);
+        at.met = at_most(row_of(0.0), under);
+        if (any(at.met))
+            add_circles(c, s, root(under) + std::max(e.r0, e.r1),
+                        under * (1.0 / (e.margin * e.margin)), at, all);
+        return;
+    }
+    const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
+    const Row lowest = most(low, row_of(e.z0)), highest = least(high, row_of(e.z1));
+    at.met = at_most(lowest, highest);
+    if (any(at.met))
+        add_circles(c, s, ((slope > 0.0 ? highest : lowest) - e.z0) * slope + e.r0,
+                    row_of(1.0 / (1.0 + slope * slope)), at, all);
+}
+
+/// A rounded disc on a move that climbs or sinks, met by lines along X or Y: at each moment by a
+/// circle, of which the half chord is S(t).
+struct RoundedCircles {
+    const AcrossLanes& c;
+    Row s, z; // of the lines, the height from the disc's plane, at the start
+    double radius, margin;
+
+    /// The circle at moments t: its half chord S, how t changes S, and how S bends.
+    struct Here {
+        Row half, facing;
+        Row push, bend; // S S' and S S''
+        Row towards;    // the derivative of what the circle reaches past the line
+        RowMask inside; // the line meets the circle
+    };
+    HWY_INLINE Here at(const Row& t) const {
+        const Row height = z - t * c.by_z, aside = s - t * c.by_side;
+        const Row f = root((row_of(margin) - height) * (height + margin));
+        const Row per_f = row_of(1.0) / most(f, row_of(1e-9 * margin));
+        const Row rise = height * c.by_z * per_f;
+        const Row r = f + radius;
+        const Row under = (r - aside) * (r + aside);
+        Here here;
+        here.inside = at_most(row_of(0.0), under);
+        here.half = root(under);
+        here.push = r * rise + aside * c.by_side;
+        const Row slope = here.push / most(here.half, row_of(1e-9 * margin));
+        const Row square = rise * rise;
+        here.bend = square - r * (square + c.by_z * c.by_z) * per_f - row_of(c.by_side * c.by_side)
+                    - slope * slope;
+        here.towards =
+            rise + choose(at_most(row_of(0.0), aside), row_of(c.by_side), row_of(-c.by_side));
+        const Row flat = f * here.half * (1.0 / margin) / r;
+        here.facing = flat * flat;
+        return here;
+    }
+
+    HWY_INLINE void offer(const Row& t, const Here& here, const RowMask& met, Swept& all) const {
+        const Row along = t * c.by_a + c.from_a;
+        unite_low(all, met & here.inside, along - here.half, here.facing);
+        unite_high(all, met & here.inside, along + here.half, here.facing);
+    }
+};
+
+/// Offers the greatest of sign * by_a * t + S(t), a concave function: Newton's steps within a
+/// bracket. Whatever they come to lies in the swept volume.
+HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within, double sign,
+                           Swept& all) {
+    constexpr int rounds = 50; // half a dozen will do, but where a line only grazes the body
+    const double by = sign * circles.c.by_a;
+    Row low = within.first, high = within.last;
+    Row t = (low + high) * 0.5;
+    for (int i = 0; i < rounds; ++i) {
+        const RoundedCircles::Here here = circles.at(t);
+        circles.offer(t, here, within.met, all);
+        const Row change = here.push + here.half * by;
+        const RowMask later = below(row_of(0.0), choose(here.inside, change, here.towards));
+        low = choose(later, t, low);
+        high = choose(later, high, t);
+        const Row next = t - change / least(here.bend, row_of(-1e-300));
+        const RowMask good = here.inside & below(low, next) & below(next, high);
+        const Row before = t;
+        t = choose(good, next, (low + high) * 0.5);
+        // Off by this much in time is nothing along the line.
+        const RowMask moved = below(row_of(1e-14), (t - before) * (t - before));
+        if (!any(within.met & moved)) break;
+    }
+    circles.offer(t, circles.at(t), within.met, all);
+}
+
+HWY_INLINE void add_round_across(const ElementLanes& sloped, const Row& u, double v, Swept& all) {
+    const AcrossLanes& c = sloped.across;
+    const ProfileElement& e = sloped.element;
+    const auto [s, z] = aside_and_above(c, u, v);
+    const RoundedCircles circles{c, s, z - e.z0, std::max(e.r0, e.r1), e.margin};
+    Moments within{row_of(0.0), row_of(1.0), {}};
+    narrow(circles.z, row_of(-e.margin), row_of(e.margin), c.per_z, within);
+    within.met = at_most(within.first, within.last);
+    if (!any(within.met)) return;
+    for (const Row& t : {within.first, within.last})
+        circles.offer(t, circles.at(t), within.met, all);
+    search_round(circles, within, -1.0, all);
+    search_round(circles, within, 1.0, all);
+}
 
 /// An end of an element's stretch on lines along Z, at a distance from its axis, and how it faces.
 struct EndAt {

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "core/dbm/dbm.h"
-#include "core/geom/mesh.h"
 
 namespace core {
+
+struct Mesh;
 
 /// The model of a mesh, and whether shells of the mesh overlap (their union was taken).
 struct MeshScan {

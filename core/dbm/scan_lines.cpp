@@ -29,7 +29,7 @@ void put(ScanTile& tile, size_t place, size_t k, const Marked& what) {
     tile.marks[k].upper_tilt[place] = what.marks.upper_tilt;
 }
 
-constexpr Marked nothing{{infinity, -infinity}, {}};
+constexpr Marked no_matter{{infinity, -infinity}, {}};
 
 } // namespace
 
@@ -41,7 +41,7 @@ ScanTile::Layer::Layer() {
 void set_line(ScanTile& tile, size_t place, const LineView& matter) {
     const size_t before = tile.line(place).size();
     for (size_t k = 0; k < matter.size(); ++k) put(tile, place, k, {matter[k], {}});
-    for (size_t k = matter.size(); k < before; ++k) put(tile, place, k, nothing);
+    for (size_t k = matter.size(); k < before; ++k) put(tile, place, k, no_matter);
 }
 
 double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made) {
@@ -65,7 +65,7 @@ double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMark
     }
     if (removed == 0.0) return 0.0;
     for (size_t k = 0; k < kept.size(); ++k) put(tile, place, k, kept[k]);
-    for (size_t k = kept.size(); k < size; ++k) put(tile, place, k, nothing);
+    for (size_t k = kept.size(); k < size; ++k) put(tile, place, k, no_matter);
     return removed;
 }
 

@@ -1,7 +1,7 @@
 #include "core/dbm/solid.h"
 
-#include "core/base/union_find.h"
 #include "core/dbm/mesh_scan.h"
+#include "core/geom/triangle_bvh.h"
 
 namespace core {
 namespace {
@@ -122,21 +122,6 @@ IntervalList line_of_mesh(const SolidMesh& solid, int axis, double u, double v) 
     return matter_on_line(*solid.mesh, axis, u, v);
 }
 
-/// The first vertex of every connected shell.
-std::vector<Vec3> shell_points(const Mesh& mesh) {
-    UnionFind shells(mesh.vertices.size());
-    for (const Mesh::Corners& t : mesh.triangles) {
-        shells.join(t[1], t[0]);
-        shells.join(t[2], t[0]);
-    }
-    std::vector<bool> used(mesh.vertices.size(), false);
-    for (const Mesh::Corners& t : mesh.triangles) used[shells.root(t[0])] = true;
-    std::vector<Vec3> points;
-    for (size_t i = 0; i < used.size(); ++i)
-        if (used[i]) points.push_back(mesh.vertices[i]);
-    return points;
-}
-
 IntervalList nominal_column(const Solid& solid, const Square& s) {
     return std::visit(Overloaded{[&](const SolidBox& b) -> IntervalList {
                                      if (s.x1 < b.box.min.x || s.x0 > b.box.max.x
@@ -150,16 +135,6 @@ IntervalList nominal_column(const Solid& solid, const Square& s) {
 }
 
 } // namespace
-
-SolidMesh solid_mesh(Mesh mesh) {
-    auto bvh = std::make_shared<const TriangleBvh>(build_bvh(mesh));
-    std::vector<Vec3> points = shell_points(mesh);
-    return {std::make_shared<const Mesh>(std::move(mesh)), std::move(bvh), std::move(points)};
-}
-
-Aabb bounds(const SolidMesh& solid) {
-    return !solid.bvh || solid.bvh->nodes.empty() ? Aabb{} : solid.bvh->nodes[0].box;
-}
 
 bool holds(const SolidMesh& solid, const Vec3& point) {
     if (!overlaps(bounds(solid), {point, point})) return false;

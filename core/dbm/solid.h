@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "core/dbm/dbm.h"
-#include "core/geom/triangle_bvh.h"
+#include "core/geom/mesh.h"
 
 namespace core {
 
@@ -20,18 +20,6 @@ struct SolidCylinder {
     double height = 0.0;
     int axis = 2;
 };
-
-/// A closed mesh (see checked_solid), with what searches need of it.
-struct SolidMesh {
-    std::shared_ptr<const Mesh> mesh;
-    std::shared_ptr<const TriangleBvh> bvh;
-    std::vector<Vec3> shell_points; // a vertex of each of its connected shells
-};
-
-SolidMesh solid_mesh(Mesh mesh);
-
-/// The box of its triangles, which is known.
-Aabb bounds(const SolidMesh& solid);
 
 /// Whether the point lies inside the mesh; either answer for a point on its surface.
 bool holds(const SolidMesh& solid, const Vec3& point);

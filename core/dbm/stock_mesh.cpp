@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/dbm/contour.h"
+#include "core/dbm/cut_model.h"
 #include "core/dbm/dual_cell.h"
 
 namespace core {

@@ -1,9 +1,13 @@
 #pragma once
 
-#include "core/dbm/cut_model.h"
+#include <optional>
+#include <vector>
+
 #include "core/geom/mesh.h"
 
 namespace core {
+
+struct CutModel;
 
 /// A place where a scan line passes the surface of a stock.
 struct SurfaceSample {

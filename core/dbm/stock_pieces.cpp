@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/union_find.h"
+#include "core/dbm/cut_model.h"
 
 namespace core {
 namespace {

@@ -3,9 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/dbm/cut_model.h"
+#include "core/base/vec.h"
 
 namespace core {
+
+struct CutModel;
 
 /// A stock's matter that hangs together, as far as the scan lines show.
 struct StockPiece {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 
+#include "core/dbm/cut_model.h"
 #include "core/geom/mesh.h"
 
 namespace core {
@@ -183,8 +184,8 @@ void put_sweeps(Writer& out, const std::vector<CutterSweep>& sweeps) {
     out.put(uint64_t{table.cutters.size()});
     for (const Cutter* cutter : table.cutters) put_cutter(out, *cutter);
     out.put(uint64_t{sweeps.size()});
-    const CutterSweep nothing;
-    const CutterSweep* last = &nothing;
+    const CutterSweep none;
+    const CutterSweep* last = &none;
     for (const CutterSweep& sweep : sweeps) {
         uint8_t same = 0;
         if (sweep.from == last->to) same |= goes_on;

@@ -3,9 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "core/dbm/cut_model.h"
+#include "core/dbm/cutter.h"
+#include "core/dbm/solid.h"
 
 namespace core {
+
+struct CutModel;
 
 /// A stock as it was cut, in a form that can be kept: what it was at first, and every move that
 /// came near it. From these its lines and its outer model can be had again at any mesh size, with

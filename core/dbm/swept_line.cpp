@@ -1,5 +1,3 @@
-#include "core/dbm/swept_line.h"
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -7,6 +5,7 @@
 #include <optional>
 
 #include "core/base/vec.h"
+#include "core/dbm/cutter.h"
 #include "core/dbm/interval.h"
 
 namespace core {

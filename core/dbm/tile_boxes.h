@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dbm/dbm.h"
+#include "core/dbm/scan_lines.h"
 
 namespace core {
 

@@ -1,6 +1,7 @@
 #include "core/distance/body_distance.h"
 
-#include "core/geom/mesh_separation.h"
+#include "core/dbm/solid.h"
+#include "core/geom/triangle_bvh.h"
 
 namespace core {
 namespace {

@@ -3,8 +3,8 @@
 #include <span>
 #include <variant>
 
-#include "core/dbm/solid.h"
 #include "core/geom/gjk.h"
+#include "core/geom/mesh.h"
 
 namespace core {
 

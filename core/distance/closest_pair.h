@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 
 namespace core {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/dbm/dbm.h"
 #include "core/distance/closest_pair.h"
 

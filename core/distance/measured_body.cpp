@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/dbm/cutter.h"
 #include "core/dbm/mesh_scan.h"
 #include "core/distance/rounding.h"
 

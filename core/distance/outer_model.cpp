@@ -5,6 +5,7 @@
 #include <cassert>
 #include <memory>
 
+#include "core/dbm/cut_model.h"
 #include "core/distance/rounding.h"
 
 namespace core {

@@ -3,9 +3,14 @@
 #include <functional>
 #include <vector>
 
-#include "core/dbm/cut_model.h"
+#include "core/dbm/dbm.h"
 
 namespace core {
+
+struct CutModel;
+struct RevolvedProfile;
+struct Solid;
+struct Square;
 
 /// Columns that hold every point of a body, also between its scan lines.
 ///

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/distance/closest_pair.h"
 #include "core/distance/point_tree.h"
 #include "core/distance/search_side.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/base/transform.h"
 #include "core/base/vec.h"
 #include "core/distance/closest_pair.h"
 

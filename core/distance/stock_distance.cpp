@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/dbm/cut_model.h"
 #include "core/distance/upright_sweep.h"
 
 namespace core {

@@ -3,10 +3,11 @@
 #include <optional>
 #include <span>
 
-#include "core/dbm/cut_model.h"
 #include "core/geom/gjk.h"
 
 namespace core {
+
+struct CutModel;
 
 /// A scan line of a stock: which one, of which family.
 struct LineId {

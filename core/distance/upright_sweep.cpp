@@ -139,8 +139,8 @@ public:
         Moment after = at(1.0);
         if (after.slope <= 0.0) return {after, after.distance};
         // Between two moments the tangents meet at the lowest that the distance can be.
-        constexpr int most_steps = 64;
-        for (int i = 0; i < most_steps; ++i) {
+        constexpr int max_iterations = 64;
+        for (int i = 0; i < max_iterations; ++i) {
             const Moment& best = before.distance <= after.distance ? before : after;
             const double gap = after.time - before.time;
             const double rise = after.slope - before.slope;

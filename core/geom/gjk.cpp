@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/geom/mesh.h"
+
 namespace core {
 namespace {
 

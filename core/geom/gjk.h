@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <span>
 
-#include "core/base/transform.h"
 #include "core/base/vec.h"
-#include "core/geom/mesh.h"
 #include "core/geom/profile.h"
 
 namespace core {
+
+struct Triangle;
 
 /// A convex body known by its support function: a hull of up to eight points or a truncated cone,
 /// grown by `margin` all round, and swept over the hull of its `places`.

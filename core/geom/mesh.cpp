@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "core/base/union_find.h"
+#include "core/geom/triangle_bvh.h"
+
 namespace core {
 
 Aabb Mesh::bounds() const {
@@ -49,6 +52,21 @@ void put(std::string& bytes, const glm::vec3& v) {
     for (int i = 0; i < 3; ++i) put(bytes, v[i]);
 }
 
+/// The first vertex of every connected shell.
+std::vector<Vec3> shell_points(const Mesh& mesh) {
+    UnionFind shells(mesh.vertices.size());
+    for (const Mesh::Corners& t : mesh.triangles) {
+        shells.join(t[1], t[0]);
+        shells.join(t[2], t[0]);
+    }
+    std::vector<bool> used(mesh.vertices.size(), false);
+    for (const Mesh::Corners& t : mesh.triangles) used[shells.root(t[0])] = true;
+    std::vector<Vec3> points;
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i]) points.push_back(mesh.vertices[i]);
+    return points;
+}
+
 } // namespace
 
 std::string stl_bytes(const Mesh& mesh, const std::string& comment) {
@@ -89,6 +107,16 @@ std::string ply_bytes(const Mesh& mesh, const std::vector<std::string>& comments
         for (const uint32_t corner : corners) put(bytes, static_cast<int32_t>(corner));
     }
     return bytes;
+}
+
+SolidMesh solid_mesh(Mesh mesh) {
+    auto bvh = std::make_shared<const TriangleBvh>(build_bvh(mesh));
+    std::vector<Vec3> points = shell_points(mesh);
+    return {std::make_shared<const Mesh>(std::move(mesh)), std::move(bvh), std::move(points)};
+}
+
+Aabb bounds(const SolidMesh& solid) {
+    return !solid.bvh || solid.bvh->nodes.empty() ? Aabb{} : solid.bvh->nodes[0].box;
 }
 
 } // namespace core

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "core/base/vec.h"
 
 namespace core {
+
+struct TriangleBvh;
 
 struct Triangle {
     Vec3 a, b, c;
@@ -35,6 +38,18 @@ double signed_volume(const Mesh& mesh);
 
 /// The closed surface of a box, its faces looking outwards.
 Mesh mesh_of(const Aabb& box);
+
+/// A closed mesh (see checked_solid), with what searches need of it.
+struct SolidMesh {
+    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const TriangleBvh> bvh;
+    std::vector<Vec3> shell_points; // a vertex of each of its connected shells
+};
+
+SolidMesh solid_mesh(Mesh mesh);
+
+/// The box of its triangles, which is known.
+Aabb bounds(const SolidMesh& solid);
 
 /// Red, green and blue.
 using Colour = std::array<uint8_t, 3>;

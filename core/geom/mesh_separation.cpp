@@ -1,8 +1,7 @@
-#include "core/geom/mesh_separation.h"
-
 #include <algorithm>
 #include <limits>
 
+#include "core/geom/triangle_bvh.h"
 #include "core/geom/triangle_distance.h"
 
 namespace core {

@@ -3,9 +3,10 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "core/geom/mesh.h"
 
 namespace core {
+
+struct Mesh;
 
 /// A convex piece of a body of revolution about Z: the truncated cone from (r0, z0) up to (r1, z1),
 /// grown by `margin` all round. A ball is a point with a margin, a rounded corner a disc with one.

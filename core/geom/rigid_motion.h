@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 
 namespace core {
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,18 @@ inline double fed_length(const AxisValues& by) {
 
 /// The same where an axis may stand anywhere: empty, nobody knows.
 using AxisPosition = std::array<std::optional<double>, axis_count>;
+
+/// A rigid part of the machine: what an axis moves, by the axis's index, or the base on which all
+/// stands.
+enum class LinkId : uint8_t { base = 255 };
+
+constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
+
+/// Something fixed to a link. Frame of the link: the machine's with all axes at 0.
+struct Mount {
+    LinkId link = LinkId::base;
+    Transform link_from_body;
+};
 
 enum class MotionKind : uint8_t { rapid, feed, arc };
 

@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "core/base/units.h"
+#include "core/motion/machine.h"
+#include "core/motion/path.h"
 
 namespace core {
 namespace {

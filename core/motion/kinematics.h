@@ -1,9 +1,14 @@
 #pragma once
 
-#include "core/motion/machine.h"
-#include "core/motion/path.h"
+#include <optional>
+#include <vector>
+
+#include "core/motion/event.h"
 
 namespace core {
+
+struct Leg;
+struct Machine;
 
 /// Where a link of the machine stands; the identity when the axes that carry it are at 0.
 Transform machine_from_link(const Machine& machine, LinkId link, const AxisValues& values);

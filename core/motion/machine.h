@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/base/transform.h"
 #include "core/distance/body_distance.h"
 #include "core/motion/event.h"
 
@@ -12,18 +13,6 @@ namespace core {
 
 /// Which half of the machine an axis moves: what holds the tool, or what holds the work.
 enum class Side : uint8_t { tool, table };
-
-/// A rigid part of the machine: what an axis moves, by the axis's index, or the base on which all
-/// stands.
-enum class LinkId : uint8_t { base = 255 };
-
-constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
-
-/// Something fixed to a link. Frame of the link: the machine's with all axes at 0.
-struct Mount {
-    LinkId link = LinkId::base;
-    Transform link_from_body;
-};
 
 /// One axis. `direction` is the way the tool moves relative to the work as the axis grows, or for a
 /// rotary axis the line that it turns about by the right hand; an axis of the table side moves the

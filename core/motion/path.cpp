@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
 
 namespace core {
 namespace {

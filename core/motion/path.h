@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "core/motion/event.h"
-#include "core/motion/machine.h"
 
 namespace core {
+
+struct Machine;
 
 /// A piece of an arc or helix, between two shares of its angle.
 struct ArcPiece {

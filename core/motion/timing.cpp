@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
 #include "core/motion/path.h"
 
 namespace core {

@@ -9,9 +9,10 @@
 
 #include "core/base/vec.h"
 #include "core/motion/event.h"
-#include "core/motion/machine.h"
 
 namespace core {
+
+struct Machine;
 
 /// How fast an axis may go and how soon it may get there; without a limit unless said. mm/s and
 /// mm/s2, or degrees.
@@ -20,7 +21,7 @@ struct AxisLimits {
     double acceleration = infinity;
 };
 
-using MachineLimits = std::array<AxisLimits, 9>;
+using MachineLimits = std::array<AxisLimits, axis_count>;
 
 /// What a corner may be rounded by where no tolerance is stated, mm.
 constexpr double default_blend_tolerance = 0.05;

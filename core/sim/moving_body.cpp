@@ -1,6 +1,7 @@
 #include "core/sim/moving_body.h"
 
 #include "core/distance/upright_sweep.h"
+#include "core/motion/machine.h"
 #include "core/sim/setup.h"
 
 namespace core {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/union_find.h"
+#include "core/dbm/cut_model.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/triangle_distance.h"

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/dbm/cutter.h"
+#include "core/dbm/solid.h"
 #include "core/distance/body_distance.h"
 #include "core/motion/machine.h"
 #include "core/sim/finding.h"

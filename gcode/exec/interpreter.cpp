@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/motion/machine.h"
 #include "gcode/exec/assignments.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/fanuc_parameters.h"

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/machine.h"
+
 namespace gcode {
 namespace {
 

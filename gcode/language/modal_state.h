@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "core/base/ids.h"
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/motion/event.h"
 #include "core/motion/kinematics.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/machine.h"
 #include "gcode/exec/arcs.h"
 
 namespace gcode {

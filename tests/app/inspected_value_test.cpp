@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/debug/inspected_value.h"
+#include "core/motion/machine.h"
 
 namespace app_test {
 namespace {

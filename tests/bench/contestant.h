@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/distance/closest_pair.h"
 
 namespace bench {

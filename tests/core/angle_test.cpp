@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/transform.h"
 #include "core/base/units.h"
+#include "core/base/vec.h"
 
 namespace core {
 namespace {

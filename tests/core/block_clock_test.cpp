@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/motion/kinematics.h"
+#include "core/motion/path.h"
 #include "core/sim/run/block_clock.h"
 #include "core/sim/run/simulator.h"
 #include "tests/support/machines.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/distance/body_distance.h"
+#include "core/geom/triangle_bvh.h"
 #include "tests/support/convex_oracle.h"
 #include "tests/support/meshes.h"
 

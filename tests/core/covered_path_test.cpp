@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dbm/covered_path.h"
+#include "core/dbm/cut_model.h"
 
 namespace core {
 namespace {

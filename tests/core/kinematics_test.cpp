@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/motion/kinematics.h"
+#include "core/motion/path.h"
 #include "tests/support/machines.h"
 
 namespace core {

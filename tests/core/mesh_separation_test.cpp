@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geom/mesh_separation.h"
+#include "core/geom/triangle_bvh.h"
 #include "core/geom/triangle_distance.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_oracle.h"

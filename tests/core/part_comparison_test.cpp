@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/dbm/cut_model.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh_file.h"
 #include "core/geom/triangle_distance.h"

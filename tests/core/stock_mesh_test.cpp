@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dbm/contour.h"
+#include "core/dbm/cut_model.h"
 #include "core/dbm/dual_cell.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/dbm/swept_line.h"
+#include "core/dbm/cutter.h"
 #include "tests/support/profile_oracle.h"
 
 namespace core {

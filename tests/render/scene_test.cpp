@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/motion/machine.h"
 #include "render/body_mesh.h"
 #include "render/line_pass.h"
 #include "render/motion_path.h"

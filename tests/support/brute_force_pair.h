@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/distance/closest_pair.h"
 
 namespace test_support {

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/dbm/cut_model.h"
+#include "core/dbm/cutter.h"
 #include "core/dbm/mesh_scan.h"
-#include "core/dbm/swept_line.h"
 #include "core/distance/measured_body.h"
 #include "tests/support/meshes.h"
 #include "tests/support/torus_lines.h"

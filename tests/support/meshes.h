@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/geom/mesh.h"
 
 namespace test_support {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/dbm/solid.h"
 #include "core/sim/setup.h"
 #include "tests/support/machines.h"
 #include "tests/support/meshes.h"

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "tests/support/profile_oracle.h"
 
 namespace test_support {

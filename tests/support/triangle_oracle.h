@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/geom/mesh.h"
 
 namespace test_support {

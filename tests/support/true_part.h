@@ -5,7 +5,7 @@
 #include <cmath>
 #include <variant>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 
 namespace test_support {
 

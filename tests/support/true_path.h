@@ -4,7 +4,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 #include "core/motion/event.h"
 #include "tests/support/true_profile.h"
 

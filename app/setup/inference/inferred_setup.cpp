@@ -11,6 +11,7 @@
 #include "app/setup/ini_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_library.h"
+#include "core/dbm/solid.h"
 
 namespace app {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geom/gjk.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 

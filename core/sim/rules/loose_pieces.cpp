@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/dbm/cut_model.h"
 #include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/ids.h"
-#include "core/base/transform.h"
 #include "core/base/vec.h"
 #include "core/dbm/cut_model.h"
 #include "core/dbm/stock_pieces.h"

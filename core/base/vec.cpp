@@ -1,4 +1,4 @@
-#include "core/base/transform.h"
+#include "core/base/vec.h"
 
 #include "core/base/units.h"
 
