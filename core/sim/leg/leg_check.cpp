@@ -168,8 +168,8 @@ double LegCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     }
     if (!settled && length(leg) > setup_.mesh_size && depends_on_time(checks, leg, stock)) {
         travel_ *= 0.5;
-        const double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs)
-                               + check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
+        double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
+        removed += check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
         travel_ *= 2.0;
         return removed;
     }

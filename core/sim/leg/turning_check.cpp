@@ -30,7 +30,8 @@ double LegCheck::only_cut(const Leg& leg, CutModel& stock) {
     const bool far = distance(bounds(bodies_[0], flutes), stock.outer_box) > flutes.error;
     if (flutes.turns && far) return 0.0;
     if (!turns_too_far(leg)) return cut_along(leg, stock);
-    return only_cut(stretch(leg, 0.0, 0.5), stock) + only_cut(stretch(leg, 0.5, 1.0), stock);
+    const double removed = only_cut(stretch(leg, 0.0, 0.5), stock);
+    return removed + only_cut(stretch(leg, 0.5, 1.0), stock);
 }
 
 bool LegCheck::is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
@@ -118,8 +119,8 @@ double LegCheck::check_turning(const Leg& leg, double start, CutModel& stock,
     }
     if (!turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
     if (is_seen_from_afar(leg, start, stock, pairs)) return 0.0;
-    return check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs)
-           + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
+    const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
+    return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
 }
 
 double LegCheck::check_stock(const Leg& leg, double start, CutModel& stock,
