@@ -91,7 +91,7 @@ void messages(ProgramText& text) {
     }
 }
 
-/// Several words of a line at once, whose order of execution is fixed.
+/// Several words on a line, whose order of execution is fixed.
 void crowded_lines(ProgramText& text) {
     text.line("{}{}{}{}{} {}{}", text.once_in(2) ? "G54 " : "G55 ",
               text.once_in(2) ? fmt::format("F{} ", text.positive(500)) : "",

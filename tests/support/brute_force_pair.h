@@ -8,7 +8,7 @@
 
 namespace test_support {
 
-/// The least distance of two sets of points while each of B goes straight on: every pair is tried.
+/// The least distance of two sets of points while each point of B moves straight; tries every pair.
 inline double brute_force_distance(const std::vector<core::Vec3>& a,
                                    const std::vector<core::Vec3>& b,
                                    const core::Transform& a_from_b,

@@ -53,7 +53,7 @@ private:
     }
 
     void change_tool(const PlainState& to) {
-        // A tool that came without a tool change was named by M61.
+        // A tool that was not loaded by a tool change was set by M61.
         if (to.tool != now_.tool) line("M61 Q{}", to.tool);
         if (to.selected_tool != now_.selected_tool) line("T{}", to.selected_tool);
     }

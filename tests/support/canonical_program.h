@@ -6,12 +6,12 @@
 
 namespace test_support {
 
-/// A run written out as a program of LinuxCNC's dialect with nothing modal left to think about:
-/// absolute places and centres in mm, a feed in every feed, offsets written before they count. It
-/// does what the run did.
+/// A run written as a LinuxCNC program without modal dependencies: absolute positions and centres
+/// in mm, a feed in each feed move, offsets written before they take effect. It does the same as
+/// the run.
 ///
-/// Errors: throws std::invalid_argument for a command that it has no way to write: probing,
-///         threads, arcs outside of the three main planes.
+/// Errors: throws std::invalid_argument for commands that it cannot write: probing, threads, arcs
+///         outside the three main planes.
 std::string canonical_program(const PlainRun& run);
 
 } // namespace test_support

@@ -6,7 +6,7 @@
 
 namespace test_support {
 
-/// How far a shape reaches along a unit direction, straight from its definition.
+/// The extent of a shape along a unit direction, directly from its definition.
 inline double reach(const core::ConvexShape& shape, const core::Vec3& n) {
     double core_reach = -core::infinity;
     if (shape.core == core::ConvexShape::Core::cone) {
@@ -31,8 +31,8 @@ inline core::Vec3 random_direction(std::mt19937& rng) {
     }
 }
 
-/// The greatest value of `gap(n)` over unit directions that a short pattern search from `start`
-/// finds.
+/// The greatest value of `gap(n)` over unit directions found by a short pattern search from
+/// `start`.
 template <typename Gap>
 double greatest_gap(const Gap& gap, core::Vec3 start, double first_step = 0.5) {
     double best = gap(start);
@@ -55,8 +55,8 @@ double greatest_gap(const Gap& gap, core::Vec3 start, double first_step = 0.5) {
     return best;
 }
 
-/// The width of the widest slab between A and B, of those tried: every slab is a lower bound of
-/// their distance, whatever the search does; the widest of all is the distance.
+/// The width of the widest slab found between A and B. Every slab is a lower bound of their
+/// distance; the widest of all is the distance.
 inline double slab_between(const core::ConvexShape& a, const core::ConvexShape& b,
                            const core::Vec3& from_b_to_a, std::mt19937& rng) {
     const auto gap = [&](const core::Vec3& n) { return -reach(a, -n) - reach(b, n); };
@@ -70,7 +70,7 @@ inline double slab_between(const core::ConvexShape& a, const core::ConvexShape& 
     return std::max(best, greatest_gap(gap, start));
 }
 
-/// How far a point certainly lies outside a shape; at most 0 when no direction shows it outside.
+/// A lower bound of a point's distance outside a shape; at most 0 when no direction separates them.
 inline double certainly_outside(const core::ConvexShape& shape, const core::Vec3& p,
                                 std::mt19937& rng) {
     const auto gap = [&](const core::Vec3& n) { return glm::dot(n, p) - reach(shape, n); };

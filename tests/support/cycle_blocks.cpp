@@ -15,7 +15,7 @@ CyclePlane plane(ProgramText& text, bool any) {
         {CyclePlane{17, "XY", 'Z'}, CyclePlane{18, "XZ", 'Y'}, CyclePlane{19, "YZ", 'X'}});
 }
 
-/// The words that a cycle needs beside its place.
+/// The words that a cycle needs besides its position.
 std::string own_words(ProgramText& text, int code) {
     const std::string dwell = fmt::format(" P{}", text.positive(2));
     const std::string peck = fmt::format(" Q{}", 0.3 + text.positive(5));
@@ -64,7 +64,7 @@ void tapping(ProgramText& text) {
     cycle(text, code, plane(text, true));
 }
 
-/// Depth above the plane of return, Z left out, L0, other modes in the middle of a cycle.
+/// Depth above the retract plane, missing Z, L0, mode changes within a cycle.
 void odd_cycles(ProgramText& text) {
     text.line("G0 X0 Y0 Z{}", text.length(10));
     const double r = text.positive(5);

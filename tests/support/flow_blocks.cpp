@@ -34,7 +34,7 @@ void leave_or_go_on(ProgramText& text, int label, const char* how) {
     text.line("o{} endif", test);
 }
 
-/// Loops count in parameters of their own, so that they end.
+/// Loops have their own counter parameters, so that they end.
 void counted_loop(ProgramText& text, int depth) {
     const int label = text.label(), counter = 100 + label;
     const int times = text.whole(0, 4);
@@ -114,7 +114,7 @@ void recursion(ProgramText& text) {
     text.line("G1 X[#<_value> MOD 100] Y#1");
 }
 
-/// Several subprograms that call one another, skipped where they stand.
+/// Several subprograms that call one another, skipped where they are defined.
 void nested_calls(ProgramText& text) {
     const int inner = text.label(), outer = text.label();
     text.line("o{} sub", inner);

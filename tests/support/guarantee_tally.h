@@ -9,19 +9,19 @@
 
 namespace test_support {
 
-/// What the bounds of a pair stand on: exact geometry; columns of three families, of fewer for one
-/// of the bodies at least; or nothing below.
+/// The basis of the bounds of a pair: exact geometry; columns of three scan line families, or of
+/// fewer for at least one of the bodies; or no lower bound.
 enum class Footing { exact, three_families, one_family, none };
 constexpr size_t footings = 4, meetings = 5;
 
-/// What came of measuring many known pairs: every claim that did not hold, and what the sample was.
+/// The results of measuring many known pairs: every violated claim, and statistics of the sample.
 struct GuaranteeTally {
     std::array<std::array<size_t, meetings>, footings> counts{};
     std::array<std::vector<double>, footings> widths; // exact: mm, within 1 m; else over h
     std::vector<std::string> failures;
     size_t swept = 0, limited = 0, huge = 0, apart = 0, closed_at_zero = 0, common = 0;
-    size_t to_the_bit = 0; // judged without an allowance for the pose
-    size_t tight = 0;      // exact ones that closed to a ten thousand millionth of their reach
+    size_t to_the_bit = 0; // compared without a tolerance for the pose
+    size_t tight = 0;      // exact pairs with an interval below 1e-10 of their reach
 
     size_t count(Footing footing) const {
         size_t sum = 0;
@@ -33,8 +33,8 @@ struct GuaranteeTally {
         for (const auto& of : counts) sum += of[size_t(meeting)];
         return sum;
     }
-    /// Whether every way to meet, on every footing, and every extra came up often enough to say
-    /// something.
+    /// Whether every relative position, on every basis, and every variant occurred often enough to
+    /// be significant.
     bool is_representative() const {
         size_t least = std::min({4 * swept, 4 * limited, 4 * huge, 4 * apart, 4 * to_the_bit});
         size_t all = 0;
@@ -45,10 +45,10 @@ struct GuaranteeTally {
             }
         return least > all / 50;
     }
-    /// The share of the exact pairs, which all close to a ten millionth of their reach, that close
-    /// a thousand times better.
+    /// The share of the exact pairs, all of whose intervals are below 1e-7 of their reach, with
+    /// intervals a thousand times smaller.
     double tight_share() const { return double(tight) / double(count(Footing::exact)); }
-    /// The share of the exact pairs with points in common that were proven to have some.
+    /// The share of the exact pairs with common points for which this was proven.
     double share_closed_at_zero() const { return double(closed_at_zero) / double(common); }
 
     double width(Footing footing, double share) {
@@ -95,8 +95,8 @@ private:
                    : Footing::three_families;
     }
 
-    /// Twice what the pose's own rounding leaves open: the bodies are where the doubles say, and
-    /// the transform is a rotation to within that; quarter turns are exact.
+    /// Twice the rounding error of the pose: the bodies are where the doubles say, and the
+    /// transform is a rotation to within that. Quarter turns are exact.
     static double pose_error(const KnownPair& pair) {
         return (pair.is_to_the_bit ? 2e-18 : 2e-15) * pair.reach();
     }
@@ -135,7 +135,8 @@ private:
         expect(!open || found.lower == 0.0, "no lower bound without a model");
     }
 
-    /// How wide the interval of exact bodies may be: the search's tolerance, and rounding.
+    /// The permitted width of the interval for exact bodies: the tolerance of the search, and
+    /// rounding.
     static double width_allowed(const KnownPair& pair) {
         if (footing(pair) != Footing::exact) return core::infinity;
         return pair.goal.tolerance + 1e-9 + 1e-7 * pair.reach();

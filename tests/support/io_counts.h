@@ -9,13 +9,13 @@
 
 namespace test_support {
 
-/// What a process has read with read() and its relatives, from its start.
+/// The bytes and calls of read() and related functions of a process since its start.
 struct IoCounts {
     uint64_t bytes = 0, reads = 0;
 };
 
-/// Empty where the kernel does not count. A process that has ended but was not waited for still has
-/// its counts.
+/// Empty if the kernel does not count. A process that has ended but has not been waited for still
+/// has its counts.
 inline std::optional<IoCounts> io_counts(pid_t process = ::getpid()) {
     std::ifstream file("/proc/" + std::to_string(process) + "/io");
     std::string name;

@@ -8,7 +8,7 @@
 namespace test_support {
 namespace {
 
-/// A run of random blocks, each held against what is true.
+/// A run of random blocks, each compared with the true geometry.
 class JudgedMachining {
 public:
     JudgedMachining(unsigned seed, bool turning, MachiningTally& tally)
@@ -19,7 +19,7 @@ public:
           seed_(seed),
           tally_(tally) {
         auto begun = core::start_of_run(known_.setup, start());
-        if (!begun) return; // thinner than the mesh size, and no scan line meets it
+        if (!begun) return; // thinner than the mesh size: no scan line meets it
         state_ = std::move(*begun);
         take({core::ToolChange{core::ToolNumber{1}},
               core::SpindleChange{core::SpindleDirection::clockwise, 1e4}},
@@ -127,8 +127,8 @@ private:
         take_widths(claim, pair);
     }
 
-    /// Of a fixture that flutes have cut, what they cut is no obstacle and not told of; what they
-    /// did not is no place to go.
+    /// The part of a fixture that flutes have cut is not an obstacle and is not reported; the part
+    /// that they have not cut remains an obstacle.
     void judge_cut_fixture(const std::vector<TruePassage>& block, const core::PairClearance& claim,
                            const TruePair& pair, bool crashed) {
         if (claim.verdict != core::Verdict::clear) return;
@@ -141,7 +141,7 @@ private:
                  describe(claim, search.best()));
     }
 
-    /// Notes which expendable fixtures flutes may have cut.
+    /// Stores which expendable fixtures the flutes may have cut.
     void note_cut_fixtures(const std::vector<TruePassage>& block) {
         cut_fixtures_.resize(known_.world.fixtures.size());
         for (const TruePassage& by : block) {
@@ -188,7 +188,7 @@ private:
     void judge_witness(const std::vector<TruePassage>& block, const core::PairClearance& claim,
                        const TruePair& pair) {
         const bool on_base = !pair.mount(known_.world).on_table;
-        if (on_base && turning_) return; // seen from the stock it does not stand still
+        if (on_base && turning_) return; // it moves relative to the stock
         ++tally_.witnesses;
         constexpr double slack = 1e-4;
         const core::Vec3 p = in_body(claim.on_body, pair);
@@ -241,7 +241,7 @@ private:
         for (size_t i = kept; i < cloud_.size(); ++i) judge_columns(cloud_[i]);
     }
 
-    /// The columns must hold what stands, however finely they are divided.
+    /// The columns must contain the remaining material, however finely they are divided.
     void judge_columns(const core::Vec3& p) {
         const core::Vec3 half(1e-9);
         const core::ConvexShape point[] = {core::convex(core::Aabb{p - half, p + half})};
@@ -254,7 +254,7 @@ private:
                  fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }
 
-    /// Keeps a point near the wall that a passage has cut, as it may be all that stands of a fin.
+    /// Keeps a point near the wall that a passage has cut, as it may be all that is left of a fin.
     void keep_beside(const TruePassage& by) {
         const core::RevolvedProfile& flutes = by.tool->part(core::PartKind::flutes)->profile;
         const core::Vec3 p = dice_.within(bounds(flutes).grown(1.0));
@@ -291,7 +291,7 @@ private:
     unsigned seed_;
     MachiningTally& tally_;
     std::optional<core::SimulatorState> state_;
-    std::vector<core::Vec3> cloud_; // of the stock, there for certain
+    std::vector<core::Vec3> cloud_; // of the stock, certainly existing
     std::vector<bool> cut_fixtures_;
     uint32_t block_ = 0;
 };

@@ -14,26 +14,27 @@
 
 namespace test_support {
 
-/// How a body is given to the program.
+/// How a body is represented in the program.
 enum class BodyForm {
     primitive,
     profile,
     mesh,
-    lines, // from here on known by scan lines
-    cut,   // a stock with slots cut into it, with the columns that cutting left
+    lines, // from here on represented by scan lines
+    cut,   // a stock with slots cut into it, with the columns left by cutting
     lines_and_one_family,
     lines_and_columns
 };
 
-/// A body whose every distance is known in closed form, and the same as the program has it.
+/// A body whose distances are known in closed form, together with its representation in the
+/// program.
 struct KnownBody {
     std::string name;
     std::vector<TruePart> parts;
     BodyForm form = BodyForm::primitive;
     double spacing = 1.0;
-    core::Vec3 middle = core::Vec3(0.0); // of its box
+    core::Vec3 middle = core::Vec3(0.0); // centre of its box
     double size = 0.0;                   // half its longest diagonal
-    bool by_mesh = false;                // lines and columns are those of its mesh
+    bool by_mesh = false;                // lines and columns come from its mesh
     core::MeasuredBody body;
 
     bool is_exact() const { return form <= BodyForm::mesh; }
@@ -92,7 +93,7 @@ inline core::Mesh mesh_of(const std::vector<TruePart>& boxes) {
     return mesh;
 }
 
-/// The shape of a body that is known exactly.
+/// The exact shape of a body.
 inline core::BodyShape shape_of(const KnownBody& known) {
     if (known.form == BodyForm::mesh) return core::solid_mesh(mesh_of(known.parts));
     core::RevolvedProfile profile;
@@ -135,7 +136,7 @@ inline core::ColumnFunction columns_of(const KnownBody& known) {
     };
 }
 
-/// A box cut along X by flat tools so that the parts are left: a floor, and walls on it.
+/// A box cut along X by flat tools, leaving a floor with walls on it.
 inline core::CutModel cut_model_of(const KnownBody& known) {
     const core::Aabb box = bounds(known.parts), floor = box_of(std::get<TrueBox>(known.parts[0]));
     core::CutModel model = core::make_cut_model({core::SolidBox{box}, 0.0}, known.spacing).value();
@@ -166,7 +167,7 @@ inline core::Result<core::MeasuredBody> scanned(const KnownBody& known) {
     return core::measured_body(lines, core::outer_model(box, lines.grid, columns_of(known)));
 }
 
-/// Makes what the program has of a body, in an engine.
+/// Creates the body's representation in an engine.
 inline core::Result<KnownBody> built(core::DistanceEngine& engine, KnownBody known) {
     const core::Aabb box = bounds(known.parts);
     known.middle = box.center();
@@ -178,7 +179,7 @@ inline core::Result<KnownBody> built(core::DistanceEngine& engine, KnownBody kno
     return known;
 }
 
-/// What is true of two bodies, their parts taken together.
+/// The true distance of two bodies, all their parts included.
 inline Real true_distance(const KnownBody& a, const KnownBody& b, const core::Transform& a_from_b) {
     const RealPose pose = exactly(a_from_b);
     Real least = real_infinity;

@@ -5,10 +5,10 @@
 
 namespace test_support {
 
-/// Where two bodies were meant to stand.
+/// The intended relative position of two bodies.
 enum class Meeting { near, far, touching, overlapping, nested };
 
-/// Two bodies, how they stand and move, and how far they truly are apart.
+/// Two bodies, their pose and motion, and their true distance.
 struct KnownPair {
     const KnownBody* a = nullptr;
     const KnownBody* b = nullptr;
@@ -16,9 +16,9 @@ struct KnownPair {
     core::MeasureGoal goal;
     Meeting meeting = Meeting::near;
     Real truth = 0;
-    bool is_to_the_bit = false; // the truth is that of the very doubles of the pose
+    bool is_to_the_bit = false; // the true distance holds for exactly the doubles of the pose
 
-    /// How large the lengths are that enter it.
+    /// The magnitude of the lengths involved.
     double reach() const {
         return a->body.reach + b->body.reach + glm::length(a_from_b.translation)
                + glm::length(goal.sweep);

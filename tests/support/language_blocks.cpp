@@ -18,7 +18,7 @@ std::string parameter(ProgramText& text) {
     }
 }
 
-/// An expression in brackets that mostly has a value of some thousands at most.
+/// An expression in brackets with a value that is usually some thousands at most.
 std::string expression(ProgramText& text, int depth);
 
 std::string operand(ProgramText& text, int depth) {

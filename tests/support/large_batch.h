@@ -6,7 +6,7 @@
 
 namespace test_support {
 
-/// One of many programs, with texts and numbers of its own, and so many findings.
+/// One of many program results, with its own texts and numbers, and a number of findings.
 inline app::ProgramResult one_of_many(size_t i, size_t findings) {
     using core::Severity;
     constexpr core::Verdict verdicts[] = {core::Verdict::clear, core::Verdict::undecided,
@@ -49,7 +49,7 @@ inline app::ProgramResult one_of_many(size_t i, size_t findings) {
     return program;
 }
 
-/// A batch of so many programs, with so many findings in each.
+/// A batch with a number of programs and findings in each.
 inline app::BatchResult large_batch(size_t programs, size_t findings) {
     app::BatchResult batch;
     for (size_t i = 0; i < programs; ++i) batch.programs.push_back(one_of_many(i, findings));

@@ -8,8 +8,8 @@
 
 namespace test_support {
 
-/// A run with so many blocks, made from blocks 8 to 29 of another. Each has a text and numbers of
-/// its own.
+/// A run with `count` blocks, made from blocks 8 to 29 of another one. Each block has its own text
+/// and numbers.
 inline app::CheckRun lengthened(app::CheckRun run, size_t count) {
     const std::vector<app::CheckedBlock> blocks(run.blocks.begin() + 8, run.blocks.begin() + 30);
     run.blocks.clear();

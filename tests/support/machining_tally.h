@@ -7,16 +7,16 @@
 
 namespace test_support {
 
-/// What came of many blocks: every claim that did not hold, and what the sample was.
+/// The results of many blocks: every violated claim, and statistics of the sample.
 struct MachiningTally {
     size_t blocks = 0, pairs = 0, near = 0, overlaps = 0, witnesses = 0, contacts = 0;
     std::array<size_t, 4> verdicts{};
-    size_t sharp = 0, fixture_pairs = 0; // no wider than 1e-3 mm, and all that do not turn
+    size_t sharp = 0, fixture_pairs = 0; // intervals of at most 1e-3 mm; all pairs without rotation
     double widest = 0.0;                 // against fixtures, mm
     std::vector<double> stock_widths;    // over the mesh size
     size_t settled = 0;                  // stock pairs that are decided or narrower than 0.05 mm
-    size_t cut_fixtures = 0; // blocks in which one is called clear by flutes that have cut it
-    size_t standing = 0;     // points beside a cut, looked for in the columns
+    size_t cut_fixtures = 0; // blocks in which a fixture cut by the flutes is reported clear
+    size_t standing = 0;     // points beside a cut, expected in the columns
     std::vector<std::string> failures;
 
     bool is_representative() const {
@@ -26,7 +26,7 @@ struct MachiningTally {
     std::string report() const;
 };
 
-/// What came of some programs, each of so many blocks and on a set-up of its own.
+/// The results of a number of programs with `blocks` blocks each, every one on its own set-up.
 MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning);
 
 } // namespace test_support

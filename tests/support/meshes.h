@@ -21,8 +21,8 @@ inline core::Mesh box_mesh(const core::Vec3& min, const core::Vec3& max) {
     return mesh;
 }
 
-/// A cube of half size 10 with a hole, thin as a needle, that runs from (-8.2, 0.2) in the top face
-/// aslant through the bottom and ends outside of it: there the mesh is inside out.
+/// A cube of half size 10 with a needle-thin hole that runs from (-8.2, 0.2) in the top face
+/// obliquely through the bottom and ends outside: there the mesh is inside out.
 inline core::Mesh cube_with_a_fold() {
     core::Mesh mesh = box_mesh(core::Vec3(-10.0), core::Vec3(10.0));
     mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4); // the top
@@ -100,7 +100,7 @@ inline core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
     return mesh;
 }
 
-/// Both meshes in one, as they come from a file of several shells.
+/// Both meshes in one, as in a file with several shells.
 inline core::Mesh together(core::Mesh a, const core::Mesh& b) {
     const auto first = static_cast<uint32_t>(a.vertices.size());
     a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());

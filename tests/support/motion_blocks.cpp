@@ -43,7 +43,7 @@ ArcWords arc_words(ProgramText& text) {
         {ArcWords{'7', "XYZ", "IJK"}, ArcWords{'8', "ZXY", "KIJ"}, ArcWords{'9', "YZX", "JKI"}});
 }
 
-/// A circle through a place where the program stands, and an end on it.
+/// A circle through the current position and an end point on it.
 struct Circle {
     std::array<double, 2> from, centre, to;
     double radius;
@@ -152,7 +152,7 @@ void feed_modes(ProgramText& text) {
     }
 }
 
-/// Entries, corners and exits of cutter radius compensation round a polygon.
+/// Entries, corners and exits of cutter radius compensation around a polygon.
 void compensation(ProgramText& text) {
     const int sides = text.whole(3, 7);
     const double size = 20.0 + text.positive(30), first = text.whole(0, 359);

@@ -87,7 +87,7 @@ void tool_offsets(ProgramText& text) {
     if (text.once_in(4)) text.line("G92{}", text.axis_words("XYZ"));
 }
 
-/// The tool table is written to while other offsets hold.
+/// Writes to the tool table while other offsets are active.
 void tool_table(ProgramText& text) {
     const int tool = text.whole(1, 9);
     switch (text.whole(0, 2)) {

@@ -8,14 +8,14 @@
 
 namespace test_support {
 
-/// How often a text has a part.
+/// The number of occurrences of a part in a text.
 inline size_t count_of(const std::string& text, const std::string& part) {
     size_t count = 0;
     for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
     return count;
 }
 
-/// A column of an HTML report, from runs of equal values.
+/// Expands a column of an HTML report from its runs of equal values.
 inline std::vector<int64_t> unpacked(const nlohmann::json& runs) {
     std::vector<int64_t> values;
     for (size_t i = 0; i < runs.size(); i += 2)
@@ -23,7 +23,7 @@ inline std::vector<int64_t> unpacked(const nlohmann::json& runs) {
     return values;
 }
 
-/// The values of which these are the steps.
+/// The values from their differences.
 inline std::vector<int64_t> summed(std::vector<int64_t> steps) {
     for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
     return steps;

@@ -20,14 +20,14 @@ inline RealVec farthest(const TruePart& part, const RealVec& n) {
     return {r * n.x, r * n.y, n.z > 0 ? c.z1 : c.z0};
 }
 
-/// A point within a part that is no torus.
+/// A point inside a part other than a torus.
 inline RealVec inner_point(const TruePart& part, std::mt19937& rng) {
     const RealVec n = RealVec(random_direction(rng));
     const Real share = uniform(rng, 0.02, 0.98);
     return share * farthest(part, n) + (1 - share) * farthest(part, -n);
 }
 
-/// Pairs of bodies in random places, a pose at a time; each pair of bodies stands in many poses.
+/// Generates pairs of bodies in random poses, several poses for each pair.
 class PairGenerator {
 public:
     explicit PairGenerator(unsigned seed) : rng_(seed) {}
@@ -83,8 +83,8 @@ private:
         return random_pose(rng_, 1.0).rotation;
     }
 
-    /// Two convex bodies put where their distance follows from how they were put: a slab of that
-    /// width lies between them, or they have a point in common.
+    /// Places two convex bodies so that their distance is known: separated by a slab of that width,
+    /// or with a common point.
     void place(KnownPair& pair) {
         const TruePart& p = a_->parts[0];
         const TruePart& q = b_->parts[0];
@@ -111,8 +111,8 @@ private:
         return size * std::pow(10.0, uniform(rng_, -4.0, 0.0));
     }
 
-    /// Moves B towards A along a line until they stand as meant; the truth is worked out for where
-    /// they then stand.
+    /// Moves B towards A along a line to the intended relative position, and calculates the true
+    /// distance there.
     void approach(KnownPair& pair) {
         const core::Vec3 n = one_in(rng_, 5) ? core::Vec3(1, 0, 0) : random_direction(rng_);
         const double size = a_->size + b_->size;
@@ -144,7 +144,7 @@ private:
         return one_in(rng_, 3) ? inside : outside + beyond;
     }
 
-    /// B moves past A, if one of them is a ball: over a straight motion a ball is a capsule.
+    /// Moves B past A, if one of them is a ball: over a straight motion a ball is a capsule.
     void sweep_past(KnownPair& pair, double size) {
         const core::Vec3 sweep = size * uniform(rng_, 0.0, 3.0) * random_direction(rng_);
         const core::Vec3 start =

@@ -10,7 +10,7 @@ namespace test_support {
 /// X Y Z A B C U V W in mm and degrees.
 using Axes = std::array<double, 9>;
 
-/// What holds while a command is carried out, whichever interpreter said it.
+/// The state during a command, from either interpreter.
 struct PlainState {
     double feed = 0.0;   // mm/min, or mm/rev
     double pitch = 0.0;  // mm/rev of threads
@@ -30,26 +30,26 @@ struct PlainState {
     bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 };
 
-/// Something that moves, waits, stops or switches.
+/// A command that moves, waits, stops or switches something.
 struct PlainCommand {
     size_t line = 0;
     std::string kind;           // as in traces: straight_feed, arc_feed, dwell ...
     Axes end{};                 // of motions
     double centre[2]{};         // of arcs
-    int turns = 0;              // likewise
-    std::vector<double> values; // of all others
+    int turns = 0;              // of arcs
+    std::vector<double> values; // of all other commands
     PlainState state;
 };
 
-/// What an interpreter makes of a program.
+/// The result of an interpreter for a program.
 struct PlainRun {
     std::vector<PlainCommand> commands;
     std::vector<std::string> messages, prints;
-    bool has_actions = true;       // whether spindle, coolant, outputs and modes are told
+    bool has_actions = true;       // whether spindle, coolant, outputs and modes are reported
     bool is_endless = false;       // had to be stopped
     std::optional<size_t> refused; // the line
     std::string message;           // why
-    std::string doubt;             // its two sources have other numbers
+    std::string doubt;             // its two sources disagree
     std::string problem;           // the reference contradicts itself, or crashed
 };
 

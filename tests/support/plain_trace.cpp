@@ -6,7 +6,7 @@
 namespace test_support {
 namespace {
 
-/// What is not known stands at zero, where the reference starts.
+/// Unknown coordinates are zero, where the reference starts.
 Axes axes_of(const gcode::Position& position) {
     Axes axes{};
     for (size_t axis = 0; axis < 9; ++axis) axes[axis] = position[axis].value_or(0.0);
@@ -33,7 +33,7 @@ void take_override(const T& command, PlainState& state) {
     *switches[static_cast<size_t>(command.kind)] = command.enabled;
 }
 
-/// Modes that a command changes, by the names of its fields.
+/// Modes changed by a command, by the names of its fields.
 template <typename T>
 void take_state(const T& command, PlainState& state) {
     if constexpr (requires { command.offsets; }) take_offsets(command.offsets, state);
@@ -61,7 +61,7 @@ void take_state(const T& command, PlainState& state) {
         state.selected_tool = core::value_of(command.tool);
 }
 
-/// The values of a command that is no motion.
+/// The values of a command that is not a motion.
 template <typename T>
 std::vector<double> values_of(const T& command) {
     if constexpr (requires { command.with_motion; })
@@ -75,8 +75,8 @@ std::vector<double> values_of(const T& command) {
         return {};
 }
 
-/// Modes take effect with the next command that is none; what the reference does not tell of is
-/// left out.
+/// Modes take effect with the next command that is not a mode; modes that the reference does not
+/// report are left out.
 bool is_mode(const std::string& kind) {
     constexpr const char* modes[] = {
         "select_tool",      "spindle",         "coolant",

@@ -8,14 +8,14 @@
 
 namespace test_support {
 
-/// The control as the reference starts: LinuxCNC's dialect, at 0, 0, 0, with the tools of
+/// The start state of the reference: LinuxCNC's dialect, at 0, 0, 0, with the tools of
 /// `reference_tools`.
 gcode::Environment reference_environment();
 
-/// A run of our interpreter as plain commands.
+/// Converts a run of our interpreter to plain commands.
 PlainRun plain_run(const gcode::Run& run);
 
-/// What our interpreter makes of a program in `reference_environment`.
+/// Runs a program with our interpreter in `reference_environment`.
 PlainRun run_feeler(const std::string& program);
 
 } // namespace test_support

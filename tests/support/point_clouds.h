@@ -9,7 +9,7 @@ namespace test_support {
 
 using Points = std::vector<core::Vec3>;
 
-/// Points anywhere in a cube of half size `reach`.
+/// Random points in a cube of half size `reach`.
 inline Points random_cloud(std::mt19937& rng, int count, double reach) {
     std::uniform_real_distribution<double> place(-reach, reach);
     Points cloud;
@@ -20,7 +20,7 @@ inline Points random_cloud(std::mt19937& rng, int count, double reach) {
     return cloud;
 }
 
-/// Points 1 mm apart in rows, from the origin on.
+/// Points 1 mm apart in rows, starting at the origin.
 inline Points block_of_points(int nx, int ny, int nz) {
     Points points;
     for (int x = 0; x < nx; ++x)

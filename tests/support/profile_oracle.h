@@ -8,8 +8,8 @@
 
 namespace test_support {
 
-/// How far a point lies outside a piece: convex in the point, at most the true distance, negative
-/// inside, and there exactly minus the distance to the surface.
+/// The distance of a point outside a piece: convex in the point and at most the true distance.
+/// Inside it is exactly minus the distance to the surface.
 inline double outside(const core::ProfileElement& e, const core::Vec3& p) {
     const double r = std::hypot(p.x, p.y);
     if (e.margin > 0.0) {
@@ -27,7 +27,7 @@ inline double outside(const core::RevolvedProfile& profile, const core::Vec3& p)
     return least;
 }
 
-/// Where a convex function is least between `low` and `high`, by golden section.
+/// The argument between `low` and `high` at which a convex function is least, by golden section.
 template <typename Function>
 double argmin_convex(const Function& f, double low, double high, int steps = 70) {
     constexpr double golden = 0.6180339887498949;
@@ -49,7 +49,7 @@ double argmin_convex(const Function& f, double low, double high, int steps = 70)
     return fa < fb ? a : b;
 }
 
-/// The same for a piece moved straight from one place to another.
+/// The same for a piece moved straight between two positions.
 inline double outside_sweep(const core::ProfileElement& e, const core::Vec3& from,
                             const core::Vec3& to, const core::Vec3& p) {
     const auto at = [&](double t) { return outside(e, p - (from + t * (to - from))); };
@@ -64,8 +64,8 @@ inline double outside_sweep(const core::RevolvedProfile& profile, const core::Ve
     return least;
 }
 
-/// Points (r, z) along the outline of the union of the pieces, at most `step` apart. Seams within
-/// the body are no outline.
+/// Points (r, z) along the outline of the union of the pieces, at most `step` apart. Seams inside
+/// the body are not part of the outline.
 inline std::vector<core::Vec3> outline(const core::RevolvedProfile& profile, double step) {
     std::vector<core::Vec3> points;
     const auto offer = [&](const core::Vec3& p) {

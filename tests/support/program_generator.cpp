@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& program) {
     return lines;
 }
 
-/// The words of a line, cut before each letter; bad enough for what is to be spoilt.
+/// The words of a line, split before each letter; good enough for programs that are to be damaged.
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words(1);
     for (const char c : line) {
@@ -91,7 +91,7 @@ std::string generated_program(const std::string& feature, uint32_t seed, int blo
 std::string spoilt_program(const std::string& program, uint32_t seed) {
     ProgramText random(seed);
     std::vector<std::string> lines = lines_of(program);
-    const int last = static_cast<int>(lines.size()) - 2; // the end stays
+    const int last = static_cast<int>(lines.size()) - 2; // keep the end
     if (last < 1) return program;
     const auto at = static_cast<size_t>(random.whole(1, last));
     if (random.once_in(8)) {

@@ -8,14 +8,14 @@
 
 namespace test_support {
 
-/// A part of LinuxCNC's language, and how random blocks of it are written: each leaves the modes
-/// as the head of a program sets them, but for offsets, tool and what a block is about.
+/// A part of LinuxCNC's language and the generator of random blocks for it. Each block restores the
+/// modes that the head of the program sets, except offsets, tool and the subject of the block.
 struct ProgramFeature {
     std::string name;
     void (*write)(ProgramText& text);
 };
 
-/// The parts of the language, a table for each topic.
+/// The parts of the language by topic.
 std::vector<ProgramFeature> motion_features();
 std::vector<ProgramFeature> offset_features();
 std::vector<ProgramFeature> cycle_features();
@@ -26,13 +26,13 @@ std::vector<ProgramFeature> flow_features();
 /// All of them.
 const std::vector<ProgramFeature>& program_features();
 
-/// A random program of so many blocks of one feature, or of all ("everything"), with moves between
-/// them, that ends with M2. The same seed, the same program.
+/// A random program with a number of blocks of one feature, or of all ("everything"), with moves in
+/// between, ending with M2. The same seed gives the same program.
 ///
-/// Result: mostly valid; the reference is the judge. Empty for a feature that does not exist.
+/// Result: mostly valid, as judged by the reference. Empty for a feature that does not exist.
 std::string generated_program(const std::string& feature, uint32_t seed, int blocks = 20);
 
-/// A program with one thing wrong, mostly: a word dropped, doubled, changed in letter or value, two
+/// A program with usually one error: a word removed, duplicated or changed in letter or value, two
 /// lines swapped, a bracket lost.
 std::string spoilt_program(const std::string& program, uint32_t seed);
 

@@ -10,7 +10,7 @@
 
 namespace test_support {
 
-/// A random program while it is being written: the same seed, the same text.
+/// Writes a random program; the same seed gives the same text.
 class ProgramText {
 public:
     explicit ProgramText(uint32_t seed) : random_(seed) {}
@@ -18,7 +18,7 @@ public:
     int whole(int lowest, int highest) {
         return lowest + static_cast<int>(random_() % static_cast<uint32_t>(highest - lowest + 1));
     }
-    /// True once in so many times.
+    /// True with a probability of 1 / `times`.
     bool once_in(int times) { return whole(1, times) == 1; }
 
     template <typename T>
@@ -47,12 +47,12 @@ public:
         text_ += fmt::format(format, std::forward<Values>(values)...) + "\n";
     }
 
-    /// A straight move, so that whatever changed before it shows.
+    /// A straight move, which makes every earlier change visible.
     void move(const std::string& letters = "XYZ") {
         line("{}{}", one_of({"G0", "G1", "G1", ""}), axis_words(letters));
     }
 
-    /// A number no other label of this program has.
+    /// A label number not used before in this program.
     int label() { return ++labels_; }
 
     const std::string& text() const { return text_; }

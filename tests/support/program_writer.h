@@ -5,8 +5,8 @@
 
 namespace test_support {
 
-/// An NC program whose first lines are a head that takes tool 1 with the spindle turning and stands
-/// at Z60 over X0 Y0; `lines` follow from line `first_line` on.
+/// An NC program whose head loads tool 1, starts the spindle and moves to Z60 above X0 Y0; `lines`
+/// follow from line `first_line` on.
 inline constexpr int first_line = 6;
 
 inline std::string program(const std::vector<std::string>& lines,

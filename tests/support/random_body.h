@@ -23,15 +23,15 @@ inline TrueCapsule ball_at(const core::Vec3& at, double radius) {
     return {RealVec(at), RealVec(at), radius};
 }
 
-/// A place of a needle or fin on a block of half size `half` that no line parallel to it meets:
-/// lines stand half a mesh size off the multiples of it.
+/// A position for a needle or fin on a block of half size `half` where no parallel scan line meets
+/// it: scan lines are half a mesh size off its multiples.
 inline double between_lines(std::mt19937& rng, double h, double half) {
     const int most = static_cast<int>((half - 0.2 * h) / h);
     return h * (int(rng() % unsigned(2 * most + 1)) - most);
 }
 
-/// A block with something thin on top of it: a needle between all lines, or a fin that lies
-/// between those of two families.
+/// A block with something thin on top: a needle between all scan lines, or a fin between those of
+/// two families.
 inline std::vector<TruePart> block_with_sliver(std::mt19937& rng, double h, bool needle) {
     const double half = h * uniform(rng, 1.3, 3.0), thick = h * uniform(rng, 0.001, 0.2);
     const double top = half + h * uniform(rng, 0.2, 4.0);
@@ -41,7 +41,7 @@ inline std::vector<TruePart> block_with_sliver(std::mt19937& rng, double h, bool
             box_round(at, {thick, needle ? thick : half, 0.5 * top})};
 }
 
-/// What two or three slots along X leave of a box: a floor, and walls, some thinner than h.
+/// The rest of a box after two or three slots along X: a floor and walls, some thinner than h.
 inline std::vector<TruePart> floor_and_walls(std::mt19937& rng, double h) {
     const double x = h * uniform(rng, 1.0, 3.0), top = h * uniform(rng, 1.0, 4.0);
     double y = 0.0;
@@ -117,7 +117,7 @@ inline KnownBody random_body(std::mt19937& rng, BodyKind kind, double h) {
                           {BodyForm::profile});
     case BodyKind::slots:
         return {"slots", floor_and_walls(rng, h), BodyForm::cut, h};
-    default: // no line of a mesh size like that of the others would meet it
+    default: // no scan line of a typical mesh size would meet it
         return with_forms(rng, "sliver", {TrueCapsule{{0, 0, -l}, {0, 0, l}, 0.06 * h}}, 0.05 * h,
                           {BodyForm::profile});
     }
@@ -128,7 +128,7 @@ inline bool only_boxes(const KnownBody& known) {
                        [](const TruePart& part) { return std::holds_alternative<TrueBox>(part); });
 }
 
-/// The body far from the origin of its own frame; boxes can stand there, round bodies cannot.
+/// Moves the body far from the origin of its own frame; possible for boxes, not for round bodies.
 inline void move_away(KnownBody& known, const core::Vec3& by) {
     if (known.form < BodyForm::mesh || known.form == BodyForm::cut || !only_boxes(known)) return;
     for (TruePart& part : known.parts) {
@@ -137,7 +137,7 @@ inline void move_away(KnownBody& known, const core::Vec3& by) {
     }
 }
 
-/// A body of random kind, form, size and place. The program must take it, or it throws.
+/// A body of random kind, form, size and position. Throws if the program refuses it.
 inline KnownBody random_body(std::mt19937& rng, core::DistanceEngine& engine) {
     double h = 1.0;
     if (one_in(rng, 6)) h = std::pow(10.0, uniform(rng, -2.0, 3.0));

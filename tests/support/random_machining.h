@@ -8,14 +8,14 @@
 
 namespace test_support {
 
-/// The events of a block, and the same as passages of what is true.
+/// The events of a block and the corresponding true passages.
 struct KnownBlock {
     std::vector<core::Event> events;
     std::vector<TruePassage> passages;
     bool is_cycle = false;
 };
 
-/// A machinist who knows no fear: random blocks over, in and beside a stock.
+/// Generates random blocks above, in and beside a stock, without regard to collisions.
 class RandomMachining {
 public:
     RandomMachining(Dice& dice, const KnownSetup& known) : dice_(dice), known_(known) {
@@ -77,13 +77,13 @@ private:
         block.events.push_back(core::FixtureChange{fixture, there_[fixture]});
         if (there_[fixture]) add_passage(block, {at_, at_}, false);
     }
-    /// The machine stands somewhere else, and nobody said how it came there.
+    /// Moves the machine to another position without an event.
     void jump() {
         tip_ = dice_.within(known_.box.grown(10.0)) + core::Vec3(0, 0, 8);
         at_ = values_at(tip_, at_[3], at_[5]);
     }
 
-    /// Drills cut along their axis alone.
+    /// Drills cut along their axis only.
     bool cuts_along(const core::Motion& motion) const {
         return turns_ && core::cuts_along(known_.setup.tools.at(number_), motion);
     }
@@ -96,7 +96,7 @@ private:
         const double d = known_.setup.tools.at(number_).description.diameter;
         if (dice_.chance(0.2)) return last_[1]; // back to where it was
         if (dice_.chance(0.15)) {
-            // Beside the last way, so near that a fin stands.
+            // Beside the previous path, close enough to leave a fin.
             const core::Vec3 way = last_[0] - last_[1];
             const core::Vec3 side = glm::length(way) > 0.1
                                         ? glm::normalize(glm::cross(way, core::Vec3(0.1, 0.2, 1)))
@@ -143,7 +143,7 @@ private:
         last_[0] = tip_ = tip;
     }
 
-    /// Each axis at its own speed, any where none is stated.
+    /// Each axis at its own speed, arbitrary where none is given.
     void add_dogleg(KnownBlock& block, const core::AxisValues& there) {
         core::AxisValues arrival{};
         std::vector<double> bends;

@@ -13,7 +13,7 @@
 
 namespace test_support {
 
-/// Draws from a generator.
+/// Random numbers.
 struct Dice {
     std::mt19937 random;
 
@@ -34,7 +34,7 @@ struct Dice {
     }
 };
 
-/// A set-up as the program has it, and what is true of it.
+/// A set-up in the program's representation and its true geometry.
 struct KnownSetup {
     core::Setup setup;
     TrueMachining world;
@@ -173,8 +173,8 @@ inline void add_allowances(Dice& dice, KnownSetup& known) {
     known.setup.search_limit = dice.chance(0.5) ? 50.0 : dice.between(4.0, 50.0);
 }
 
-/// A stock, often thinner than the mesh size, between fixtures, three tools, and what pairs keep.
-/// `turning`: on a trunnion.
+/// A random set-up: a stock, often thinner than the mesh size, between fixtures, three tools, and
+/// allowances. `turning`: on a trunnion.
 inline KnownSetup random_setup(Dice& dice, bool turning) {
     KnownSetup known;
     if (turning) {

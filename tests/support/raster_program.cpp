@@ -25,7 +25,7 @@ double raster_surface(double x, double y) {
 }
 
 double raster_tip(double x, double y, double radius) {
-    // The point of contact (u, v) is radius away from the centre along the normal there.
+    // The point of contact (u, v) is one radius away from the centre along the normal there.
     double u = x, v = y;
     for (int i = 0; i < 200; ++i) {
         const Slope s = slope_at(u, v);
@@ -44,7 +44,7 @@ RasterProgram raster_program(double stepover, double spacing) {
     const int rows = static_cast<int>(std::lround(side / stepover));
     const int columns = static_cast<int>(std::lround(side / spacing));
     RasterProgram program{{{0, 0, -30}, {side, side, 0}}, {}, {}};
-    // Posted programs have three digits.
+    // Posted programs have three decimals.
     const auto posted = [](double value) { return std::round(value * 1000.0) / 1000.0; };
     for (int row = 0; row < rows; ++row)
         for (int k = 0; k < columns; ++k) {

@@ -17,14 +17,14 @@ struct ReferenceMotion {
 
 struct ReferenceRun {
     std::vector<ReferenceMotion> motions;
-    std::string refusal; // empty: it ran to its end; else the reason
+    std::string refusal; // empty: ran to its end; else the reason
 };
 
 inline bool reference_is_installed() {
     return std::filesystem::exists("/usr/bin/rs274") && std::filesystem::exists("/usr/bin/python3");
 }
 
-/// What LinuxCNC's interpreter makes of each program, whose lines must end in M2.
+/// Runs programs, whose lines must end in M2, with LinuxCNC's interpreter.
 inline std::vector<ReferenceRun> run_reference(const std::vector<std::string>& programs) {
     const ScopedFolder folder;
     std::string all;

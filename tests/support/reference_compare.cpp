@@ -10,13 +10,13 @@
 #include "tests/support/run_difference.h"
 #include "tests/support/scoped_folder.h"
 
-// For hunting by hand: prints how our interpreter differs from LinuxCNC's.
+// Command line tool: prints the differences between our interpreter and LinuxCNC's.
 //     reference_compare FILE...                          programs
-//     reference_compare --generate FEATURE SEED COUNT    random ones, from a seed on
-//     reference_compare --spoil FEATURE SEED COUNT       nearly valid ones
+//     reference_compare --generate FEATURE SEED COUNT    random programs from a seed on
+//     reference_compare --spoil FEATURE SEED COUNT       nearly valid programs
 //     reference_compare --print FEATURE SEED             the program of a seed
-//     reference_compare --print-spoilt FEATURE SEED      likewise
-//     reference_compare --judge COUNT                    what share of each feature is accepted
+//     reference_compare --print-spoilt FEATURE SEED      the damaged program of a seed
+//     reference_compare --judge COUNT                    share of each feature that is accepted
 namespace test_support {
 namespace {
 

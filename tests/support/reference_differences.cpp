@@ -6,7 +6,7 @@
 namespace test_support {
 namespace {
 
-/// The cells of a row of a table, without the blanks and back quotes around them.
+/// The cells of a table row, without surrounding blanks and back quotes.
 std::vector<std::string> cells_of(const std::string& row) {
     std::vector<std::string> cells;
     std::istringstream stream(row.substr(1));

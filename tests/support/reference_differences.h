@@ -6,13 +6,13 @@
 
 namespace test_support {
 
-/// Where we differ from the reference on purpose.
+/// Deliberate differences from the reference.
 struct ReferenceDifferences {
-    std::vector<std::string> refusals;           // parts of its messages that are warnings with us
+    std::vector<std::string> refusals; // parts of its error messages that are warnings here
     std::map<std::string, std::string> programs; // file name to reason: not compared
 };
 
-/// What tests/gcode/reference_differences.md lists.
+/// The contents of tests/gcode/reference_differences.md.
 const ReferenceDifferences& reference_differences();
 
 } // namespace test_support

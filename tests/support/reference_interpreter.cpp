@@ -26,7 +26,7 @@ std::string tool_table() {
     return text;
 }
 
-/// The words of a line of the answer.
+/// The words of a line of the output.
 class Words {
 public:
     explicit Words(const std::string& line) : stream_(line) {}

@@ -7,7 +7,7 @@
 
 namespace test_support {
 
-/// A row of the tool table that every reference run starts with.
+/// A row of the tool table with which every reference run starts.
 struct ReferenceTool {
     int number;
     Axes offset;
@@ -21,10 +21,10 @@ const std::vector<ReferenceTool>& reference_tools();
 /// Whether LinuxCNC's interpreter is installed with its Python module.
 bool reference_is_installed();
 
-/// What LinuxCNC's interpreter makes of programs, one answer for each: from 0, 0, 0, in mm, with
-/// the tools of `reference_tools` and no variables.
+/// Runs programs with LinuxCNC's interpreter, one result for each: from 0, 0, 0, in mm, with the
+/// tools of `reference_tools` and no variables.
 ///
-/// Cost: some 80 ms for each program, and 0.1 s.
+/// Cost: about 80 ms for each program, and 0.1 s.
 std::vector<PlainRun> run_reference(const std::vector<std::string>& programs);
 
 } // namespace test_support

@@ -38,14 +38,14 @@ bool has_pitch(const PlainCommand& command) {
     return command.kind == "thread_feed" || command.kind == "rigid_tap";
 }
 
-/// The reference names only three axes of a tapping move.
+/// The reference gives only three axes of a tapping move.
 bool ends_differ(const PlainCommand& reference, const PlainCommand& ours) {
     if (reference.kind != "rigid_tap") return !all_near(reference.end, ours.end, exact);
     const std::vector<double> end(ours.end.begin(), ours.end.begin() + 3);
     return !all_near(reference.values, end, exact);
 }
 
-/// What differs of the offsets and the tool; empty when nothing does.
+/// The difference in offsets and tool; empty when there is none.
 std::string place_difference(const PlainState& reference, const PlainState& ours) {
     if (reference.work_offset != ours.work_offset) return "work offset number";
     if (!all_near(reference.work, ours.work, exact)) return "work offset";
@@ -59,7 +59,7 @@ std::string mode_difference(const PlainState& reference, const PlainState& ours)
     if (reference.tool != ours.tool) return "tool";
     if (reference.selected_tool != ours.selected_tool) return "selected tool";
     if (reference.spindle != ours.spindle) return "spindle";
-    // A spindle that stands still has no speed; the reference keeps the last S word.
+    // A stopped spindle has no speed; the reference keeps the last S word.
     if (ours.spindle != "stopped" && !near(reference.speed, ours.speed, printed)) return "speed";
     if (!near(reference.fastest_speed, ours.fastest_speed, printed)) return "fastest speed";
     if (reference.mist != ours.mist || reference.flood != ours.flood) return "coolant";
@@ -75,7 +75,7 @@ std::string mode_difference(const PlainState& reference, const PlainState& ours)
     return {};
 }
 
-/// What differs in the command itself; empty when nothing does.
+/// The difference in the command itself; empty when there is none.
 std::string own_difference(const PlainCommand& reference, const PlainCommand& ours) {
     if (reference.kind != ours.kind) return "kind";
     if (is_motion(reference) && ends_differ(reference, ours)) return "end";
@@ -91,7 +91,7 @@ std::string own_difference(const PlainCommand& reference, const PlainCommand& ou
     return {};
 }
 
-/// At the end of a program the reference resets modes that nothing depends on any more.
+/// At the end of a program the reference resets modes that no longer matter.
 std::string difference_of(const PlainCommand& reference, const PlainCommand& ours,
                           bool has_actions) {
     std::string what = own_difference(reference, ours);
@@ -129,8 +129,8 @@ std::string ending_of(const PlainRun& run) {
                        : std::string("accepted");
 }
 
-/// Whether a straight move ends where the move before it did, which one interpreter says and the
-/// other may not.
+/// Whether a straight move ends where the previous one did; one interpreter may report such a move,
+/// the other not.
 bool goes_nowhere(const PlainCommand& command, const PlainCommand& before) {
     const PlainState &now = command.state, &then = before.state;
     return (command.kind == "straight_traverse" || command.kind == "straight_feed")
@@ -139,7 +139,7 @@ bool goes_nowhere(const PlainCommand& command, const PlainCommand& before) {
            && now.rotation_deg == then.rotation_deg;
 }
 
-/// Orienting the spindle and shuttling pallets move nothing that we know.
+/// Spindle orientation and pallet changes move nothing that is modelled.
 std::vector<PlainCommand> comparable(const PlainRun& run, std::optional<size_t> refused) {
     std::vector<PlainCommand> commands;
     PlainCommand last_move;
@@ -150,12 +150,12 @@ std::vector<PlainCommand> comparable(const PlainRun& run, std::optional<size_t> 
             commands.push_back(command);
         if (is_motion(command) && command.kind != "rigid_tap") last_move = command;
     }
-    // What a refused line did before it was refused.
+    // Commands of a refused line before it was refused.
     while (refused && !commands.empty() && commands.back().line == *refused) commands.pop_back();
     return commands;
 }
 
-/// Ours without what a reference does not tell of that knows six axes only.
+/// Our commands without those that a six-axis reference does not report.
 std::vector<PlainCommand> without_actions(std::vector<PlainCommand> commands) {
     std::erase_if(commands, [](const PlainCommand& command) {
         return !is_motion(command) && command.kind != "dwell";
@@ -163,7 +163,7 @@ std::vector<PlainCommand> without_actions(std::vector<PlainCommand> commands) {
     return commands;
 }
 
-/// A spline is one command there and may be many here: goes to the last one of its line.
+/// A spline is one command there and may be many here: moves on to the last one of its line.
 void skip_to_end_of_spline(const PlainCommand& spline, std::vector<PlainCommand>& ours,
                            size_t index) {
     size_t last = index;

@@ -9,7 +9,7 @@
 
 namespace test_support {
 
-/// A folder of its own for a test, gone with everything in it when the test ends.
+/// A temporary folder, deleted with its contents at the end of the test.
 class ScopedFolder {
 public:
     ScopedFolder() {
@@ -28,7 +28,7 @@ public:
     const std::filesystem::path& path() const { return path_; }
     std::string operator/(const std::string& name) const { return path_ / name; }
 
-    /// Writes a file and gives its path.
+    /// Writes a file and returns its path.
     std::string write(const std::string& name, const std::string& bytes) const {
         std::ofstream(path_ / name, std::ios::binary) << bytes;
         return path_ / name;

@@ -4,14 +4,14 @@
 
 namespace test_support {
 
-/// The tool of the worked example: 20 mm of flutes, shank of their diameter up to 45, holder of
-/// 40 mm up to the gauge line at 95.
+/// The tool of the worked example: flutes 20 mm long, a shank of the same diameter up to 45, a 40
+/// mm holder up to the gauge line at 95.
 inline const std::string flat_10 = "number = 1\nshape = \"flat\"\ndiameter = 10\n"
                                    "flute_length = 20\nshank = [[10, 10, 25]]\n"
                                    "holder = [[40, 40, 50]]\n";
 
-/// Writes a set-up, piece by piece. What is not said is the worked example without its clamp:
-/// a stock from 0, 0, -30 to 100, 100, 0, the tool flat_10, a mill with limits on all axes.
+/// Writes a set-up piece by piece. The default is the worked example without its clamp: a stock
+/// from 0, 0, -30 to 100, 100, 0, the tool flat_10, a mill with limits on all axes.
 class SetupWriter {
 public:
     SetupWriter& root(const std::string& keys) { return replace(root_, keys); }
@@ -27,7 +27,7 @@ public:
     }
     SetupWriter& also_tool(const std::string& keys) { return also("[[tool]]\n" + keys); }
 
-    /// `shape` is the line of its shape, with whatever else it needs.
+    /// `shape` is the line with its shape and all other keys it needs.
     SetupWriter& fixture(const std::string& name, const std::string& shape) {
         return also("[[fixture]]\nname = \"" + name + "\"\n" + shape);
     }

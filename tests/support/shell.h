@@ -10,20 +10,20 @@
 
 namespace test_support {
 
-/// What a command gave back.
+/// The result of a command.
 struct Ran {
     int status = -1; // of exit; 128 and more: ended by a signal
     std::string out, err;
 };
 
-/// A word that the shell takes as it is.
+/// A word quoted for the shell.
 inline std::string quoted(const std::string& word) {
     std::string text = "'";
     for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
 }
 
-/// Runs a program through the shell; `before` is shell text in front of it, as in `ulimit -v 9;`.
+/// Runs a program through the shell; `before` is shell text before it, such as `ulimit -v 9;`.
 inline Ran run(const std::vector<std::string>& words, const std::string& before = "") {
     const ScopedFolder folder;
     std::string command = before;

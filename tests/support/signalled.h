@@ -25,7 +25,7 @@ inline bool catches(pid_t process, int signal) {
     return false;
 }
 
-/// A program that runs beside the test, without a shell. Its output goes to files.
+/// A program that runs in parallel to the test, without a shell. Its output goes to files.
 class RunningProgram {
 public:
     explicit RunningProgram(const std::vector<std::string>& words) {
@@ -64,7 +64,7 @@ public:
         }
         return false;
     }
-    /// Waits until each of these texts is in what the program has written to standard output.
+    /// Waits until the program has written each of these texts to standard output.
     bool wait_for_output(const std::vector<std::string>& texts) {
         return wait_for([&] {
             const std::string out = bytes_of(folder_ / "out");

@@ -25,7 +25,7 @@ inline std::string binary_stl(const core::Mesh& mesh,
     return bytes;
 }
 
-/// The text of an STL with line ends and normals as they are met in the wild.
+/// An ASCII STL with line ends and normals as found in real files.
 inline std::string ascii_stl(const core::Mesh& mesh, const std::string& name = "test") {
     std::string text = std::string("solid ").append(name).append("\n");
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -6,7 +6,7 @@
 
 namespace test_support {
 
-/// A number that tells models apart whose lines, columns or marks differ in any bit.
+/// A hash of a model's lines, columns and marks.
 inline uint64_t digest(const core::CutModel& model) {
     uint64_t hash = 1469598103934665603ULL;
     const auto add = [&](uint64_t value) { hash = (hash ^ value) * 1099511628211ULL; };

@@ -8,7 +8,7 @@
 
 namespace test_support {
 
-/// A box that has been cut, known by its cuts alone: what is true, whatever the model says.
+/// A cut box, defined by its cuts alone, independent of the model.
 struct CutBox {
     struct Cut {
         core::RevolvedProfile flutes;
@@ -19,7 +19,7 @@ struct CutBox {
     double path_error = 0.0;
     std::vector<Cut> cuts;
 
-    /// How far a point lies outside everything that was cut, the paths being off by `off`.
+    /// The distance of a point outside everything that was cut, with the paths shifted by `off`.
     double outside_cuts(const core::Vec3& p, const core::Vec3& off = core::Vec3(0.0)) const {
         double least = core::infinity;
         for (const Cut& cut : cuts)
@@ -62,7 +62,8 @@ inline std::vector<core::RevolvedProfile> cutters() {
     };
 }
 
-/// Some cuts at random heights and directions, many of them flat, upright or along an axis.
+/// Random cuts at various heights and directions, many of them horizontal, vertical or along an
+/// axis.
 inline CutBox random_cut_box(std::mt19937& rng, size_t count, double path_error) {
     CutBox world{{{-8, -7, -6}, {9, 8, 2}}, path_error, {}};
     const std::vector<core::RevolvedProfile> tools = cutters();
@@ -81,7 +82,7 @@ inline CutBox random_cut_box(std::mt19937& rng, size_t count, double path_error)
     return world;
 }
 
-/// The same with a tool that points anywhere, also along an axis and upside down.
+/// The same with the tool in any direction, including along an axis and upside down.
 inline CutBox random_tilted_cut_box(std::mt19937& rng, size_t count, double path_error) {
     CutBox world = random_cut_box(rng, count, path_error);
     for (CutBox::Cut& cut : world.cuts) {

@@ -12,10 +12,10 @@
 
 namespace test_support {
 
-/// A program behind a terminal, as a person sits before it.
+/// A program in a terminal, as used interactively.
 class Terminal {
 public:
-    /// `words` are the program and its arguments, `home` is its user's folder.
+    /// `words` are the program and its arguments, `home` is the home folder of its user.
     Terminal(const std::vector<std::string>& words, const std::string& home) {
         struct winsize size = {.ws_row = 40, .ws_col = 120, .ws_xpixel = 0, .ws_ypixel = 0};
         child_ = ::forkpty(&master_, nullptr, nullptr, &size);
@@ -57,7 +57,8 @@ public:
         ::kill(child_, SIGCONT);
     }
 
-    /// What is on the screen up to and with this text; all of it where that does not come in time.
+    /// Returns the screen up to and including this text; all of it if the text does not come in
+    /// time.
     std::string until(const std::string& text) {
         const auto end = Clock::now() + patience;
         while (Clock::now() < end) {
@@ -71,7 +72,7 @@ public:
         return "never '" + text + "' but: " + screen_;
     }
 
-    /// What has come up to now and was not asked for.
+    /// Returns the output so far that has not been read.
     std::string seen_so_far() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
         while (::poll(&ready, 1, 0) > 0 && more())
@@ -79,7 +80,7 @@ public:
         return screen_;
     }
 
-    /// How the program ended; -1 where it does not end in time.
+    /// The exit status of the program; -1 if it does not end in time.
     int status() {
         const auto end = Clock::now() + patience;
         while (more())
@@ -94,7 +95,7 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds patience{120};
 
-    /// Reads what there is; false when the program has closed its side.
+    /// Reads available output; false when the program has closed its side.
     bool more() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
         if (::poll(&ready, 1, 1000) == 0) return true;

@@ -7,7 +7,7 @@
 
 namespace test_support {
 
-/// A rotation matrix, every one about as likely.
+/// A random rotation matrix, roughly uniformly distributed.
 inline core::Mat3 random_rotation(std::mt19937& rng) {
     std::normal_distribution<double> normal;
     const core::Vec3 x =
@@ -17,8 +17,8 @@ inline core::Mat3 random_rotation(std::mt19937& rng) {
     return {x, y, glm::cross(x, y)};
 }
 
-/// How far a point lies outside a piece that is moved from one place to another while its axis
-/// points along the rotation's third column (see outside_sweep).
+/// The distance of a point outside a piece that moves between two positions while its axis points
+/// along the third column of the rotation (see outside_sweep).
 template <typename Body>
 double outside_tilted_sweep(const Body& body, const core::Mat3& stock_from_tool,
                             const core::Vec3& from, const core::Vec3& to, const core::Vec3& p) {

@@ -8,13 +8,13 @@
 
 namespace test_support {
 
-/// A motion as far as its speed goes: how fast at most on it and at the corner before it.
+/// The speed limits of a motion: along it, and at the corner before it.
 struct SpeedPiece {
     double length, acceleration, cruise, corner;
 };
 
-/// Seconds that each piece takes if the whole is run as fast as possible from rest to rest: squared
-/// speeds at `steps` points of every piece, lowered until none rises faster than it may.
+/// The times of the pieces in seconds if the whole is run as fast as possible from rest to rest:
+/// squared speeds at `steps` points of each piece, lowered until none changes faster than allowed.
 inline std::vector<double> fastest_times(const std::vector<SpeedPiece>& pieces, int steps) {
     std::vector<double> squared{0.0}, step, acceleration;
     for (size_t i = 0; i < pieces.size(); ++i) {
@@ -39,12 +39,12 @@ inline std::vector<double> fastest_times(const std::vector<SpeedPiece>& pieces, 
     return times;
 }
 
-/// What a machine would see of a rounded corner that takes `lasts` seconds: the rates change evenly
-/// from those before to those after, at this speed along both.
+/// The motion of a machine through a rounded corner that takes `lasts` seconds: the rates change
+/// linearly from those before to those after, at this speed along both.
 struct CornerRun {
-    core::AxisValues acceleration{}; // the greatest of each axis
+    core::AxisValues acceleration{}; // maximum of each axis
     double missed = infinity;        // least distance from the corner along X, Y, Z
-    double length = 0.0;             // of either motion that is used up
+    double length = 0.0;             // of either motion that the corner takes up
 
     static constexpr double infinity = core::infinity;
 };

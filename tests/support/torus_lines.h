@@ -5,7 +5,8 @@
 
 namespace test_support {
 
-/// What lines, and columns round them, meet of a torus: at a height its section is a ring.
+/// The intersections of scan lines, and of columns around them, with a torus: its section at a
+/// height is a ring.
 struct TorusLines {
     double ring, tube;
 

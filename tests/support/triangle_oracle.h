@@ -10,7 +10,7 @@
 
 namespace test_support {
 
-/// Eleven more bits than the code under test has, so that its rounding can be seen.
+/// Eleven more bits than in the code under test, so that its rounding is visible.
 using Wide = glm::tvec3<long double>;
 
 struct WideTriangle {
@@ -19,7 +19,7 @@ struct WideTriangle {
 
 inline WideTriangle wide(const core::Triangle& t) { return {{Wide(t.a), Wide(t.b), Wide(t.c)}}; }
 
-/// Moved as the numbers of the transform say, whether or not they are quite a rotation.
+/// Transformed exactly by the numbers of the transform, even if they are not quite a rotation.
 inline WideTriangle wide(const core::Triangle& t, const core::Transform& by) {
     const glm::tmat3x3<long double> rotation(by.rotation);
     WideTriangle moved = wide(t);
@@ -36,7 +36,8 @@ inline long double point_to_segment(const Wide& p, const Wide& a, const Wide& b)
     return glm::length(a + s * along - p);
 }
 
-/// Both ends against the other segment, and where the lines pass each other if that is in both.
+/// Both ends against the other segment, and the point where the lines pass each other if it is on
+/// both.
 inline long double segment_to_segment(const Wide& a, const Wide& b, const Wide& c, const Wide& d) {
     long double least = std::min({point_to_segment(a, c, d), point_to_segment(b, c, d),
                                   point_to_segment(c, a, b), point_to_segment(d, a, b)});
@@ -50,8 +51,8 @@ inline long double segment_to_segment(const Wide& a, const Wide& b, const Wide& 
     return least;
 }
 
-/// To the foot of the point on the face, taken as a mean of the corners so that it is a point of
-/// the triangle however thin that is; infinite where the foot is outside.
+/// The distance to the foot of the point on the face, calculated as a mean of the corners so that
+/// it is a point of the triangle however thin that is; infinite if the foot is outside.
 inline long double point_to_face(const Wide& p, const WideTriangle& t) {
     const Wide &a = t.corners[0], &b = t.corners[1], &c = t.corners[2];
     const Wide normal = glm::cross(b - a, c - a);
@@ -63,7 +64,7 @@ inline long double point_to_face(const Wide& p, const WideTriangle& t) {
     return glm::length((u * a + v * b + w * c) / (u + v + w) - p);
 }
 
-/// Of the segment's start, and of where it passes the plane of the face.
+/// For the start of the segment, and for the point where it passes the plane of the face.
 inline long double segment_to_face(const Wide& a, const Wide& b, const WideTriangle& t) {
     const Wide& origin = t.corners[0];
     const Wide normal = glm::cross(t.corners[1] - origin, t.corners[2] - origin);
@@ -74,8 +75,8 @@ inline long double segment_to_face(const Wide& a, const Wide& b, const WideTrian
     return least;
 }
 
-/// The distance of two triangles: every corner over a face, every side against every side, every
-/// side through a face.
+/// The distance of two triangles: each corner to a face, each edge to each edge, each edge through
+/// a face.
 inline long double wide_distance(const WideTriangle& a, const WideTriangle& b) {
     long double least = std::numeric_limits<long double>::infinity();
     for (size_t i = 0; i < 3; ++i) {
@@ -89,7 +90,7 @@ inline long double wide_distance(const WideTriangle& a, const WideTriangle& b) {
     return least;
 }
 
-/// No pair of points of the two is nearer than this.
+/// A lower bound of the distance of all pairs of points.
 inline long double ball_gap(const WideTriangle& a, const WideTriangle& b) {
     const auto middle = [](const WideTriangle& t) {
         return (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0L;

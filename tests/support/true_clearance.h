@@ -6,13 +6,13 @@
 
 namespace test_support {
 
-/// A point of a body, and how near the other comes to it: never nearer than the truth.
+/// A point of a body and the distance to which the other comes: never below the true one.
 struct NearPoint {
-    core::Vec3 p = core::Vec3(0.0); // frame: the body's
+    core::Vec3 p = core::Vec3(0.0); // in the body's frame
     Nearness near;
 };
 
-/// Searches the least distance of a pair over a block, from points that are known on.
+/// Searches for the least distance of a pair over a block, starting from known points.
 class ClearanceSearch {
 public:
     ClearanceSearch(const TrueMachining& world, const std::vector<TruePassage>& block,
@@ -21,13 +21,13 @@ public:
 
     const NearPoint& best() const { return best_; }
 
-    /// Takes a point, of the stock one that was there before the block.
+    /// Adds a point; for the stock, one that existed before the block.
     void offer_known(const core::Vec3& p, const Removal& removal) {
         const Nearness near = nearness(world_, block_, pair_, p, removal, best_.near.distance);
         if (near.distance < best_.near.distance) best_ = {p, near};
     }
 
-    /// Takes a point if it is one of the body.
+    /// Adds a point if it belongs to the body.
     void offer(const core::Vec3& p) {
         const Removal always{block_.size(), 0.0};
         if (pair_.cuts_fixture(world_)) {
@@ -41,7 +41,7 @@ public:
         if (world_.is_spared(p)) offer_known(p, world_.removal(block_, crashed_, p));
     }
 
-    /// The nearest points of the body, as it was raw, to places of the part.
+    /// Adds the points of the body in its raw shape that are nearest to points of the part.
     void offer_foremost() {
         for (const TruePassage& by : block_) {
             if (!pair_.counts_in(world_, by)) continue;
@@ -52,8 +52,8 @@ public:
         }
     }
 
-    /// Goes on from the best point, by turns to the nearest points of the bodies and at random, for
-    /// as long as the distance is above `enough`.
+    /// Improves the best point, alternately with the nearest points of the bodies and at random,
+    /// while the distance is above `enough`.
     void improve(int steps, double radius, double enough) {
         std::uniform_real_distribution<double> way(-1.0, 1.0);
         for (int i = 0; i < steps && best_.near.distance > enough; ++i) {
@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    /// The point of the raw body that is nearest to a place of the tool's frame.
+    /// Adds the point of the raw body nearest to a point in the tool's frame.
     void offer_nearest_to(const core::Vec3& p, const TruePassage& by, double share) {
         const core::AxisValues at = by.path.at(share);
         const core::Vec3 tip(at[0], at[1], at[2] - by.tool->length);

@@ -9,7 +9,7 @@ inline Real box_to_box(const TrueBox& a, const TrueBox& b, const RealPose& a_fro
     std::array<RealVec, 8> a_in_b;
     for (size_t i = 0; i < 8; ++i) a_in_b[i] = a_from_b.back(of_a[i]);
     Real least = real_infinity;
-    // Two boxes meet only if an edge of one has a point in the other.
+    // Two boxes intersect only if an edge of one has a point in the other.
     for (const auto& [i, j] : box_edges)
         if (meets(a, of_b[i], of_b[j]) || meets(b, a_in_b[i], a_in_b[j])) return 0;
     for (size_t i = 0; i < 8; ++i)
@@ -20,8 +20,8 @@ inline Real box_to_box(const TrueBox& a, const TrueBox& b, const RealPose& a_fro
     return least;
 }
 
-/// Whether distance() knows the pair: at least one is a capsule, or both are boxes; a torus wants a
-/// ball.
+/// Whether distance() supports the pair: at least one is a capsule, or both are boxes; a torus
+/// needs a ball.
 inline bool is_known(const TruePart& a, const TruePart& b) {
     if (std::holds_alternative<TrueBox>(a) && std::holds_alternative<TrueBox>(b)) return true;
     const auto* capsule = std::get_if<TrueCapsule>(&a);
@@ -30,7 +30,7 @@ inline bool is_known(const TruePart& a, const TruePart& b) {
     return capsule && (!std::holds_alternative<TrueTorus>(other) || capsule->a == capsule->b);
 }
 
-/// The distance of a capsule of one frame to a part of another, which stands at `pose` in it.
+/// The distance of a capsule to a part in another frame, which has the pose `pose`.
 inline Real distance(const TrueCapsule& c, const TruePart& part, const RealPose& pose) {
     const RealVec a = pose.back(c.a), b = pose.back(c.b);
     Real apart = 0;

@@ -8,10 +8,10 @@
 
 namespace test_support {
 
-/// A box or an upright cone, whose distance to a point is a formula.
+/// A box or a vertical cone, whose distance to a point is a formula.
 using TrueSolid = std::variant<core::Aabb, core::ProfileElement>;
 
-/// How far outside a point is, 0 or less inside, and the nearest point of the solid.
+/// The distance of a point outside, 0 or less inside, and the nearest point of the solid.
 inline PieceDistance nearest_of(const TrueSolid& solid, const core::Vec3& p) {
     if (const auto* cone = std::get_if<core::ProfileElement>(&solid)) return nearest_of(*cone, p);
     const core::Aabb& box = std::get<core::Aabb>(solid);
@@ -27,7 +27,7 @@ struct TrueFixture {
     bool expendable = false;
 };
 
-/// A tool with what carries it. Frame: its tip is the origin.
+/// A tool with its holder and spindle nose. Frame: the tip is the origin.
 struct TrueTool {
     std::array<std::optional<TrueProfile>, 4> parts; // by kind
     double length = 0.0;
@@ -38,41 +38,41 @@ struct TrueTool {
     }
 };
 
-/// A tool on its way; `chips`: what its flutes meet of the stock is cut.
+/// A motion of a tool; `chips`: the flutes cut the stock that they meet.
 struct TruePassage {
     const TrueTool* tool;
     TruePath path;
     bool chips = false;
     std::vector<bool> fixtures_there = {};
-    bool is_certain = true; // false: after a crash, when nobody knows what is left
+    bool is_certain = true; // false: after a crash, when the remaining material is unknown
 };
 
-/// Up to when a point is there for certain: a passage of the block, and a share of it.
+/// Until when a point certainly exists: a passage of the block and a fraction of it.
 struct Removal {
     size_t passage;
     double share;
 };
 
-/// A stock as the set of points of its raw shape that no flutes have come to. Nothing is built of
-/// it: whether a point is there is asked of the whole history.
+/// A stock as the set of points of its raw shape that the flutes have not reached. No model is
+/// built: whether a point exists is calculated from the whole history.
 struct TrueMachining {
     TrueTrunnion machine;
     TrueSolid stock;
     TrueMount stock_mount;
     std::vector<TrueFixture> fixtures;
-    std::vector<TruePassage> history; // those that cut, or may have
+    std::vector<TruePassage> history; // those that cut or may have cut
 
     SeenPoint seen(const TruePassage& by, const TrueMount& mount, const core::Vec3& p) const {
         return {machine, mount, by.path, by.tool->length, p};
     }
 
-    /// The share from which on the flutes may have removed the point.
+    /// The fraction from which on the flutes may have removed the point.
     std::optional<double> first_cut(const TruePassage& by, const core::Vec3& p) const {
         return first_within(*by.tool->part(core::PartKind::flutes), seen(by, stock_mount, p), 1e-9,
                             Doubt::counts);
     }
 
-    /// Whether the point of the raw stock is there for certain. Frame: the stock's.
+    /// Whether the point of the raw stock certainly exists. In the stock's frame.
     bool is_spared(const core::Vec3& p) const {
         if (nearest_of(stock, p).distance > 1e-12) return false; // rounding of a nearest point
         for (const TruePassage& by : history)
@@ -80,7 +80,7 @@ struct TrueMachining {
         return true;
     }
 
-    /// Whether the point may be there, give or take `slack`.
+    /// Whether the point may exist, with a tolerance of `slack`.
     bool may_be_there(const core::Vec3& p, double slack) const {
         if (nearest_of(stock, p).distance > slack) return false;
         for (const TruePassage& by : history)
@@ -91,8 +91,8 @@ struct TrueMachining {
         return true;
     }
 
-    /// Until when the point outlasts the passages of a block. After a crash of flutes that do not
-    /// cut, what they passed through counts for nothing.
+    /// Until when the point survives the passages of a block. After a crash of flutes that are not
+    /// cutting, anything they passed through is ignored.
     Removal removal(const std::vector<TruePassage>& block, bool crashed,
                     const core::Vec3& p) const {
         for (size_t i = 0; i < block.size(); ++i) {
@@ -103,7 +103,7 @@ struct TrueMachining {
         return {block.size(), 0.0};
     }
 
-    /// Whether flutes may have cut a point of a fixture, and from which share on.
+    /// Whether the flutes may have cut a point of a fixture, and from which fraction on.
     std::optional<double> first_cut(const TruePassage& by, size_t fixture,
                                     const core::Vec3& p) const {
         if (!by.chips || !by.fixtures_there[fixture]) return std::nullopt;
@@ -111,7 +111,8 @@ struct TrueMachining {
                             seen(by, fixtures[fixture].mount, p), 1e-9, Doubt::counts);
     }
 
-    /// Until when a point of an expendable fixture outlasts a block; none if it has gone before.
+    /// Until when a point of an expendable fixture survives a block; empty if it was removed
+    /// before.
     std::optional<Removal> removal(const std::vector<TruePassage>& block, size_t fixture,
                                    const core::Vec3& p) const {
         for (const TruePassage& by : history)
@@ -121,7 +122,7 @@ struct TrueMachining {
         return Removal{block.size(), 0.0};
     }
 
-    /// The same with what has certainly gone, by more than `slack`.
+    /// The same for points that have certainly been removed, by more than `slack`.
     Removal certain_removal(const std::vector<TruePassage>& block, double slack,
                             const core::Vec3& p) const {
         for (size_t i = 0; i < block.size(); ++i) {
@@ -135,26 +136,26 @@ struct TrueMachining {
     }
 };
 
-/// Where a pair is near: how near, in which passage, and at which share of it.
+/// The nearest approach of a pair: distance, passage, and fraction of it.
 struct Nearness {
     double distance = core::infinity;
     size_t passage = 0;
     double share = 0.0;
 };
 
-/// What is asked of a block: how near a part of the tool comes to a mounted body.
+/// A query about a block: the distance of a part of the tool to a mounted body.
 struct TruePair {
     core::PartKind part;
     std::optional<size_t> fixture;
 
-    /// Whether the pair is one that must keep apart in this passage.
+    /// Whether the pair must keep apart in this passage.
     bool counts_in(const TrueMachining& world, const TruePassage& by) const {
         if (!by.tool->part(part)) return false;
         const bool chips = by.chips && part == core::PartKind::flutes;
         if (!fixture) return !chips;
         return by.fixtures_there[*fixture] && !(chips && world.fixtures[*fixture].expendable);
     }
-    /// Whether the pair's flutes cut the fixture when they feed.
+    /// Whether the flutes of the pair may cut the fixture while feeding.
     bool cuts_fixture(const TrueMachining& world) const {
         return part == core::PartKind::flutes && fixture && world.fixtures[*fixture].expendable;
     }
@@ -166,8 +167,8 @@ struct TruePair {
     }
 };
 
-/// How near the pair's part comes to a point of its body while that is there; only what is nearer
-/// than `limit`.
+/// The distance of the pair's part to a point of its body while the point exists; only below
+/// `limit`.
 inline Nearness nearness(const TrueMachining& world, const std::vector<TruePassage>& block,
                          const TruePair& pair, const core::Vec3& p, const Removal& removal,
                          double limit) {

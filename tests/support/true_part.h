@@ -9,7 +9,7 @@
 
 namespace test_support {
 
-/// Distances in closed form, with 64 bits of mantissa: what is true, whatever the program says.
+/// True distances in closed form, with a 64-bit mantissa, independent of the program.
 using Real = long double;
 using RealVec = glm::vec<3, Real>;
 using RealMat = glm::mat<3, 3, Real>;
@@ -35,7 +35,7 @@ struct TrueTorus {
 };
 using TruePart = std::variant<TrueCapsule, TrueBox, TrueCylinder, TrueTorus>;
 
-/// Where a part stands: p -> turn * p + at.
+/// The pose of a part: p -> turn * p + at.
 struct RealPose {
     RealMat turn = RealMat(1);
     RealVec at = RealVec(0);
@@ -55,7 +55,8 @@ inline Real point_to_segment(const RealVec& p, const RealVec& a, const RealVec& 
     return glm::length(p - a - t * ab);
 }
 
-/// The least of what the ends and the common perpendicular give: each is a distance that exists.
+/// The least of the distances of the ends and of the common perpendicular: each of them is an
+/// existing distance.
 inline Real segment_to_segment(const RealVec& a, const RealVec& b, const RealVec& c,
                                const RealVec& d) {
     Real least = std::min({point_to_segment(a, c, d), point_to_segment(b, c, d),
@@ -69,7 +70,7 @@ inline Real segment_to_segment(const RealVec& a, const RealVec& b, const RealVec
     return std::min(least, glm::length(w + s * u - t * v));
 }
 
-/// Distance of a point from a part; below 0 only where the part is round.
+/// The distance of a point from a part; negative only inside round parts.
 inline Real point_to(const TrueCapsule& c, const RealVec& p) {
     return point_to_segment(p, c.a, c.b) - c.radius;
 }
@@ -97,7 +98,7 @@ inline std::array<RealVec, 8> corners(const TrueBox& b, const RealPose& pose) {
     return all;
 }
 
-/// The 12 edges of a box by the numbers of their corners.
+/// The 12 edges of a box as pairs of corner numbers.
 inline const std::array<std::array<size_t, 2>, 12> box_edges = {{{0, 1},
                                                                  {2, 3},
                                                                  {4, 5},
@@ -111,7 +112,7 @@ inline const std::array<std::array<size_t, 2>, 12> box_edges = {{{0, 1},
                                                                  {2, 6},
                                                                  {3, 7}}};
 
-/// Whether a segment has a point in a box.
+/// Whether a segment intersects a box.
 inline bool meets(const TrueBox& box, const RealVec& a, const RealVec& b) {
     Real first = 0, last = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -137,7 +138,7 @@ inline Real segment_to(const TrueBox& box, const RealVec& a, const RealVec& b) {
     return least;
 }
 
-/// The least value over a segment of a function that is convex on it.
+/// The least value on a segment of a function that is convex on it.
 template <typename Function>
 Real least_on_segment(const Function& f, const RealVec& a, const RealVec& b) {
     const auto at = [&](Real t) { return f(a + t * (b - a)); };

@@ -4,7 +4,7 @@
 
 namespace test_support {
 
-/// The least of a convex function of 0..1 and where, by golden section.
+/// The minimum of a convex function on 0..1 and its argument, by golden section.
 template <typename Function>
 std::pair<double, double> least_of(const Function& f, double low, double high, int steps = 32) {
     constexpr double golden = 0.6180339887498949;
@@ -29,8 +29,8 @@ std::pair<double, double> least_of(const Function& f, double low, double high, i
     return {best, at};
 }
 
-/// How near a profile comes to a point that goes by, up to a share of the way, and when: a distance
-/// that is really taken, and so never below the truth. Looks no farther than `limit`.
+/// The least distance of a profile to a passing point up to a fraction of the path, and when: a
+/// distance that actually occurs, so never below the true one. Searches no farther than `limit`.
 inline std::pair<double, double> nearest_passage(const TrueProfile& part, const SeenPoint& seen,
                                                  double until, double limit) {
     std::pair<double, double> best{core::infinity, 0.0};
@@ -58,10 +58,11 @@ inline std::pair<double, double> nearest_passage(const TrueProfile& part, const 
     return best;
 }
 
-/// Whether a doubt, a hundredth of a millimetre on a way that bends, counts.
+/// Whether the uncertainty of 0.01 mm on a curved path counts.
 enum class Doubt : uint8_t { counts, does_not_count };
 
-/// The first share at which a piece is nearer to the point than `level`, exact on a straight way.
+/// The first fraction at which a piece is nearer to the point than `level`; exact on a straight
+/// path.
 inline std::optional<double> first_straight(const core::ProfileElement& e, const core::Vec3& a,
                                             const core::Vec3& b, double level) {
     const auto at = [&](double t) { return true_distance(e, a + t * (b - a)); };
@@ -76,8 +77,8 @@ inline std::optional<double> first_straight(const core::ProfileElement& e, const
     return out;
 }
 
-/// A share at which the profile is nearer than `level`, and just before which it is not: it is so
-/// at `high`, and not at `low`.
+/// A fraction at which the profile is nearer than `level` and just before which it is not. It is
+/// nearer at `high` and not at `low`.
 inline double certain_crossing(const TrueProfile& part, const SeenPoint& seen, double low,
                                double high, double level) {
     for (int i = 0; i < 30; ++i) {
@@ -87,8 +88,8 @@ inline double certain_crossing(const TrueProfile& part, const SeenPoint& seen, d
     return high;
 }
 
-/// The first share between two at which the profile may be nearer than `level`, up to a hundredth
-/// of a millimetre too early; or, where a doubt does not count, certainly is.
+/// The first fraction between two at which the profile may be nearer than `level`, up to 0.01 mm
+/// too early; or, if uncertainty does not count, certainly is.
 inline std::optional<double> first_bent(const TrueProfile& part, const SeenPoint& seen, double low,
                                         double high, double level, Doubt doubt) {
     constexpr double fine = 0.01; // mm
@@ -109,7 +110,7 @@ inline std::optional<double> first_bent(const TrueProfile& part, const SeenPoint
     return first_bent(part, seen, middle, high, level, doubt);
 }
 
-/// The first share of the way at which the profile is nearer to the point than `level`.
+/// The first fraction of the path at which the profile is nearer to the point than `level`.
 inline std::optional<double> first_within(const TrueProfile& part, const SeenPoint& seen,
                                           double level, Doubt doubt) {
     if (!seen.path.is_straight()) return first_bent(part, seen, 0.0, 1.0, level, doubt);

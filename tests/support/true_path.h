@@ -10,7 +10,7 @@
 
 namespace test_support {
 
-/// X, Y and Z move the tool; A tilts what carries the table C, each about a line through a point.
+/// X, Y and Z move the tool; A tilts the carrier of table C, each about a line through a point.
 struct TrueTrunnion {
     core::Vec3 a_point = core::Vec3(0.0), c_point = core::Vec3(0.0);
 };
@@ -26,13 +26,13 @@ inline core::Vec3 turned_about_z(const core::Vec3& p, double angle) {
 
 constexpr double true_radian = std::numbers::pi / 180.0;
 
-/// A body that stands on the table or on the machine's base.
+/// A body on the table or on the machine base.
 struct TrueMount {
     core::Transform link_from_body;
     bool on_table = true;
 };
 
-/// Where a point that is mounted stands in the machine.
+/// The position in the machine of a mounted point.
 inline core::Vec3 machine_place(const TrueTrunnion& machine, const TrueMount& mount,
                                 const core::AxisValues& at, const core::Vec3& p) {
     core::Vec3 here = mount.link_from_body * p;
@@ -53,7 +53,7 @@ inline core::Vec3 mounted_place(const TrueTrunnion& machine, const TrueMount& mo
     return mount.link_from_body.inverse() * p;
 }
 
-/// One way of the machine: all axes evenly, or an arc.
+/// A path of the machine: all axes linearly, or an arc.
 struct TruePath {
     core::AxisValues from{}, to{};
     std::optional<core::ArcPath> arc = {};
@@ -73,13 +73,13 @@ struct TruePath {
         return values;
     }
 
-    /// Radians that the path bends by, however it does.
+    /// The total change of direction of the path, radians.
     double bend() const {
         if (arc) return std::abs(arc->angle);
         return (std::abs(to[3] - from[3]) + std::abs(to[5] - from[5])) * true_radian;
     }
 
-    /// How far from its axes a point goes round them; the arc's radius.
+    /// The distance of a point from the axes about which it rotates; the radius of the arc.
     double bend_radius(const TrueTrunnion& machine, const core::Vec3& p_table) const {
         if (!arc)
             return glm::distance(p_table, machine.c_point)
@@ -89,10 +89,10 @@ struct TruePath {
     }
 };
 
-/// A mounted point as a tool sees it go by.
+/// The path of a mounted point relative to a tool.
 ///
-/// Between two shares it stays within `off` of the chord: an eighth of the square of the time
-/// times the acceleration, which is the square of the turn times the radius.
+/// Between two fractions it stays within `off` of the chord: an eighth of the squared time times
+/// the acceleration, which is the squared angle times the radius.
 struct SeenPoint {
     const TrueTrunnion& machine;
     const TrueMount& mount;

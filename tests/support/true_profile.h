@@ -7,8 +7,8 @@
 
 namespace test_support {
 
-/// A point's place against a convex piece: how far outside it, negative by its depth inside, and
-/// the nearest point of the piece, the point itself inside. Plane geometry in the half-plane of the
+/// A point relative to a convex piece: its distance outside, or minus its depth inside, and the
+/// nearest point of the piece (inside, the point itself). Plane geometry in the half-plane of the
 /// axis.
 struct PieceDistance {
     double distance;
@@ -31,7 +31,7 @@ inline HalfPlanePoint nearest_on_segment(const HalfPlanePoint& p, const HalfPlan
     return {a.r + t * r, a.z + t * z};
 }
 
-/// The same in the half-plane, of the piece without its margin.
+/// The same in the half-plane, for the piece without its margin.
 inline double core_distance(const core::ProfileElement& e, const HalfPlanePoint& p,
                             HalfPlanePoint& nearest) {
     const HalfPlanePoint corners[4] = {{0.0, e.z0}, {e.r0, e.z0}, {e.r1, e.z1}, {0.0, e.z1}};
@@ -47,13 +47,13 @@ inline double core_distance(const core::ProfileElement& e, const HalfPlanePoint&
     return p.z > e.z0 && p.z < e.z1 && side > 0.0 ? -least : least;
 }
 
-/// How far a point is from a piece; negative inside. Convex in the point.
+/// The distance of a point from a piece; negative inside. Convex in the point.
 inline double true_distance(const core::ProfileElement& e, const core::Vec3& p) {
     HalfPlanePoint nearest;
     return core_distance(e, {std::sqrt(p.x * p.x + p.y * p.y), p.z}, nearest) - e.margin;
 }
 
-/// The distance outside of a profile; inside, at most the true depth below 0.
+/// The distance outside a profile; inside, negative by at most the true depth.
 inline double true_distance(const core::RevolvedProfile& profile, const core::Vec3& p) {
     double least = core::infinity;
     for (const core::ProfileElement& e : profile.elements)
@@ -84,7 +84,7 @@ inline PieceDistance nearest_of(const core::RevolvedProfile& profile, const core
     return best;
 }
 
-/// A profile, and the cylinder round it.
+/// A profile and its enclosing cylinder.
 struct TrueProfile {
     core::RevolvedProfile profile;
     core::ProfileElement hull;

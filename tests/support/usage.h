@@ -13,15 +13,15 @@
 
 namespace test_support {
 
-/// What a program used, and how it ended.
+/// The resources used by a program, and how it ended.
 struct Usage {
     int status = -1;          // of exit
     double cpu_seconds = 0.0; // of all threads
-    long kib = 0;             // the most memory that it had at one time
+    long kib = 0;             // peak memory
     std::optional<IoCounts> io{};
 };
 
-/// Runs a program without a shell; its standard output goes to the file that is named.
+/// Runs a program without a shell; its standard output goes to the given file.
 inline Usage usage_of(const std::vector<std::string>& words, const std::string& output) {
     const pid_t child = ::fork();
     if (child == 0) {
