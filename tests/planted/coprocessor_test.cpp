@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path folder = std::filesystem::path(FEELER_SOURCE_DIR) / "tests/planted";
 
-/// A program of the table with its set-up, those that begin in the middle left out.
+/// A program of the table with its set-up; programs that start in the middle are left out.
 struct Program {
     std::string file, setup, dialect;
     auto operator<=>(const Program&) const = default;
@@ -59,7 +59,7 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     EXPECT_LT(all.counts.not_asked, all.counts.blocks / 50);
 }
 
-/// What one engine says of a program.
+/// The run of a program with one engine.
 CheckRun checked_by(CheckJob job, Engine engine) {
     job.engine = engine;
     auto checked = run_check(job);
@@ -67,7 +67,7 @@ CheckRun checked_by(CheckJob job, Engine engine) {
     return checked ? *std::move(checked) : CheckRun();
 }
 
-/// Holds a block as the device judges it against the same by the exact engine.
+/// Compares the device's judgement of a block with that of the exact engine.
 void expect_safe(const CheckedBlock& device, const CheckedBlock& exact, const std::string& file) {
     const auto where = file + ":" + std::to_string(exact.line);
     const core::BlockResult& a = exact.result;
@@ -75,8 +75,8 @@ void expect_safe(const CheckedBlock& device, const CheckedBlock& exact, const st
     if (a.verdict >= core::Verdict::violation) {
         EXPECT_NE(b.verdict, core::Verdict::clear) << where;
     }
-    if (b.verdict == core::Verdict::undecided) return; // it was not asked
-    // Of a stock that something was turned into, other parts are missing.
+    if (b.verdict == core::Verdict::undecided) return; // no request was made
+    // After a body has been rotated into the stock, different material is missing.
     if (!file.starts_with("rotary")) {
         EXPECT_NEAR(b.removed, a.removed, 1e-9) << where;
     }
