@@ -7,8 +7,7 @@
 
 namespace core {
 
-/// A point of each body, by its index among the points the body was built from; of a body in tiles,
-/// by tile * 2^32 and the index in the tile.
+/// A point of each body, by its index among the points that the body was built from.
 struct PointPair {
     uint64_t a = 0;
     uint64_t b = 0;

@@ -30,68 +30,34 @@ public:
 
     std::string_view name() const override { return name_; }
 
-    Aabb box_of(PointBody body) const override {
-        const auto i = static_cast<size_t>(body);
-        return i < bodies_.size() ? bodies_[i].box : Aabb();
-    }
-
 private:
-    struct Body {
-        Tree tree;
-        Aabb box;
-    };
-
     double bytes_per_point() const override { return bytes_; }
 
     Result<PointBody> take_in(std::span<const Vec3> points) override {
         FEELER_TRY(Tree tree, build(points));
-        Aabb box;
-        for (const Vec3& p : points) box.extend(p);
-        bodies_.push_back({std::move(tree), box});
+        bodies_.push_back(std::move(tree));
         return PointBody(bodies_.size() - 1);
     }
 
-    const Tree& tree(PointBody body) const { return bodies_[static_cast<size_t>(body)].tree; }
+    const Tree& tree(PointBody body) const { return bodies_[static_cast<size_t>(body)]; }
 
     size_t points_of(PointBody body) const override {
         const auto i = static_cast<size_t>(body);
-        return i < bodies_.size() ? point_count(bodies_[i].tree) : 0;
+        return i < bodies_.size() ? point_count(bodies_[i]) : 0;
     }
 
-    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b, const PairGoal& goal,
-                       SearchMemory* memory) const override {
-        return search(tree(a), tree(b), a_from_b, goal, memory);
+    ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
+                       const PairGoal& goal) const override {
+        return core::closest_pair(tree(a), tree(b), a_from_b, goal);
     }
 
-    static ClosestPair search(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
-                              const PairGoal& goal, SearchMemory*) {
-        return core::closest_pair(a, b, a_from_b, goal);
-    }
-    static ClosestPair search(const PointTree& a, const PointTree& b, const Transform& a_from_b,
-                              const PairGoal& goal, SearchMemory* memory) {
-        if (!memory) return core::closest_pair(a, b, a_from_b, goal);
-        return core::closest_pair({&a, {}}, {&b, {}}, a_from_b, goal, *memory);
-    }
-
-    Vec3 position(PointBody body, uint64_t point) const override {
-        return point_at(tree(body), point);
-    }
-
-    static const Vec3& point_at(const SphereTree& tree, uint64_t point) {
-        return tree.nodes[tree.leaf_of_point[point]].centre;
-    }
-    static const Vec3& point_at(const PointTree& tree, uint64_t point) {
-        return tree.points[tree.place[point]];
-    }
     static size_t point_count(const SphereTree& tree) { return tree.leaf_of_point.size(); }
     static size_t point_count(const PointTree& tree) { return tree.points.size(); }
 
     std::string_view name_;
     double bytes_;
-    std::deque<Body> bodies_; // stay where they are
+    std::deque<Tree> bodies_; // stay where they are
 };
-
-Result<PointTree> whole_point_tree(std::span<const Vec3> points) { return point_tree(points); }
 
 } // namespace
 
@@ -131,21 +97,11 @@ Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_
 }
 
 Result<ClosestPair> DistanceEngine::closest_pair(PointBody a, PointBody b,
-                                                 const Transform& a_from_b, const PairGoal& goal,
-                                                 SearchMemory* memory) const {
+                                                 const Transform& a_from_b,
+                                                 const PairGoal& goal) const {
     if (auto checked = check(a, b, a_from_b, goal); !checked)
         return tl::unexpected(std::move(checked).error());
-    return search(a, b, a_from_b, goal, memory);
-}
-
-Result<ClosestPair> DistanceEngine::pair_at(PointBody a, PointBody b, const PointPair& points,
-                                            const Transform& a_from_b) const {
-    if (auto checked = check(a, b, a_from_b, {.first = points}); !checked)
-        return tl::unexpected(std::move(checked).error());
-    ClosestPair pair{.points = points, .witness_a = position(a, points.a)};
-    pair.witness_b = a_from_b * position(b, points.b);
-    pair.distance = glm::distance(pair.witness_a, pair.witness_b);
-    return pair;
+    return search(a, b, a_from_b, goal);
 }
 
 std::unique_ptr<DistanceEngine> paper_engine() {
@@ -153,7 +109,7 @@ std::unique_ptr<DistanceEngine> paper_engine() {
 }
 
 std::unique_ptr<DistanceEngine> fast_engine() {
-    return std::make_unique<TreeEngine<PointTree, whole_point_tree>>("fast", 100.0);
+    return std::make_unique<TreeEngine<PointTree, point_tree>>("fast", 100.0);
 }
 
 } // namespace core

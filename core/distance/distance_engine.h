@@ -12,8 +12,6 @@
 
 namespace core {
 
-struct SearchMemory;
-
 /// Counts the bodies that an engine holds, from 0.
 enum class PointBody : uint32_t {};
 
@@ -31,36 +29,22 @@ public:
     ///         into `memory_limit` bytes: it says what they would take, and nothing is tried.
     Result<PointBody> add(std::span<const Vec3> points, double memory_limit = default_memory_limit);
 
-    /// The closest pair of points of two bodies. A memory that was used for the same two before,
-    /// and for no others, saves time when B has moved little since (see PairTracker).
+    /// The closest pair of points of two bodies.
     ///
     /// Frame:  the result is in that of A.
-    /// Errors: a transform that is not rigid, a sweep or a goal that is no number, a body or a
-    ///         point that is not there.
+    /// Errors: a transform that is not rigid; a sweep or a goal that is not a number; a body or a
+    ///         point that does not exist.
     Result<ClosestPair> closest_pair(PointBody a, PointBody b, const Transform& a_from_b,
-                                     const PairGoal& goal = {},
-                                     SearchMemory* memory = nullptr) const;
-
-    /// The error that closest_pair() would return, without a search.
-    Result<void> check(PointBody a, PointBody b, const Transform& a_from_b,
-                       const PairGoal& goal = {}) const;
-
-    /// How far apart two points are.
-    ///
-    /// Errors: those of closest_pair().
-    Result<ClosestPair> pair_at(PointBody a, PointBody b, const PointPair& points,
-                                const Transform& a_from_b) const;
-
-    /// The box of a body's points; empty if there is no such body.
-    virtual Aabb box_of(PointBody body) const = 0;
+                                     const PairGoal& goal = {}) const;
 
 private:
+    Result<void> check(PointBody a, PointBody b, const Transform& a_from_b,
+                       const PairGoal& goal) const;
     virtual Result<PointBody> take_in(std::span<const Vec3> points) = 0;
     virtual double bytes_per_point() const = 0;
     virtual size_t points_of(PointBody body) const = 0; // 0: no such body
-    virtual Vec3 position(PointBody body, uint64_t point) const = 0;
     virtual ClosestPair search(PointBody a, PointBody b, const Transform& a_from_b,
-                               const PairGoal& goal, SearchMemory* memory) const = 0;
+                               const PairGoal& goal) const = 0;
 };
 
 /// The search of the paper: spheres, one point to a leaf.

@@ -8,7 +8,6 @@
 
 #include "core/distance/lane_kernels.h"
 #include "core/distance/search_side.h"
-#include "core/geom/rigid_motion.h"
 
 namespace core {
 
@@ -75,13 +74,6 @@ namespace {
 constexpr uint32_t lane_width = PointTree::width;
 constexpr size_t beam_width = 2; // pairs followed down to the leaves before the search proper
 
-// A front is made for so many queries like the last ones, or to hold so many pairs of points; where
-// it would serve fewer than the least, it is not made.
-constexpr double most_steps = 16.0, least_steps = 3.0;
-constexpr double wanted_pairs = 300.0;
-constexpr size_t most_pairs = 1000;
-constexpr int long_rest = 64; // searches
-
 /// The square of a length in single precision, not less than it was.
 float squared_above(double length) {
     const double squared = length * length * (1.0 + 2e-6) + 1e-37;
@@ -90,6 +82,18 @@ float squared_above(double length) {
 
 Vec3 wide(const Float3& v) { return {v[0], v[1], v[2]}; }
 
+/// A pair of boxes, each by the number of a visited node * 8 + lane.
+struct BoxPair {
+    float squared; // lower bound of their squared distance; in the beam, that of their centres
+    uint32_t a, b;
+};
+
+/// What a search fills; kept by each thread so that the next search need not allocate.
+struct SearchBuffers {
+    SearchSide a, b;
+    std::vector<BoxPair> stack, beam;
+};
+
 bool nearer(const BoxPair& x, const BoxPair& y) {
     if (x.squared != y.squared) return x.squared < y.squared;
     return x.a != y.a ? x.a < y.a : x.b < y.b;
@@ -97,16 +101,16 @@ bool nearer(const BoxPair& x, const BoxPair& y) {
 
 class PointSearch : private PairComparison {
 public:
-    PointSearch(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
-                const PairGoal& goal, SearchMemory& memory)
+    PointSearch(const PointTree& a, const PointTree& b, const Transform& a_from_b,
+                const PairGoal& goal, SearchBuffers& buffers)
         : PairComparison(a_from_b, goal),
           kernels_(lane_kernels()),
           body_a_(a),
           body_b_(b),
-          a_(memory.a),
-          b_(memory.b),
-          stack_(memory.stack),
-          beam_(memory.beam) {
+          a_(buffers.a),
+          b_(buffers.b),
+          stack_(buffers.stack),
+          beam_(buffers.beam) {
         const double squared = glm::dot(goal.sweep, goal.sweep);
         per_length_ = squared > 1e-30 ? static_cast<float>(1.0 / squared) : 0.0F;
     }
@@ -123,46 +127,12 @@ public:
         return finished();
     }
 
-    /// The same, only with the pairs of the front; nothing if the answer may be elsewhere.
-    std::optional<ClosestPair> run_along(const PairFront& front) {
-        const double moved =
-            displacement(front.pose, motion_.start, body_b_.top->box) + rounding(front.pose);
-        const double reach = front.limit - moved;
-        if (!(reach > 0.0)) return {};
-        for (const FrontPair& pair : front.pairs) {
-            if (done() || pair.distance - moved >= worth()) break;
-            ++best_.point_tests;
-            compare(pair.a, pair.b);
-        }
-        if (!done() && worth() > reach) return {};
-        return finished();
-    }
-
-    /// After run(): the pairs of points nearer than `limit`, but no more than `most`.
-    void fill(PairFront& front, std::vector<BoxPair>& leaves, double limit, size_t most) {
-        const double near_leaf = collect_leaves(leaves, limit, most);
-        front.pairs.clear();
-        for (const BoxPair& pair : leaves) collect_points(front, pair, near_leaf);
-        front.limit = near_leaf;
-        const auto nearer_points = [](const FrontPair& x, const FrontPair& y) {
-            return x.distance < y.distance;
-        };
-        if (front.pairs.size() > most) {
-            const auto end = front.pairs.begin() + static_cast<std::ptrdiff_t>(most);
-            std::nth_element(front.pairs.begin(), end, front.pairs.end(), nearer_points);
-            front.limit = end->distance;
-            front.pairs.erase(end, front.pairs.end());
-        }
-        std::sort(front.pairs.begin(), front.pairs.end(), nearer_points);
-        front.pose = motion_.start;
-    }
-
 private:
     /// What double precision may add to the distances of points at this pose and at another: some
     /// ten operations; squares of less than 1e-150 mm have lost their digits.
     double rounding(const Transform& other) const {
-        const auto reach = [](const PointTreeView& body) {
-            const PointTree::Node& root = body.top->nodes[0];
+        const auto reach = [](const PointTree& body) {
+            const PointTree::Node& root = body.nodes[0];
             return glm::length(root.origin) + static_cast<double>(root.reach);
         };
         const double lengths = reach(body_a_) + reach(body_b_)
@@ -171,52 +141,11 @@ private:
         return 1e-150 + 64.0 * std::numeric_limits<double>::epsilon() * lengths;
     }
 
-    // --- the front ---
-
-    /// The pairs of leaves nearer than `limit`, or about `most` of them; returns how near all
-    /// others are at least.
-    double collect_leaves(std::vector<BoxPair>& leaves, double limit, size_t most) {
-        leaves.clear();
-        limit_squared_ = squared_above(limit);
-        start_from_roots();
-        while (!stack_.empty()) {
-            const BoxPair pair = stack_.back();
-            stack_.pop_back();
-            if (!(pair.squared < limit_squared_)) continue;
-            if (!are_leaves(pair)) {
-                open(pair);
-                continue;
-            }
-            leaves.push_back(pair);
-            if (leaves.size() < 2 * most) continue;
-            const auto end = leaves.begin() + static_cast<std::ptrdiff_t>(most);
-            std::nth_element(leaves.begin(), end, leaves.end(), nearer);
-            limit_squared_ = end->squared;
-            leaves.erase(end, leaves.end());
-            limit = std::sqrt(static_cast<double>(limit_squared_)) * (1.0 - 2e-6);
-        }
-        return limit;
-    }
-
-    void collect_points(PairFront& front, const BoxPair& leaves, double limit) {
-        const VisitedLeaf& a = a_.child_leaf(leaves.a / lane_width, leaves.a % lane_width);
-        const VisitedLeaf& b = b_.child_leaf(leaves.b / lane_width, leaves.b % lane_width);
-        const float squared = squared_above(limit + 8.0 * static_cast<double>(a.margin + b.margin));
-        const uint32_t rows =
-            ((1U << b.leaf->count) - 1U)
-            & rows_near(b, a_.box(leaves.a / lane_width, leaves.a % lane_width), squared);
-        for_near(a, b, rows, squared, [&](uint32_t i, uint32_t j) {
-            const PointPlace of_a = place_in(a, i), of_b = place_in(b, j);
-            const double apart = glm::distance(of_a.position(), motion_.start * of_b.position());
-            if (apart < limit) front.pairs.push_back({apart, of_a, of_b});
-        });
-    }
-
     /// Whether balls round the bodies say that nothing is near.
     bool is_beyond_limit() const {
         if (goal_.limit == infinity || motion_.end) return false;
-        const PointTree::Node& a = body_a_.top->nodes[0];
-        const PointTree::Node& b = body_b_.top->nodes[0];
+        const PointTree::Node& a = body_a_.nodes[0];
+        const PointTree::Node& b = body_b_.nodes[0];
         const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
         const double apart = swept_distance(a.origin - motion_.start * b.origin, motion_.sweep);
         const double error = std::max(rounding(motion_.start), rounding(motion_.last()));
@@ -245,8 +174,8 @@ private:
     /// Across the gap of the nearest pair so far: along the normals of the patches it lies on,
     /// which tell better than the pair itself where the surfaces face each other.
     SearchFrame next_frame() const {
-        const Vec3& middle_of_a = body_a_.top->nodes[0].origin;
-        const MovingPoint middle_of_b = motion_.of(body_b_.top->nodes[0].origin);
+        const Vec3& middle_of_a = body_a_.nodes[0].origin;
+        const MovingPoint middle_of_b = motion_.of(body_b_.nodes[0].origin);
         if (!(near_squared_ > 0.0) || near_squared_ == infinity)
             return search_frame(middle_of_b.at - middle_of_a, Vec3(0.0), middle_of_a,
                                 middle_of_b.sweep);
@@ -398,8 +327,8 @@ private:
     }
 
     const LaneKernels& kernels_;
-    const PointTreeView& body_a_;
-    const PointTreeView& body_b_;
+    const PointTree& body_a_;
+    const PointTree& body_b_;
     bool by_middles_ = false;
     float per_length_ = 0.0F;
     Float3 sweep_{};
@@ -411,43 +340,12 @@ private:
     float limit_squared_ = 0.0F;
 };
 
-/// Fills the front after a search, if that will be of use.
-void fill_front(SearchMemory& memory, PointSearch& search, double distance, double step) {
-    const double for_pairs = std::sqrt(wanted_pairs / memory.pairs_per_square);
-    const double slack = std::min(for_pairs, most_steps * step);
-    if (slack < least_steps * step && memory.resting++ < long_rest) return;
-    memory.resting = 0;
-    search.fill(memory.front, memory.near_leaves, distance + slack, most_pairs);
-    const double reached = memory.front.limit - distance;
-    if (reached > 0.0)
-        memory.pairs_per_square =
-            std::max(double(memory.front.pairs.size()), 1.0) / (reached * reached);
-}
-
 } // namespace
 
-ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
+ClosestPair closest_pair(const PointTree& a, const PointTree& b, const Transform& a_from_b,
                          const PairGoal& goal) {
-    static thread_local SearchMemory memory;
-    return PointSearch(a, b, a_from_b, goal, memory).run();
-}
-
-ClosestPair closest_pair(const PointTreeView& a, const PointTreeView& b, const Transform& a_from_b,
-                         const PairGoal& goal, SearchMemory& memory) {
-    const std::optional<Transform> last = std::exchange(memory.last_pose, a_from_b);
-    if (goal.sweep != Vec3(0.0) || goal.end) {
-        memory.forget_front(); // the search overwrites what it refers to
-        return PointSearch(a, b, a_from_b, goal, memory).run();
-    }
-    if (memory.front.limit >= 0.0)
-        if (const auto found = PointSearch(a, b, a_from_b, goal, memory).run_along(memory.front))
-            return *found;
-    memory.forget_front();
-    PointSearch search(a, b, a_from_b, goal, memory);
-    const ClosestPair found = search.run();
-    if (last && found.found() && !goal.any)
-        fill_front(memory, search, found.distance, displacement(*last, a_from_b, b.top->box));
-    return found;
+    static thread_local SearchBuffers buffers;
+    return PointSearch(a, b, a_from_b, goal, buffers).run();
 }
 
 } // namespace core

@@ -82,8 +82,7 @@ namespace {
 
 class PointTreeBuilder {
 public:
-    PointTreeBuilder(std::span<const Vec3> points, uint32_t tile)
-        : given_(points), tile_(static_cast<uint64_t>(tile) << 32U) {
+    explicit PointTreeBuilder(std::span<const Vec3> points) : given_(points) {
         for (const Vec3& p : points) tree_.box.extend(p);
         const Vec3 centre = tree_.box.center();
         loose_.reserve(points.size());
@@ -153,7 +152,7 @@ private:
         for (size_t i = first; i < last; ++i) {
             const uint32_t given = loose_[i].index;
             tree_.points[i] = given_[given];
-            tree_.index[i] = tile_ | given;
+            tree_.index[i] = given;
             tree_.place[given] = static_cast<uint32_t>(i);
             box.extend(given_[given]);
         }
@@ -191,16 +190,15 @@ private:
     }
 
     std::span<const Vec3> given_;
-    uint64_t tile_;
     std::vector<Loose> loose_;
     PointTree tree_;
 };
 
 } // namespace
 
-Result<PointTree> point_tree(std::span<const Vec3> points, uint32_t tile) {
+Result<PointTree> point_tree(std::span<const Vec3> points) {
     FEELER_TRY([[maybe_unused]] const size_t count, checked_points(points));
-    return PointTreeBuilder(points, tile).build();
+    return PointTreeBuilder(points).build();
 }
 
 namespace {

@@ -19,7 +19,6 @@ struct PointTree {
     static constexpr int width = 8;
     static constexpr int leaf_size = 16;
     static constexpr uint32_t leaf_flag = 0x8000'0000U;
-    static constexpr uint32_t tile_flag = 0x4000'0000U;
     using Lanes = std::array<float, width>;
 
     /// Up to eight children, in the lanes whose bits are set in `used`; what stands in the other
@@ -29,7 +28,7 @@ struct PointTree {
         std::array<std::array<Lanes, 3>, 3> axis{}; // [which][x, y, z]; of unit length
         std::array<Lanes, 3> half{};                // half sizes along the three axes
         Lanes radius{};                             // of a ball about the centre
-        std::array<uint32_t, width> child{}; // a node; with a flag, a leaf or the root of a tile
+        std::array<uint32_t, width> child{};        // a node; with the flag, a leaf
         Vec3 origin = Vec3(0.0);
         float reach = 0.0F; // no box reaches farther from `origin`
         uint32_t used = 0;
@@ -50,7 +49,7 @@ struct PointTree {
     std::vector<Node> nodes; // the root in front
     std::vector<Leaf> leaves;
     std::vector<Vec3> points;    // in the order of the leaves
-    std::vector<uint64_t> index; // of `points` among the points given, and the tile above 2^32
+    std::vector<uint64_t> index; // of `points` among the points given
     std::vector<uint32_t> place; // the other way round
     Aabb box;                    // of the points
 };
@@ -60,24 +59,11 @@ struct TurnedBox;
 /// Gives a child of a node its box; `reach` grows with it.
 void set_box(PointTree::Node& node, size_t lane, const TurnedBox& box);
 
-/// A tree, and the tiles that it may refer to.
-struct PointTreeView {
-    const PointTree* top = nullptr;
-    std::span<const std::shared_ptr<const PointTree>> tiles;
-
-    const PointTree* tile(uint32_t number) const { return tiles[number].get(); }
-
-    /// The tree that holds the point with this index.
-    const PointTree* tree_of(uint64_t index) const {
-        return tiles.empty() ? top : tile(static_cast<uint32_t>(index >> 32U));
-    }
-};
-
-/// Builds the tree; `tile` is the part of the points' indices above 2^32.
+/// Builds the tree.
 ///
 /// Errors: as sphere_tree().
 /// Cost:   O(n log n) time, some 95 bytes per point.
-Result<PointTree> point_tree(std::span<const Vec3> points, uint32_t tile = 0);
+Result<PointTree> point_tree(std::span<const Vec3> points);
 
 /// A box round points, turned as they lie, in single precision: every point p has
 /// |axis[k] . (p - origin - centre)| <= half[k], and for any unit vector u

@@ -7,12 +7,6 @@
 
 namespace core {
 
-/// How far the computed distance of two bodies may be off, mm. `reach` bounds every length that
-/// enters it: both bodies' farthest points from their origins, how far B is moved, and the sweep.
-///
-/// Proof: README.md beside this file, "Rounding".
-constexpr double search_rounding(double reach) { return 1.5e-10 + 5e-13 * reach; }
-
 /// How far the matter that a scan found on a line may stand out of the body, mm; `reach` is that of
 /// the body.
 constexpr double scan_rounding(double reach) { return 1e-9 + 1e-11 * reach; }

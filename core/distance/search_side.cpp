@@ -39,7 +39,7 @@ SearchFrame search_frame(const Vec3& across, const Vec3& along, const Vec3& orig
 
 namespace {
 
-constexpr uint32_t tile_width = PointTree::width;
+constexpr uint32_t lane_count = PointTree::width;
 
 /// The single precision that the frame's coordinates are off by, per length: direction, products
 /// and sums take less than ten roundings.
@@ -48,7 +48,7 @@ constexpr float rounding = 16.0F * std::numeric_limits<float>::epsilon();
 /// The boxes round two rows of boxes.
 void extend(BoxLanes& boxes, const BoxLanes& by) {
     for (size_t k = 0; k < 3; ++k)
-        for (size_t lane = 0; lane < tile_width; ++lane) {
+        for (size_t lane = 0; lane < lane_count; ++lane) {
             boxes.lower[k][lane] = std::min(boxes.lower[k][lane], by.lower[k][lane]);
             boxes.upper[k][lane] = std::max(boxes.upper[k][lane], by.upper[k][lane]);
         }
@@ -56,8 +56,8 @@ void extend(BoxLanes& boxes, const BoxLanes& by) {
 
 /// Coordinates in the frame, and the distances of points, take some ten operations on doubles as
 /// large as these lengths; a path of less than 1e-15 mm counts as none.
-float coarse(const PointTreeView& body, const Vec3& origin, const StraightMotion* motion) {
-    const PointTree::Node& root = body.top->nodes[0];
+float coarse(const PointTree& tree, const Vec3& origin, const StraightMotion* motion) {
+    const PointTree::Node& root = tree.nodes[0];
     double reach = glm::length(root.origin) + static_cast<double>(root.reach) + glm::length(origin);
     if (motion)
         reach += glm::length(motion->start.translation) + glm::length(motion->last().translation);
@@ -66,28 +66,26 @@ float coarse(const PointTreeView& body, const Vec3& origin, const StraightMotion
 
 } // namespace
 
-PointPlace place_of(const PointTreeView& body, uint64_t index) {
-    const PointTree* tree = body.tree_of(index);
-    const size_t given = index & 0xFFFF'FFFFU;
-    if (tree == nullptr || given >= tree->place.size()) return {};
-    const uint32_t point = tree->place[given];
+PointPlace place_of(const PointTree& tree, uint64_t index) {
+    if (index >= tree.place.size()) return {};
+    const uint32_t point = tree.place[index];
     const auto after =
-        std::upper_bound(tree->leaves.begin(), tree->leaves.end(), point,
+        std::upper_bound(tree.leaves.begin(), tree.leaves.end(), point,
                          [](uint32_t p, const PointTree::Leaf& leaf) { return p < leaf.first; });
-    return {tree, &*(after - 1), point};
+    return {&tree, &*(after - 1), point};
 }
 
-void SearchSide::begin(const PointTreeView& of, const SearchFrame& frame,
+void SearchSide::begin(const PointTree& tree, const SearchFrame& frame,
                        const StraightMotion* motion) {
     kernels_ = &lane_kernels();
-    body = of;
+    tree_ = &tree;
     node_count_ = leaf_count_ = 0;
     start_ = pose_in(frame, motion ? motion->start : Transform{});
     spreads_ = motion && motion->end;
     if (spreads_) end_ = pose_in(frame, *motion->end);
     sweep_ = motion && !spreads_ ? frame.along(motion->sweep) : Vec3(0.0);
-    coarse_ = coarse(body, frame.origin, motion);
-    visit(body.top, 0);
+    coarse_ = coarse(tree, frame.origin, motion);
+    visit(0);
 }
 
 SearchSide::Pose SearchSide::pose_in(const SearchFrame& frame, const Transform& a_from_body) {
@@ -119,16 +117,15 @@ SearchSide::Sight SearchSide::sight(const Pose& pose, const Vec3& origin, float 
     return sight;
 }
 
-uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
+uint32_t SearchSide::visit(uint32_t number) {
     const uint32_t id = node_count_++;
     if (id == nodes.size()) nodes.emplace_back();
     VisitedNode& visited = nodes[id];
-    const PointTree::Node& node = tree->nodes[number];
-    visited.tree = tree;
+    const PointTree::Node& node = tree_->nodes[number];
     visited.node = &node;
     visited.count = static_cast<uint32_t>(std::popcount(node.used));
     visited.below.fill(none);
-    for (uint32_t lane = 0; lane < tile_width; ++lane) {
+    for (uint32_t lane = 0; lane < lane_count; ++lane) {
         const bool leaf = (node.child[lane] & PointTree::leaf_flag) != 0;
         visited.size[lane] = leaf ? -1.0F : node.radius[lane];
     }
@@ -144,10 +141,7 @@ uint32_t SearchSide::visit(const PointTree* tree, uint32_t number) {
 uint32_t SearchSide::child_node(uint32_t at, uint32_t lane) {
     const uint32_t known = nodes[at].below[lane];
     if (known != none) return known;
-    const uint32_t child = nodes[at].node->child[lane];
-    const bool tile = (child & PointTree::tile_flag) != 0;
-    const uint32_t id =
-        tile ? visit(body.tile(child & ~PointTree::tile_flag), 0) : visit(nodes[at].tree, child);
+    const uint32_t id = visit(nodes[at].node->child[lane]);
     nodes[at].below[lane] = id;
     return id;
 }
@@ -159,8 +153,8 @@ const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
     id = leaf_count_++;
     if (id == leaves.size()) leaves.emplace_back();
     VisitedLeaf& leaf = leaves[id];
-    leaf.tree = parent.tree;
-    leaf.leaf = &parent.tree->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
+    leaf.tree = tree_;
+    leaf.leaf = &tree_->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
     look_at(leaf);
     return leaf;
 }

@@ -32,7 +32,6 @@ struct VisitedNode {
     PointTree::Lanes size; // of the children: the larger one is opened; -1: a leaf
     std::array<uint32_t, PointTree::width> below; // their numbers among the visited, or `none`
     uint32_t count;                               // of the children
-    const PointTree* tree;
     const PointTree::Node* node;
 };
 
@@ -55,20 +54,19 @@ struct PointPlace {
     uint64_t index() const { return tree->index[point]; }
 };
 
-/// Where the point with this index is; nowhere if it has been cut away.
-PointPlace place_of(const PointTreeView& body, uint64_t index);
+/// Where the point with this index is stored.
+PointPlace place_of(const PointTree& tree, uint64_t index);
 
 /// One body's part in a search: what was visited of it, in the frame of the search.
 class SearchSide {
 public:
     static constexpr uint32_t none = 0xFFFF'FFFFU;
 
-    PointTreeView body;
     std::vector<VisitedNode> nodes;  // beyond those visited stand those of earlier searches
     std::vector<VisitedLeaf> leaves; // the same
 
     /// Forgets what was visited, and visits the root. A stands still: `motion` is null.
-    void begin(const PointTreeView& of, const SearchFrame& frame, const StraightMotion* motion);
+    void begin(const PointTree& tree, const SearchFrame& frame, const StraightMotion* motion);
 
     uint32_t child_node(uint32_t at, uint32_t lane);
     const VisitedLeaf& child_leaf(uint32_t at, uint32_t lane);
@@ -89,10 +87,11 @@ private:
 
     static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
     Sight sight(const Pose& pose, const Vec3& origin, float reach) const;
-    uint32_t visit(const PointTree* tree, uint32_t number);
+    uint32_t visit(uint32_t number);
     void look_at(VisitedLeaf& leaf) const;
 
     const LaneKernels* kernels_ = nullptr;
+    const PointTree* tree_ = nullptr;
     uint32_t node_count_ = 0, leaf_count_ = 0; // visited
     Pose start_, end_;
     bool spreads_ = false;   // the points do not all go the same way

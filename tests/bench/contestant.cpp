@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include "core/distance/pair_tracker.h"
+#include "core/distance/distance_engine.h"
 #include "tests/bench/peers.h"
 
 namespace bench {
@@ -28,11 +28,15 @@ struct Pair {
     core::PointBody a, b;
 };
 
-/// A query along a path, which learns from pose to pose.
+/// A query along a path: the pair of the previous pose is the first guess.
 Query follower(std::shared_ptr<const Pair> pair) {
-    const auto tracker = std::make_shared<core::PairTracker>(*pair->engine, pair->a, pair->b);
-    return [pair = std::move(pair), tracker](const auto& a_from_b, const auto& goal) {
-        return tracker->closest_pair(a_from_b, goal).value().distance;
+    const auto last = std::make_shared<std::optional<core::PointPair>>();
+    return [pair = std::move(pair), last](const auto& a_from_b, const auto& goal) {
+        core::PairGoal guided = goal;
+        guided.first = *last;
+        const core::ClosestPair found = pair->closest(a_from_b, guided);
+        if (found.found()) *last = found.points;
+        return found.distance;
     };
 }
 

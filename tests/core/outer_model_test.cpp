@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/random_body.h"
+#include "tests/support/known_body.h"
 
 namespace core {
 namespace {
@@ -37,7 +37,7 @@ using Axes = std::initializer_list<int>;
 const Axes choices_of_axes[] = {{2, 0, 1}, {0, 1, 2}, {1}, {0, 2}};
 
 std::vector<Aabb> boxes(const std::vector<TruePart>& parts, double h, Axes axes) {
-    KnownBody known{"", parts, test_support::BodyForm::lines_and_columns, h};
+    const KnownBody known{parts, h};
     const Dbm lines = test_support::lines_of(known).value();
     return boxes_of(outer_model(test_support::bounds(parts), lines.grid,
                                 test_support::columns_of(known), axes));
@@ -83,8 +83,7 @@ TEST(OuterModel, StandsOutOfTheBodyByLessThanTheDiagonalOfACell) {
 TEST(OuterModel, OfACutStockHoldsEveryPointThatWasLeft) {
     std::mt19937 rng(9);
     for (int round = 0; round < 10; ++round) {
-        const KnownBody known{"", test_support::floor_and_walls(rng, 1.0),
-                              test_support::BodyForm::cut, 1.0};
+        const KnownBody known{test_support::floor_and_walls(rng, 1.0), 1.0};
         const std::vector<Aabb> cover = boxes_of(outer_model(test_support::cut_model_of(known)));
         for (const TruePart& part : known.parts) {
             const Aabb box = test_support::bounds(part);

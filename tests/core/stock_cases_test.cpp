@@ -4,7 +4,6 @@
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
-#include "core/dbm/cut_memory.h"
 #include "tests/support/raster_program.h"
 #include "tests/support/stock_digest.h"
 #include "tests/support/stock_oracle.h"
@@ -335,19 +334,6 @@ TEST(LaneCut, GivesTheSameBitsOnEveryInstructionSet) {
         choose(0);
     }
     EXPECT_GT(sets, 1);
-}
-
-TEST(CutMemory, IsKnownBeforeItIsTaken) {
-    for (const WithColumns columns : {WithColumns::no, WithColumns::yes}) {
-        const Aabb box{{0, 0, -13}, {47, 61, 0}};
-        CutModel model =
-            make_cut_model({SolidBox{box}, 0.0}, 0.5, default_memory_limit, columns).value();
-        const double estimate = cut_memory_estimate(box, 0.5, columns);
-        EXPECT_LE(memory_of(model), estimate);
-        // Tiles that have been cut keep marks.
-        cut(model, {cutter({{{0, 60, 40, 60, 0}}}), {20, 30, -12}, {30, 30, -12}});
-        EXPECT_NEAR(memory_of(model), estimate, 1e-9 * estimate);
-    }
 }
 
 TEST(CutLog, GivesBackEveryMove) {

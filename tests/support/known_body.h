@@ -1,43 +1,21 @@
 #pragma once
 
 #include <random>
-#include <string>
 #include <vector>
 
 #include "core/dbm/cut_model.h"
 #include "core/dbm/cutter.h"
-#include "core/dbm/mesh_scan.h"
-#include "core/distance/measured_body.h"
-#include "tests/support/meshes.h"
+#include "core/dbm/dbm.h"
+#include "core/distance/outer_model.h"
 #include "tests/support/torus_lines.h"
-#include "tests/support/true_distance.h"
+#include "tests/support/true_part.h"
 
 namespace test_support {
 
-/// How a body is represented in the program.
-enum class BodyForm {
-    primitive,
-    profile,
-    mesh,
-    lines, // from here on represented by scan lines
-    cut,   // a stock with slots cut into it, with the columns left by cutting
-    lines_and_one_family,
-    lines_and_columns
-};
-
-/// A body whose distances are known in closed form, together with its representation in the
-/// program.
+/// A body whose distances are known in closed form.
 struct KnownBody {
-    std::string name;
     std::vector<TruePart> parts;
-    BodyForm form = BodyForm::primitive;
-    double spacing = 1.0;
-    core::Vec3 middle = core::Vec3(0.0); // centre of its box
-    double size = 0.0;                   // half its longest diagonal
-    bool by_mesh = false;                // lines and columns come from its mesh
-    core::MeasuredBody body;
-
-    bool is_exact() const { return form <= BodyForm::mesh; }
+    double spacing = 1.0; // of its scan lines
 };
 
 /// A capsule along Z or a cylinder as pieces of a profile.
@@ -84,36 +62,7 @@ inline core::Aabb bounds(const std::vector<TruePart>& parts) {
     return box;
 }
 
-inline core::Mesh mesh_of(const std::vector<TruePart>& boxes) {
-    core::Mesh mesh;
-    for (const TruePart& part : boxes) {
-        const core::Aabb box = box_of(std::get<TrueBox>(part));
-        mesh = together(std::move(mesh), box_mesh(box.min, box.max));
-    }
-    return mesh;
-}
-
-/// The exact shape of a body.
-inline core::BodyShape shape_of(const KnownBody& known) {
-    if (known.form == BodyForm::mesh) return core::solid_mesh(mesh_of(known.parts));
-    core::RevolvedProfile profile;
-    const TruePart& first = known.parts.front();
-    if (known.form == BodyForm::primitive) {
-        if (const auto* box = std::get_if<TrueBox>(&first))
-            return core::Primitive(core::Box{core::Vec3(box->max - box->min)});
-        if (const auto* ball = std::get_if<TrueCapsule>(&first))
-            return core::Primitive(core::Sphere{double(ball->radius)});
-        const auto& c = std::get<TrueCylinder>(first);
-        return core::Primitive(core::Cylinder{double(c.radius), double(c.z1 - c.z0)});
-    }
-    for (const TruePart& part : known.parts)
-        for (const core::ProfileElement& e : profile_of(part).elements)
-            profile.elements.push_back(e);
-    return profile;
-}
-
 inline core::Result<core::Dbm> lines_of(const KnownBody& known) {
-    if (known.by_mesh) return core::scan(mesh_of(known.parts), known.spacing);
     const auto line = [&](int axis, double u, double v) {
         core::IntervalList all;
         for (const TruePart& part : known.parts)
@@ -124,8 +73,6 @@ inline core::Result<core::Dbm> lines_of(const KnownBody& known) {
 }
 
 inline core::ColumnFunction columns_of(const KnownBody& known) {
-    if (known.by_mesh)
-        return core::columns_of(core::Solid{core::solid_mesh(mesh_of(known.parts)), 0.0});
     std::vector<core::ColumnFunction> functions;
     for (const TruePart& part : known.parts) functions.push_back(columns_of(part));
     return [functions](int axis, const core::Square& square) {
@@ -153,39 +100,35 @@ inline core::CutModel cut_model_of(const KnownBody& known) {
     return model;
 }
 
-inline core::Result<core::MeasuredBody> scanned(const KnownBody& known) {
-    if (known.form == BodyForm::cut) {
-        const core::CutModel model = cut_model_of(known);
-        return core::measured_body(model.lines, core::outer_model(model));
+inline double uniform(std::mt19937& rng, double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(rng);
+}
+
+inline bool one_in(std::mt19937& rng, unsigned n) { return rng() % n == 0; }
+
+inline TrueBox box_round(const core::Vec3& at, const core::Vec3& half) {
+    return {RealVec(at - half), RealVec(at + half)};
+}
+
+inline TrueCapsule ball_at(const core::Vec3& at, double radius) {
+    return {RealVec(at), RealVec(at), radius};
+}
+
+/// The rest of a box after two or three slots along X: a floor and walls, some thinner than h.
+inline std::vector<TruePart> floor_and_walls(std::mt19937& rng, double h) {
+    const double x = h * uniform(rng, 1.0, 3.0), top = h * uniform(rng, 1.0, 4.0);
+    double y = 0.0;
+    std::vector<TruePart> parts(1);
+    const unsigned walls = 2 + rng() % 3;
+    for (unsigned i = 0; i < walls; ++i) {
+        const double thick =
+            h * (one_in(rng, 2) ? uniform(rng, 0.01, 0.3) : uniform(rng, 0.3, 2.0));
+        parts.emplace_back(TrueBox{{-x, y, 0.0}, {x, y + thick, top}});
+        y += thick + h * uniform(rng, 0.5, 2.0);
     }
-    const core::Aabb box = bounds(known.parts);
-    FEELER_TRY(const core::Dbm lines, lines_of(known));
-    if (known.form == BodyForm::lines) return core::measured_body(lines);
-    if (known.form == BodyForm::lines_and_one_family)
-        return core::measured_body(lines,
-                                   core::outer_model(box, lines.grid, columns_of(known), {2}));
-    return core::measured_body(lines, core::outer_model(box, lines.grid, columns_of(known)));
-}
-
-/// Creates the body's representation in an engine.
-inline core::Result<KnownBody> built(core::DistanceEngine& engine, KnownBody known) {
-    const core::Aabb box = bounds(known.parts);
-    known.middle = box.center();
-    known.size = 0.5 * glm::length(box.size());
-    FEELER_TRY(core::MeasuredBody body, known.is_exact()
-                                            ? core::measured_body(shape_of(known), known.spacing)
-                                            : scanned(known));
-    FEELER_TRY(known.body, core::taken_into(engine, std::move(body)));
-    return known;
-}
-
-/// The true distance of two bodies, all their parts included.
-inline Real true_distance(const KnownBody& a, const KnownBody& b, const core::Transform& a_from_b) {
-    const RealPose pose = exactly(a_from_b);
-    Real least = real_infinity;
-    for (const TruePart& p : a.parts)
-        for (const TruePart& q : b.parts) least = std::min(least, distance(p, q, pose));
-    return least;
+    const auto& last = std::get<TrueBox>(parts.back());
+    parts[0] = TrueBox{{-x, 0.0, 0.0}, {x, last.max.y, h * uniform(rng, 0.1, 0.9)}};
+    return parts;
 }
 
 } // namespace test_support
