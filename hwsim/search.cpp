@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 
 namespace hwsim {
 namespace {

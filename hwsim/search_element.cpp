@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 #include "hwsim/search.h"
 
 namespace hwsim {

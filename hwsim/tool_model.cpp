@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 
 namespace hwsim {
 namespace {

@@ -1,6 +1,6 @@
 #include "tests/bench/sphere_model.h"
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 
 namespace bench {
 namespace {

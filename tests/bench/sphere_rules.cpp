@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 
 namespace bench {
 namespace {

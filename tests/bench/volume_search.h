@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "hwsim/pair_distance.h"
+#include "hwsim/memory_line.h"
 #include "hwsim/search.h"
 #include "tests/bench/lone_thread.h"
 

@@ -3,7 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "hwsim/specification.h"
+#include "hwsim/registers.h"
+#include "hwsim/search.h"
 #include "hwsim/stock_model.h"
 
 namespace hwsim {

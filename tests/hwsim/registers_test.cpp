@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "hwsim/specification.h"
+#include "hwsim/registers.h"
+#include "hwsim/search.h"
 
 namespace hwsim {
 namespace {

@@ -4,7 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "hwsim/specification.h"
+#include "hwsim/registers.h"
+#include "hwsim/search.h"
 
 namespace hwsim {
 
