@@ -1,11 +1,11 @@
-# Fails when a test outside tests/bench and tests/speed looks at a clock: on a busy machine everything
-# takes longer. Count work instead, or put the check of the time into tests/speed. Run from the root of the
-# sources.
+# Fails when a test outside tests/bench and tests/speed reads a clock: on a busy machine everything
+# takes longer. Count work instead, or move the check of the time to tests/speed. Run from the root
+# of the sources.
 cmake_minimum_required(VERSION 3.25)
 
-# These need a clock, and compare no duration with a limit that a slow machine could exceed: they stop
-# waiting for something that does not come after one minute or more (cluster is run by hand), or they make a
-# file look recently written.
+# These need a clock but compare no duration with a limit that a slow machine could exceed: they
+# give up waiting after one minute or more (cluster is run by hand), or they make a file look
+# recently written.
 set(allowed
   tests/app/store_writing_test.cpp tests/app/watched_files_test.cpp tests/support/signalled.h
   tests/support/terminal.h tests/viewer/await_frames.cpp tests/viewer/device_worker_test.cpp

@@ -1,10 +1,10 @@
-# Fails when a folder that a check goes through reads files by other means than core/base/file_reads,
-# which tells the check what it hangs on. Run from the root of the sources.
+# Fails when a folder used by a check reads files by other means than core/base/file_reads, which
+# reports the files on which the check depends. Run from the root of the sources.
 cmake_minimum_required(VERSION 3.25)
 
-# gcode/text/source and core/geom/mesh_file say why a file is refused before they read it; windows of
-# lines are for programs that are only translated. app/base/file_stamp is for outputs
-# and watches, saved_setup looks at the file that it writes, and the prompt at one that is named there.
+# gcode/text/source and core/geom/mesh_file find the reason for refusing a file before they read it;
+# windows of lines are for programs that are only translated. app/base/file_stamp is for outputs and
+# watches, saved_setup reads the file that it writes, and the prompt reads a file named there.
 set(allowed
   core/base/file_reads.cpp gcode/language/program_folder.cpp gcode/text/source.cpp
   core/geom/mesh_file.cpp app/base/sha256.cpp app/base/file_stamp.cpp

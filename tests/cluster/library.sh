@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Makes a library of forty programs, of a second or less each. Arguments: the folder to make it in,
-# the repository's folder.
+# Creates a library of forty programs of a second or less each. Arguments: the folder to create it
+# in, the folder of the repository.
 set -euo pipefail
 library=$1 root=$2
 mkdir -p "$library"
 for i in $(seq 1 38); do
-    # Feeds to and fro over the plate, every third program among the clamps.
+    # Feed moves back and forth over the plate, in every third program among the clamps.
     awk -v i="$i" 'BEGIN {
         print "%\nG21 G90 G54\nT1 M6\nG43 H1 Z100.\nS3000 M3\nG0 X0. Y0. Z" (i % 3 ? 60 : 26) ".";
         for (k = 0; k < 1000 + 200 * i; ++k) printf "G1 X%.3f Y%.3f F900.\n", (k * 3) % 150, (k * 7) % 143 + k * 0.0001;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks a library on a cluster of two nodes, of which one dies on the way, and holds what feeler
-# merge makes of the shares against one run. Argument: the program feeler. As root; see README.md.
+# Checks a library on a cluster of two nodes, one of which dies meanwhile, and compares the result
+# of feeler merge with a single run. Argument: the program feeler. As root; see README.md.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
@@ -20,7 +20,7 @@ for command in munged slurmctld slurmd sbatch squeue scontrol sinfo; do
     command -v "$command" >/dev/null || die "there is no $command: README.md names the packages"
 done
 
-# --- the cluster: everything of it is in one folder, and no daemon outlives this script ----------
+# --- the cluster: all its files are in one folder, and no daemon outlives this script -------------
 
 work=$(mktemp -d /tmp/feeler-cluster-XXXXXX)
 chmod 755 "$work"
@@ -51,7 +51,8 @@ end_all() {
 trap end_all EXIT
 trap 'exit 130' INT TERM
 
-# Processes of jobs that a node left behind have this cluster's configuration in their environment.
+# Processes left behind by a node's jobs have the configuration of this cluster in their
+# environment.
 end_steps() {
     local pid
     for pid in $(pgrep -x slurmstepd || true) $(pgrep -x "${feeler##*/}" || true); do
@@ -127,13 +128,13 @@ start_cluster() {
 
 # --- the batch -----------------------------------------------------------------------------------
 
-# How many programs a share has told of so far.
+# The number of programs that a shard has reported so far.
 ended_of() {
     [[ -e share-$1.log ]] || return 0
     grep -cE '^(clear|collision|violation|undecided|errors|stopped|not run) ' "share-$1.log" || true
 }
 
-# The task that is running on a node, once it has told of so many programs.
+# The task running on a node, once it has reported this many programs.
 busy_task_on() { # NODE PROGRAMS
     local task ended
     task=$(squeue --noheader --nodelist="$1" --states=RUNNING --format=%K)
@@ -141,7 +142,7 @@ busy_task_on() { # NODE PROGRAMS
     ((${ended:-0} >= $2)) && printf '%s' "$task"
 }
 
-# As when a machine loses its power: nothing of the node is left, and nobody is told.
+# As when a machine loses power: nothing of the node is left, and it sends no message.
 kill_node() { # NODE
     local job script step
     job=$(squeue --noheader --nodelist="$1" --states=RUNNING --format=%A)
@@ -161,7 +162,7 @@ to_files() { # NAME: options that have every format written
     for format in "${formats[@]}"; do printf '%s\n' --format "$format" -o "$1.$format"; done
 }
 
-# Other runs take other times.
+# Times differ between runs.
 without_seconds() {
     sed -E -e 's/"seconds":[^,]*/"seconds":0/g' -e 's/ time="[^"]*"/ time="0"/g' \
         -e 's/,[0-9.]+(,("([^"]|"")*"|[^",]*)\r?)$/,0\1/' -e 's/ in ([0-9]+ min )?[0-9.]+ s: / in 0 s: /' -e '/^  slowest /d' "$1"
@@ -186,7 +187,7 @@ say "node n1 was killed when share $task had told of $before programs"
 [[ ! -e share-$task.json ]] || die "a share that was not finished was written"
 wait_for 90 'that the controller misses n1' is_requeued
 say "the controller has missed n1, and put share $task into its queue again"
-# Slurm would let two minutes pass first, which n1, if it came back, could use to end what it had.
+# Slurm would wait two minutes first, in which n1, if it came back, could finish its work.
 scontrol update JobId="${job}_$task" StartTime=now
 wait_for 400 'the end of all shares, and of merge' is_over
 [[ $(says Restarts "${job}_$task") == 1 && $(says NodeList "${job}_$task") == n2 ]] || die "share $task did not begin again on n2"
@@ -196,7 +197,7 @@ found=$(grep -oE '^[0-9]+ of [0-9]+ results are those of earlier checks' "share-
 ((${found:-0} >= before)) || die "of $before results that share $task had, it found ${found:-none} again"
 say "share $task began again, and found $found results in its database"
 
-# --- merged as one run would have done it --------------------------------------------------------
+# --- merged results are equal to those of one run -------------------------------------------------
 
 status=$(says ExitCode "$merging" | cut -d: -f1)
 mapfile -t options < <(to_files one)

@@ -14,10 +14,10 @@ struct ChosenProgram {
     bool block_delete;
 };
 
-/// A program of which every byte chooses a part: codes that exist beside codes that do not, words
-/// that fit and words that do not, loops, calls, expressions, values at the ends of their ranges.
+/// A program in which each byte selects a part: valid and invalid codes, fitting and unfitting
+/// words, loops, calls, expressions, values at the ends of their ranges.
 ///
-/// Result: the same bytes, the same program; it ends where the bytes do.
+/// Result: the same bytes give the same program; it ends with the bytes.
 ChosenProgram chosen_program(std::span<const uint8_t> choices);
 
 } // namespace test_support

@@ -18,7 +18,7 @@ namespace {
 constexpr uint64_t most_blocks = 300;
 constexpr size_t longest_text = 16384;
 
-/// The program that is being run, for the message when it breaks a promise.
+/// The running program, for the message when an assertion fails.
 thread_local std::string_view program_text;
 thread_local std::string_view dialect_name;
 
@@ -79,7 +79,7 @@ void check_block(const gcode::BlockResult& block, gcode::Lowering& lowering, siz
         require(!warning.message.empty() && warning.where.line <= lines, "a warning has a place");
 }
 
-/// What a run came to: as much as shows whether two of them went the same way.
+/// The outcome of a run, enough to compare two runs.
 struct Outcome {
     uint64_t digest = 0;
     size_t blocks = 0, commands = 0;

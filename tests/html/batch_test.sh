@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The page of many programs in headless Chromium. Arguments: the program feeler, the one that writes a
-# large page, the folder of assets, a folder to work in (pages and pictures are kept there). Skipped
-# where there is no Chromium, node or npm's packages.
+# The page of a batch in headless Chromium. Arguments: the program feeler, the program that writes a
+# large page, the folder of assets, a work folder (pages and pictures are kept there). Skipped
+# without Chromium, node or the npm packages.
 set -euo pipefail
 feeler=$1 large_page=$2 assets=$3 work=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -10,7 +10,7 @@ source "$here/../support/npm_test.sh"
 need chromium node npm
 install_packages "$here"
 
-# A shop with programs of every kind, with names that a browser must not take for more than text.
+# A library with programs of every kind, and names that a browser must treat as plain text.
 rm -rf shop
 ln -sfn "$assets" assets # so that no word which is searched for stands in the path of a set-up
 mkdir -p "shop/vise/Gehäuse <i>" shop/broken shop/air
@@ -32,7 +32,8 @@ make_report 2 shop --no-cache --format html -o shop.html # one of them cannot be
 make_report 0 "shop/vise/part 9.nc" "shop/vise/part 10.nc" --no-cache --format html -o good.html \
     --setup assets/setups/clamped_plate.toml
 
-# Holes drilled through the clamps by a subprogram in a file of its own, and a program that ends in one.
+# Holes drilled through the clamps by a subprogram in a separate file, and a program that ends in
+# one.
 rm -rf sub
 mkdir -p sub
 sed '/^G98/,$d' "$assets/programs/clamped_plate_low.nc" >sub/main.nc

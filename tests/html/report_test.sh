@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# HTML reports in headless Chromium. Arguments: the program feeler, the folder of assets, a folder to
-# work in (reports and pictures are kept there). Without Chromium, node or npm's packages it is
-# skipped.
+# HTML reports in headless Chromium. Arguments: the program feeler, the folder of assets, a work
+# folder (reports and pictures are kept there). Skipped without Chromium, node or the npm packages.
 set -euo pipefail
 feeler=$1 assets=$2 work=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -15,13 +14,13 @@ make_report any "$assets/programs/clamped_plate_low.nc" --setup "$assets/setups/
 make_report any "$assets/programs/PARALLEL.NC" --setup "$assets/setups/parallel.toml" \
     --format html -o clear.html
 
-# Text that a browser must not take for more, and bytes of another code page.
+# Text that a browser must treat as plain, and bytes of another code page.
 sed 's|^O1011.*|O1011 (</script><script>document.title="broken"</script><img src=x onerror=alert(1)> \xe4)|' \
     "$assets/programs/clamped_plate_low.nc" >evil.nc
 make_report any evil.nc --setup "$assets/setups/clamped_plate.toml" --format html -o evil.html
 
-# Thousands of blocks in the material, where contact is allowed, and one that passes a clamp at 1.5 mm
-# of the 2 mm to keep.
+# Thousands of blocks in the material, where contact is allowed, and one that passes a clamp at 1.5
+# mm with a minimum clearance of 2 mm.
 awk 'BEGIN {
     print "O1000\nG21 G90 G17 G54\nT1 M6\nS6000 M3\nG0 G43 H1 Z60.\nX20. Y30.\nZ3.";
     for (i = 0; i < 3000; ++i) {

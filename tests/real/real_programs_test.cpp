@@ -9,7 +9,7 @@
 namespace real_test {
 namespace {
 
-/// What is true of a program as it was posted, judged by hand: see README.md.
+/// The verified findings of a posted program: see README.md.
 struct RealProgram {
     const char* file; // from the root of the repository
     int status;
@@ -51,7 +51,7 @@ TEST(RealPrograms, HaveTheErrorsThatAreTrueOfThemAndNoOthers) {
     }
 }
 
-/// All of them, each on a device of its own.
+/// All of them, each on its own device.
 template <typename Device>
 test_support::DeviceJudgement judged_by(const Device& fresh) {
     test_support::DeviceJudgement all;

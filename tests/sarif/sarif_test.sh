@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Real SARIF files against the published schema. Arguments: the program feeler, the one that writes
-# batches no shell could make, the folder of assets, a folder to work in. Skipped where there is no
-# node or npm's packages.
+# Real SARIF files against the published schema. Arguments: the program feeler, the program that
+# writes batches a shell cannot make, the folder of assets, a work folder. Skipped without node or
+# the npm packages.
 set -euo pipefail
 feeler=$1 odd_batches=$2 assets=$3 work=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -19,7 +19,7 @@ printf '%%\nO7\nG21 G90 G54\nG999 X1.\nM30\n%%\n' >broken.nc
 make_report 2 broken.nc --format sarif -o broken.sarif
 make_report 2 nowhere.nc --format sarif -o nowhere.sarif
 
-# A batch with names that are no URIs as they stand: blanks, UTF-8, bytes that are none, signs.
+# A batch with names that are not valid URIs: blanks, UTF-8, invalid bytes, special characters.
 rm -rf shop
 mkdir -p "shop/Gehäuse 50%"
 cp "$assets/programs/clamped_plate_low.nc" "shop/Gehäuse 50%/it's [\"a\"] #1?.nc"

@@ -20,7 +20,7 @@ struct WalkedSession {
     }
 };
 
-/// One move of somebody who looks round.
+/// One random step through the session.
 void walk_somewhere(app::DebugSession& session, std::mt19937& random, size_t last) {
     const auto below = [&](size_t count) { return random() % count; };
     switch (below(12)) {

@@ -10,7 +10,7 @@
 
 namespace session_test {
 
-/// A program and its set-up as files, for as long as the object lives.
+/// A program and its set-up as files that exist as long as the object.
 struct ProgramFiles {
     test_support::ScopedFolder folder;
     std::string program, setup;
@@ -20,18 +20,18 @@ struct ProgramFiles {
     app::CheckJob job() const;
 };
 
-/// Subprograms in loops, parameters, two tools, cuts, a dwell, a crash into the clamp near the end:
-/// some 430 blocks. LinuxCNC's dialect.
+/// Subprograms in loops, parameters, two tools, cuts, a dwell, a collision with the clamp near the
+/// end: about 430 blocks. LinuxCNC's dialect.
 std::string walked_program();
 test_support::SetupWriter walked_setup();
 
-/// The digest of every place of a program, run once from its beginning without any keyframe.
+/// The digest of the state at each block of a program, run once from its start without keyframes.
 std::vector<uint64_t> digests_of(const app::CheckJob& job);
 
-/// The record as JSON, without what depends on the machine's speed.
+/// The record as JSON, without times.
 std::string report_of(const app::CheckRun& run);
 
-/// The same, of the blocks before one, and the findings about them.
+/// The same for the blocks before one, with their findings.
 std::string report_before(const app::CheckRun& run, size_t block);
 
 } // namespace session_test

@@ -73,7 +73,7 @@ TEST_F(Walking, FindsTheFirstOffenceFromBothSides) {
     EXPECT_EQ(first, offence);
 }
 
-/// Where the machine stands at first is not known: a warning, but the block is not proven clear.
+/// The start position of the machine is unknown: a warning, but the block is not proven clear.
 TEST(WalkingToAnOffence, StopsAtWhatIsNotDecidedAsWell) {
     const ProgramFiles files("lost.ngc",
                              "G21 G90 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X10 Y10\nG0 Z5\n"
@@ -123,7 +123,7 @@ TEST_F(Walking, WatchesAParameterBothWays) {
     while (session->go_on().reason == app::StopReason::watch) places.push_back(session->at());
     EXPECT_GE(places.size(), 18U);
     EXPECT_EQ(session->watches()[0].hits, places.size());
-    // Going back one stops before the block that changes it.
+    // Going back stops before the block that changes it.
     for (size_t i = places.size(); i-- > 0;) {
         ASSERT_EQ(session->go_on_back().reason, app::StopReason::watch);
         EXPECT_EQ(session->at(), places[i] - 1);

@@ -8,7 +8,7 @@
 namespace session_test {
 namespace {
 
-/// Somebody who tries this and that, and what of it still counts.
+/// Applies random what-ifs and keeps track of those still in effect.
 class Trying {
 public:
     Trying(const ProgramFiles& files, unsigned seed) : files_(files), random_(seed) {
@@ -41,7 +41,8 @@ public:
         }
     }
 
-    /// That a session in which only what counts was done is at the same place and records the same.
+    /// Expects a session with only the what-ifs in effect to be at the same block with the same
+    /// record.
     void expect_what_counts() {
         const auto other = opened();
         for (const app::MadeChange& made : made_) {

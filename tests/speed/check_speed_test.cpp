@@ -78,7 +78,7 @@ TEST(CheckSpeed, WatchSeesAChangeWithinTwentySecondsWhileOthersWriteBesideIt) {
     busy.join();
 }
 
-/// Four times as many points; the bounds leave room for a great deal of noise.
+/// Four times as many points; the limits leave room for a lot of noise.
 TEST(BenchSpeed, TakesLongerForMorePoints) {
     app::BenchScene scene = app::paper_scene();
     scene.mesh_sizes = {1.0, 2.0};

@@ -27,7 +27,7 @@ TEST(StoreSpeed, FindsAThousandResultsInASecond) {
     EXPECT_LT(watch.seconds(), 1.0);
 }
 
-/// On a slow disk a transaction for each took ten times as long.
+/// On a slow disk one transaction for each result took ten times as long.
 TEST(StoreSpeed, KeepsAThousandResultsInASecond) {
     const ThousandResults results;
     const Stopwatch watch;

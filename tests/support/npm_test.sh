@@ -1,6 +1,6 @@
 # shellcheck shell=bash disable=SC2154
-# What tests with packages of npm share. It is sourced with `feeler`, the program, and `work`, a folder
-# of the test.
+# Common functions of tests with npm packages. Source it with `feeler`, the program, and `work`, a
+# folder of the test, set.
 
 # Ends the test as skipped.
 skip() {
@@ -15,8 +15,8 @@ need() {
     done
 }
 
-# install_packages FOLDER...: goes into the folder of the test, with the scripts (.mjs) of these folders and
-# the packages of their lock file.
+# install_packages FOLDER...: changes to the folder of the test, with the scripts (.mjs) of these
+# folders and the packages of their lock file.
 install_packages() {
     local folder
     mkdir -p "$work"
@@ -29,7 +29,7 @@ install_packages() {
         --fetch-timeout=60000 >npm.log 2>&1 || skip 'npm could not get its packages'
 }
 
-# A report of `feeler check`, which must end with this status, or with less than 2 for `any`.
+# A report of `feeler check`, which must end with this status, or with a status below 2 for `any`.
 make_report() {
     local wanted=$1 status=0
     shift
