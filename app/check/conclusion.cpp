@@ -13,6 +13,7 @@
 #include "core/sim/part_comparison.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/verdict.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

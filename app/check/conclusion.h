@@ -7,6 +7,7 @@
 #include "app/check/check_run.h"
 #include "app/check/length_mismatch.h"
 #include "app/check/prepared_check.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

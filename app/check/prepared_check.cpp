@@ -13,6 +13,7 @@
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
 #include "core/sim/verdict.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "app/check/check_run.h"
 #include "core/motion/machine.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

@@ -9,6 +9,7 @@
 #include "app/report/text/trace_report.h"
 #include "app/setup/setup_file.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "app/debug/condition.h"
 #include "app/debug/recorded_run.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

@@ -10,6 +10,7 @@
 #include "core/motion/machine.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/language/dialect.h"
+#include "gcode/siemens/siemens_state.h"
 
 namespace app {
 namespace {

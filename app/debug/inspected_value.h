@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 

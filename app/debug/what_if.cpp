@@ -60,7 +60,7 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
 
 /// The control must stand where the machine does.
 core::Result<void> check_that_nothing_waits(const RunState& place) {
-    if (place.control.contour.is_idle()) return {};
+    if (!holds_blocks_back(place.control)) return {};
     return core::fail(ErrorCode::unsupported,
                       "the control has read ahead here, for cutter radius compensation or a "
                       "corner: change the offset before G41 or G42, or after G40");

@@ -243,7 +243,7 @@ core::Result<void> ask_for_corner(Execution& execution) {
     if (size == 0.0) return {};
     const PlaneAxes axes = axes_of(execution.modal().plane);
     if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
-    execution.state.contour.corners.asked =
+    execution.state.contour.write().corners.asked =
         CornerWord{.kind = word->letter == 'r' ? CornerKind::rounding : CornerKind::chamfer,
                    .size = size,
                    .where = word->span,

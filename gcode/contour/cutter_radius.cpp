@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/contour/contour.h"
 #include "gcode/exec/execution.h"
 
 namespace gcode {
@@ -31,7 +32,7 @@ bool is_among(std::span<const int> codes, int code) {
 
 bool changes_plane(const Execution& execution, const CodeWord& entry) {
     constexpr int planes[] = {170, 180, 190, 171, 181, 191};
-    const Contour& contour = execution.state.contour; // the mode already has the new plane
+    const Contour& contour = *execution.state.contour; // the mode already has the new plane
     const Plane plane = contour.path ? contour.plane : execution.modal().plane;
     return entry.code->group == ModalGroup::plane
            && planes[static_cast<size_t>(plane)] != entry.code->tenths;
@@ -65,7 +66,7 @@ core::Result<void> check_contour(Execution& execution) {
                        fmt::format("{} stands between {} and G40: the tool leaves the contour for "
                                    "this block, and the next move in the plane leads it back",
                                    written(*entry.word), on));
-        execution.state.contour.pauses = true;
+        execution.state.contour.write().pauses = true;
         return {};
     }
     return {};
@@ -166,8 +167,12 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
 
 core::Result<void> set_cutter_radius(Execution& execution) {
     ModalState& modal = execution.modal();
-    execution.state.contour.pauses = false;
-    execution.state.contour.style = execution.dialect.contour_style;
+    const ContourStyle style = execution.dialect.contour_style;
+    if (execution.state.contour->pauses || execution.state.contour->style != style) {
+        Contour& contour = execution.state.contour.write();
+        contour.pauses = false;
+        contour.style = style;
+    }
     const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
     const bool ends = entry && entry->code->tenths == tenths(40);
     if (modal.compensation != Side::none && !ends) {
@@ -182,7 +187,7 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     if (!entry) return {};
     if (ends) {
         modal.leaves_contour |=
-            execution.state.contour.path && execution.state.contour.path->entered;
+            execution.state.contour->path && execution.state.contour->path->entered;
         modal.compensation = Side::none;
         modal.compensation_radius = 0.0;
         return {};

@@ -4,6 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "gcode/contour/contour.h"
+#include "gcode/cycles/spline.h"
+#include "gcode/klartext/klartext_state.h"
+#include "gcode/siemens/siemens_state.h"
+
 namespace gcode {
 namespace {
 
@@ -36,9 +41,9 @@ size_t memory_of(const BlockResult& block) {
 size_t memory_of(const InterpreterState& state, const InterpreterState* before) {
     size_t bytes = sizeof(InterpreterState) + state.modal_macros.size() * sizeof(ModalMacro);
     for (const Frame& frame : state.frames) bytes += memory_of(frame);
-    for (const PendingBlock& block : state.contour.pending)
+    for (const PendingBlock& block : state.contour->pending)
         bytes += memory_of(block.result) + block.slots.size() * sizeof(PendingBlock::Slot);
-    for (const BlockResult& block : state.contour.ready) bytes += memory_of(block);
+    for (const BlockResult& block : state.contour->ready) bytes += memory_of(block);
     if (!before || !state.parameters.is_shared_with(before->parameters))
         bytes += memory_of(*state.parameters);
     if (!before || !state.tables.is_shared_with(before->tables)) bytes += memory_of(*state.tables);

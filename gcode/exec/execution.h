@@ -5,6 +5,7 @@
 #include "core/base/result.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/exec/statement.h"
+#include "gcode/language/environment.h"
 
 namespace gcode {
 

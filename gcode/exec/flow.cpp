@@ -10,6 +10,7 @@
 #include "gcode/read/flow_index.h"
 #include "gcode/read/parser.h"
 #include "gcode/siemens/siemens_flow.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

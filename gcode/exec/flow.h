@@ -2,6 +2,7 @@
 
 #include "gcode/exec/interpreter.h"
 #include "gcode/exec/program_parameters.h"
+#include "gcode/language/block.h"
 
 namespace gcode {
 

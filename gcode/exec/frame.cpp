@@ -6,6 +6,8 @@
 
 #include "core/base/file_reads.h"
 #include "gcode/language/program_folder.h"
+#include "gcode/read/flow_index.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {
@@ -38,6 +40,8 @@ ProgramLibrary::ProgramLibrary(const Program& main, const Dialect& dialect,
         search_path_.push_back(folder.empty() ? "." : folder.string());
     }
 }
+
+ProgramLibrary::~ProgramLibrary() = default;
 
 const FlowIndex& ProgramLibrary::index(uint32_t source) {
     Source& entry = sources_[source];

@@ -7,15 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "gcode/language/block.h"
-#include "gcode/language/dialect.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/language/parameters.h"
-#include "gcode/read/flow_index.h"
 #include "gcode/text/shared.h"
-#include "gcode/text/source.h"
 
 namespace gcode {
+
+struct Dialect;
+struct FlowIndex;
+struct Program;
+enum class SiemensType : uint8_t;
 
 /// A line of one of the programs that are read; source 0 is the main program.
 struct Place {
@@ -63,6 +64,7 @@ public:
     /// is searched.
     ProgramLibrary(const Program& main, const Dialect& dialect,
                    std::vector<std::string> search_path = {});
+    ~ProgramLibrary();
 
     const Program& program(uint32_t source) const { return *sources_[source].program; }
     const Dialect& dialect() const { return *dialect_; }

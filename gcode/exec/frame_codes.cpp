@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "core/motion/machine.h"
+#include "gcode/contour/contour.h"
+#include "gcode/cycles/spline.h"
 #include "gcode/exec/assignments.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/fanuc_parameters.h"
@@ -19,6 +21,7 @@
 #include "gcode/read/parser.h"
 #include "gcode/read/plain_words.h"
 #include "gcode/siemens/siemens.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 
@@ -323,13 +326,13 @@ Interpreter::~Interpreter() = default;
 core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
     while (true) {
         Scratch& scratch = scratch_->speaking(state);
-        Contour& contour = state.contour;
-        if (!contour.ready.empty()) {
+        if (!state.contour->ready.empty()) {
+            Contour& contour = state.contour.write();
             scratch.result = std::move(contour.ready.front());
             contour.ready.pop_front();
             return &scratch.result;
         }
-        if (contour.failure) return tl::unexpected(*contour.failure);
+        if (state.contour->failure) return tl::unexpected(*state.contour->failure);
         if (state.ending != Ending::running) return nullptr;
         if (scratch.try_quick_move(state)) return &scratch.result;
         keep(state, scratch.before);
@@ -341,7 +344,8 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         else
             found.error().where = scratch.place_of(found.error().where);
         const bool is_block = found && *found;
-        const bool straight_out = contour.is_idle() && state.modal.compensation == Side::none;
+        const bool straight_out =
+            state.contour->is_idle() && state.modal.compensation == Side::none;
         if (is_block && straight_out) {
             scratch.remember_words(state);
             return &scratch.result;
@@ -349,21 +353,29 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
         core::Result<void> taken;
         if (is_block && scratch.library.program(source).windows) keep_text(scratch.result);
         if (is_block)
-            taken = take_block(contour, scratch.result, scratch.before.modal, state.modal);
+            taken = take_block(state.contour.write(), scratch.result, scratch.before.modal,
+                               state.modal);
         else if (found)
-            taken = end_contour(contour);
+            taken = end_contour(state.contour.write());
         if (is_block && taken) scratch.remember_words(state);
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch.take_back(state);
         error.where = scratch.place_of(error.where);
         if (error.file.empty()) error.file = scratch.library.program(source).file;
-        if (contour.is_idle()) return tl::unexpected(std::move(error));
+        if (state.contour->is_idle()) return tl::unexpected(std::move(error));
         // What came before is complete but for the moves that waited for this one.
+        Contour& contour = state.contour.write();
         give_up(contour);
         contour.failure = std::move(error);
     }
 }
+
+InterpreterState::InterpreterState() = default;
+
+bool InterpreterState::operator==(const InterpreterState&) const = default;
+
+bool holds_blocks_back(const InterpreterState& state) { return !state.contour->is_idle(); }
 
 InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;

@@ -9,20 +9,20 @@
 
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "gcode/contour/contour.h"
-#include "gcode/cycles/spline.h"
 #include "gcode/exec/frame.h"
 #include "gcode/exec/rules.h"
-#include "gcode/klartext/klartext_state.h"
 #include "gcode/language/canonical.h"
-#include "gcode/language/environment.h"
 #include "gcode/language/parameters.h"
 #include "gcode/language/tables.h"
-#include "gcode/siemens/siemens_state.h"
 #include "gcode/text/shared.h"
-#include "gcode/text/source.h"
 
 namespace gcode {
+
+struct Contour;
+struct Environment;
+struct KlartextState;
+struct SiemensState;
+struct SplineState;
 
 /// Whether and how a program came to its end.
 enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
@@ -47,6 +47,8 @@ struct DecimalPoints {
 /// Everything between two blocks. A plain value: copy it to go back in time; copies share what is
 /// large until one of them changes it.
 struct InterpreterState {
+    InterpreterState();
+
     ModalState modal;
     Place next; // the line that is read next
     uint32_t next_block = 0;
@@ -61,15 +63,18 @@ struct InterpreterState {
     LocalParameters said{}; // Fanuc: the words that were said last, by the numbers of arguments
     Shared<Parameters> parameters;
     Shared<Tables> tables;
-    Contour contour; // blocks on their way through cutter radius compensation
+    Shared<Contour> contour; // blocks on their way through cutter radius compensation
     Shared<KlartextState> klartext;
     Shared<SplineState> spline;
     Shared<SiemensState> siemens;
     LoopWatch watch;
     RuleWatch rules;
 
-    bool operator==(const InterpreterState&) const = default;
+    bool operator==(const InterpreterState& other) const;
 };
+
+/// Whether blocks wait for later ones, for cutter radius compensation or a corner.
+bool holds_blocks_back(const InterpreterState& state);
 
 /// A number that follows from all that decides how a program goes on: everything but the count of
 /// blocks and the watch over loops.

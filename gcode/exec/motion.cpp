@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
+#include "gcode/cycles/spline.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 

@@ -6,6 +6,7 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/text/program_text.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

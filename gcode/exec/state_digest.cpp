@@ -1,4 +1,8 @@
+#include "gcode/contour/contour.h"
+#include "gcode/cycles/spline.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/klartext/klartext_state.h"
+#include "gcode/siemens/siemens_state.h"
 #include "gcode/text/digest.h"
 
 namespace gcode {
@@ -266,10 +270,10 @@ uint64_t digest_of(const InterpreterState& state) {
         add_all(digest, macro.arguments);
         digest.add(number_of(2 * macro.rounds + int(macro.each_block)));
     }
-    digest.add(uint64_t{state.contour.path.has_value()});
-    if (state.contour.path) {
-        digest.add(state.contour.path->tool.u);
-        digest.add(state.contour.path->tool.v);
+    digest.add(uint64_t{state.contour->path.has_value()});
+    if (state.contour->path) {
+        digest.add(state.contour->path->tool.u);
+        digest.add(state.contour->path->tool.v);
     }
     add_all(digest, state.said);
     digest.add(state.parameters->digest());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/language/environment.h"
 #include "gcode/language/lexer.h"
 
 namespace gcode {

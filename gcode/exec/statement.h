@@ -6,10 +6,10 @@
 
 #include "gcode/language/block.h"
 #include "gcode/language/codes.h"
-#include "gcode/language/environment.h"
-#include "gcode/language/modal_state.h"
 
 namespace gcode {
+
+struct Environment;
 
 /// A G or M word with the code it names.
 struct CodeWord {

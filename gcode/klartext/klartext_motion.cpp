@@ -9,6 +9,7 @@
 #include "gcode/klartext/klartext.h"
 #include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

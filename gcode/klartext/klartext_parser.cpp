@@ -10,6 +10,7 @@
 #include "gcode/language/modal_state.h"
 #include "gcode/read/flow_index.h"
 #include "gcode/text/program_text.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

@@ -5,11 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/language/expression_parser.h"
+#include "gcode/language/expression.h"
 #include "gcode/language/modal_state.h"
-#include "gcode/text/source.h"
 
 namespace gcode {
+
+struct Program;
 
 enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain, siemens_iso };
 

@@ -10,6 +10,9 @@
 
 namespace gcode {
 
+/// The operators, functions and brackets of a family of controls.
+enum class ExpressionSyntax : uint8_t { rs274, fanuc, siemens, klartext };
+
 /// A value of an expression. Empty is Fanuc's vacant variable; it counts as 0 in arithmetic.
 using Value = std::optional<double>;
 

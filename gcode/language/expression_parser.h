@@ -8,9 +8,6 @@
 
 namespace gcode {
 
-/// The operators, functions and brackets of a family of controls.
-enum class ExpressionSyntax : uint8_t { rs274, fanuc, siemens, klartext };
-
 /// Reads what may stand for a number: a number, `#5`, `#<name>`, `[...]`, a function of brackets,
 /// each with a sign before it. `number` is set, and the result empty, for a plain number.
 ///

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 
 namespace gcode {

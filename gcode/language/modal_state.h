@@ -8,7 +8,10 @@
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "core/motion/event.h"
-#include "core/motion/kinematics.h"
+
+namespace core {
+struct Machine;
+} // namespace core
 
 namespace gcode {
 

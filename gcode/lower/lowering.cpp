@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/arcs.h"
+#include "gcode/language/environment.h"
 
 namespace gcode {
 namespace {

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include "gcode/klartext/klartext_parser.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
 #include "gcode/read/flow_parser.h"
 #include "gcode/read/parser.h"
 #include "gcode/siemens/siemens_parser.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "gcode/language/block.h"
-#include "gcode/language/dialect.h"
-#include "gcode/text/source.h"
 
 namespace gcode {
+
+struct Dialect;
+struct Program;
 
 /// A flow statement and where it stands.
 struct FlowMark {

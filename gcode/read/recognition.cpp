@@ -7,6 +7,7 @@
 #include "gcode/language/codes.h"
 #include "gcode/language/lexer.h"
 #include "gcode/read/parser.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

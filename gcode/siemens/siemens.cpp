@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/flow.h"
+#include "gcode/language/lexer.h"
 
 namespace gcode {
 namespace {

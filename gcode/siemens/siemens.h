@@ -3,6 +3,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/language/block.h"
 #include "gcode/siemens/siemens_flow.h"
+#include "gcode/siemens/siemens_state.h"
 
 namespace gcode {
 

@@ -7,7 +7,9 @@
 #include <fmt/ranges.h>
 
 #include "gcode/language/lexer.h"
+#include "gcode/read/flow_index.h"
 #include "gcode/read/parser.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

@@ -3,6 +3,7 @@
 #include "gcode/language/lexer.h"
 #include "gcode/siemens/siemens_parser.h"
 #include "gcode/siemens/siemens_reader.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {

@@ -3,6 +3,8 @@
 
 #include "app/debug/inspected_value.h"
 #include "core/motion/machine.h"
+#include "gcode/language/environment.h"
+#include "gcode/text/source.h"
 
 namespace app_test {
 namespace {

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/environment.h"
 #include "gcode/lower/lowering.h"
+#include "gcode/text/source.h"
 #include "tests/fuzz/chosen_program.h"
 
 namespace test_support {
@@ -96,13 +98,13 @@ Outcome run_on(gcode::ProgramLibrary& library, const gcode::Environment& environ
     Outcome outcome;
     while (true) {
         if (half_way && state.next_block == most_blocks / 20) *half_way = state;
-        const bool may_fail_late = !state.contour.is_idle();
+        const bool may_fail_late = holds_blocks_back(state);
         const gcode::InterpreterState before = state;
         auto next = interpreter.next(state);
         if (!next) {
             const core::Error& error = next.error();
             require(!error.message.empty() && error.where.line <= lines, "an error has a place");
-            if (!may_fail_late && state.contour.is_idle()) {
+            if (!may_fail_late && !holds_blocks_back(state)) {
                 require(state == before, "an error leaves the state as it was before the block");
                 require(gcode::digest_of(state) == gcode::digest_of(before),
                         "states that are equal have one digest");

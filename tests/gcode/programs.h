@@ -5,7 +5,9 @@
 #include <string_view>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/environment.h"
 #include "gcode/lower/trace.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gcode/siemens/siemens_state.h"
 #include "tests/gcode/siemens_programs.h"
 
 namespace gcode {

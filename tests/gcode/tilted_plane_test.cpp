@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/motion/machine.h"
 #include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 

@@ -1,6 +1,7 @@
 #include "tests/support/plain_trace.h"
 
 #include "gcode/lower/trace.h"
+#include "gcode/text/source.h"
 #include "tests/support/reference_interpreter.h"
 
 namespace test_support {

@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/sim/verdict.h"
 #include "gcode/language/dialect.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

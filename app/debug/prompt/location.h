@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/debug/prompt/prompt.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/debug/debug_session.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "app/setup/inference/program_survey.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/setup/inference/program_survey.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

@@ -6,6 +6,7 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/tools/found_tool.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

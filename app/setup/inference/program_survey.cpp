@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gcode/lower/lowering.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -11,6 +11,7 @@
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/modal_state.h"
+#include "gcode/text/source.h"
 
 namespace app {
 
