@@ -29,7 +29,7 @@ core::Error refusal(const CornerWord& word, ErrorCode code, std::string_view why
 
 core::Error no_motion(const CornerWord& word, std::string_view what) {
     return refusal(word, ErrorCode::missing_value,
-                   fmt::format("the next block must be a G1, G2 or G3 in the plane, and {}; the "
+                   fmt::format("the next motion must be a G1, G2 or G3 in the plane, but {}; the "
                                "control stops with an alarm (PS0051 on Fanuc)",
                                what));
 }
@@ -71,18 +71,17 @@ core::Result<std::optional<CornerSide>> motion_behind(const Corners& corners,
             return tl::unexpected(
                 no_motion(word, std::holds_alternative<ProgramEnd>(command)
                                     ? "the program ends"
-                                    : "only a dwell may stand between the two motions"));
-        if (!end_of_feed(command))
-            return tl::unexpected(no_motion(word, "a motion without feed follows"));
+                                    : "only a dwell is allowed between the two motions"));
+        if (!end_of_feed(command)) return tl::unexpected(no_motion(word, "a rapid follows"));
         const bool same_modes = block.after.plane == first.plane
                                 && block.after.compensation == first.compensation
                                 && block.after.offsets == first.offsets;
         if (!same_modes)
             return tl::unexpected(no_motion(
-                word, "the plane, the offsets or cutter radius compensation change before it"));
+                word, "the plane, the offsets or the cutter radius compensation change first"));
         const auto side = side_of(command, block.before.position, first.plane);
         if (!side || !has_length(*side))
-            return tl::unexpected(no_motion(word, "the motion behind it leaves the plane"));
+            return tl::unexpected(no_motion(word, "the next motion leaves the plane"));
         return side;
     }
     return std::optional<CornerSide>{};
@@ -93,19 +92,18 @@ core::Result<CornerCut> cut_between(const CornerWord& word, const CornerSide& fi
     CornerCut cut;
     cut.fit = CornerFit::straight_on;
     if (!has_length(first))
-        return tl::unexpected(refusal(word, ErrorCode::invalid_value,
-                                      "the motion it is written behind goes nowhere"));
+        return tl::unexpected(
+            refusal(word, ErrorCode::invalid_value, "the motion in this block has no length"));
     if (bend_between(first, second) <= core::radians_per_degree) return cut;
     cut = cut_corner(first, second, word.kind, word.size);
     if (cut.fit == CornerFit::none)
-        return tl::unexpected(
-            refusal(word, ErrorCode::invalid_value,
-                    "nothing of this size touches both motions; the control stops with an alarm"));
+        return tl::unexpected(refusal(
+            word, ErrorCode::invalid_value,
+            "no corner of this size touches both motions; the control stops with an alarm"));
     if (cut.fit == CornerFit::too_large)
-        return tl::unexpected(
-            refusal(word, ErrorCode::invalid_value,
-                    "the corner is too large for the motions before and behind it; the control "
-                    "stops with an alarm (PS0055 on Fanuc)"));
+        return tl::unexpected(refusal(word, ErrorCode::invalid_value,
+                                      "the corner is too large for the motions before and after "
+                                      "it; the control stops with an alarm (PS0055 on Fanuc)"));
     return cut;
 }
 
@@ -159,9 +157,9 @@ core::Result<void> wait_for_motion(Corners& corners, const CornerWord& word, Exe
         if (const Position* end = end_of_feed(commands[i])) start = *end;
     const auto side = side_of(commands.back(), start, block.after.plane);
     if (!side)
-        return tl::unexpected(refusal(word, ErrorCode::invalid_value,
-                                      "a corner lies in the plane, and the motion before it "
-                                      "leaves the plane or begins at an unknown place"));
+        return tl::unexpected(refusal(
+            word, ErrorCode::invalid_value,
+            "a corner needs a motion that stays in the plane and starts at a known position"));
     corners.first = *side;
     corners.word = word;
     corners.waiting.push_back(std::move(block));
@@ -175,7 +173,8 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
         FEELER_TRY(const auto second, motion_behind(corners, block));
         if (!second) {
             if (corners.waiting.size() >= most_waiting)
-                return tl::unexpected(no_motion(*corners.word, "none comes for too long"));
+                return tl::unexpected(
+                    no_motion(*corners.word, "too many blocks without a motion follow"));
             corners.waiting.push_back(std::move(block));
             return ready;
         }
@@ -229,16 +228,18 @@ core::Result<void> ask_for_corner(Execution& execution) {
     if (!word) return {};
     const double size = length_of(execution, *word);
     if (size < 0.0)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: the size of a corner is not negative", written(*word)),
-                          word->span);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: the size of a corner must not be negative", written(*word)),
+            word->span);
     const auto& commands = execution.result.commands;
     const bool feeds =
         !commands.empty() && end_of_feed(commands.back()) != nullptr && !execution.modal().cycle;
     if (!feeds)
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("{}: a corner is written in the block of a G1, G2 or G3", written(*word)),
+            fmt::format("{}: a corner must be programmed in a block with G1, G2 or G3",
+                        written(*word)),
             word->span);
     if (size == 0.0) return {};
     const PlaneAxes axes = axes_of(execution.modal().plane);
@@ -309,7 +310,7 @@ void place_move(Contour& contour, const CompensatedMove& move) {
         block.result.warnings.push_back(
             {Severity::warning,
              {.line = block.result.line, .column = block.result.columns[index]},
-             "the tool does not fit between this move and the one before it: its centre runs "
+             "the tool does not fit between this move and the previous one: its centre moves "
              "backwards here and cuts into the contour"});
 }
 
@@ -356,8 +357,8 @@ void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& 
     if (number <= before + 1 + harmless) return;
     contour.pending.back().result.warnings.push_back(
         {Severity::warning, move.where,
-         fmt::format("{} blocks without a move in the plane stand before this one: a control that "
-                     "looks no farther ahead than that cuts into an inside corner here",
+         fmt::format("{} blocks without a move in the plane come before this one: a control that "
+                     "does not look ahead farther than that cuts into an inside corner here",
                      number - before - 1)});
 }
 
@@ -370,7 +371,7 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
     const auto end = flat(*end_of(command), contour.plane);
     if (!end)
         return core::fail(core::ErrorCode::missing_value,
-                          "cutter radius compensation needs a known place in its plane", where);
+                          "cutter radius compensation needs a known position in its plane", where);
     const size_t number = contour.first_pending + contour.pending.size() - 1;
     ContourMove move{.id = number * commands_of_a_block + index,
                      .rapid = std::holds_alternative<StraightTraverse>(command),
@@ -402,8 +403,8 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
     const auto at = flat(before.position, after.plane);
     if (!at)
         return core::fail(core::ErrorCode::missing_value,
-                          "cutter radius compensation begins at an unknown place: move there "
-                          "first, or say where the machine starts",
+                          "cutter radius compensation starts at an unknown position: move in both "
+                          "axes of the plane first, or set [program] start in the set-up",
                           {.line = block.line, .column = 1});
     const ContourSide side =
         after.compensation == Side::left ? ContourSide::left : ContourSide::right;
@@ -443,8 +444,8 @@ core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
         if (auto begun = begin_path(contour, before, after, block); !begun) return begun;
     if (contour.pending.size() >= most_pending)
         return core::fail(core::ErrorCode::invalid_value,
-                          "cutter radius compensation waits for a move in its plane for too long: "
-                          "switch it off with G40",
+                          "too many blocks without a move in the plane while cutter radius "
+                          "compensation is on: cancel it with G40",
                           {.line = block.line, .column = 1});
     if (auto taken = take_commands(contour, block, before); !taken) {
         contour.pending.pop_back();

@@ -57,14 +57,15 @@ core::Result<void> check_contour(Execution& execution) {
         const bool skips = entry.code->letter == 'G' && entry.code->tenths == tenths(31);
         if (!skips && !breaks_contour(execution, entry)) continue;
         if (skips || execution.dialect.contour_breaks_are_errors || changes_plane(execution, entry))
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{} is not possible between {} and G40: switch cutter "
-                                          "radius compensation off before",
-                                          written(*entry.word), on),
-                              entry.word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format(
+                    "{} is not allowed between {} and G40: cancel cutter radius compensation first",
+                    written(*entry.word), on),
+                entry.word->span);
         execution.warn(entry.word->span,
-                       fmt::format("{} stands between {} and G40: the tool leaves the contour for "
-                                   "this block, and the next move in the plane leads it back",
+                       fmt::format("{} between {} and G40: the tool leaves the contour for this "
+                                   "block and returns to it with the next move in the plane",
                                    written(*entry.word), on));
         execution.state.contour.write().pauses = true;
         return {};
@@ -106,8 +107,8 @@ core::Result<int> turning_orientation(Execution& execution, const CodeWord& entr
     const bool turns = orientation != 0 && orientation != 9;
     if (!turns || execution.modal().plane == Plane::zx) return orientation;
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("{}: this is a turning tool (orientation {}), which is "
-                                  "compensated in the plane of G18 only",
+                      fmt::format("{}: this is a turning tool (orientation {}), which can only be "
+                                  "compensated in the G18 plane",
                                   written(*entry.word), orientation),
                       word ? word->span : entry.word->span);
 }
@@ -120,8 +121,8 @@ core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord
     const double first = std::abs(scaling->factors[static_cast<int>(axes.first)]);
     if (first == std::abs(scaling->factors[static_cast<int>(axes.second)])) return first;
     return core::fail(ErrorCode::unsupported,
-                      fmt::format("{}: cutter radius compensation of a contour that G51 scales "
-                                  "unequally is not supported: scale both axes alike",
+                      fmt::format("{}: cutter radius compensation is not supported where G51 "
+                                  "scales the two axes differently: use the same factor for both",
                                   written(*entry.word)),
                       entry.word->span);
 }
@@ -134,7 +135,7 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
         if (!word)
             return core::fail(
                 ErrorCode::missing_value,
-                fmt::format("{} needs the tool's diameter as D", written(*entry.word)),
+                fmt::format("{} needs a D word, the diameter of the tool", written(*entry.word)),
                 entry.word->span);
         return length_of(execution, *word);
     }
@@ -142,8 +143,8 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
     if (number == 0) {
         if (execution.dialect.radius_number_stays && !word)
             execution.warn(entry.word->span,
-                           fmt::format("{}: no D word came before it, so the radius is 0: the tool "
-                                       "runs on the contour itself",
+                           fmt::format("{}: no D word programmed yet, so the radius is 0 and the "
+                                       "tool centre runs on the contour",
                                        written(*entry.word)));
         return 0.0;
     }
@@ -154,14 +155,15 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
     if (is_another)
         execution.result.warnings.push_back(
             {Severity::warning, entry.word->span,
-             fmt::format("{}: D{} is not the offset of the tool in the spindle, T{}",
+             fmt::format("{}: D{} is not the offset of T{}, the tool in the spindle",
                          written(*entry.word), number, value_of(*modal.tool)),
-             "offset-not-tool", fmt::format("Write D{}.", value_of(*modal.tool))});
+             "offset-not-tool", fmt::format("Use D{}.", value_of(*modal.tool))});
     if (const auto diameter = diameter_under(*execution.state.tables, number)) return *diameter;
-    execution.warn(entry.word->span,
-                   fmt::format("{}: nothing is known about the diameter D{}, taken as 0: the tool "
-                               "runs on the contour itself",
-                               written(*entry.word), number));
+    execution.warn(
+        entry.word->span,
+        fmt::format(
+            "{}: diameter D{} is unknown and assumed to be 0: the tool centre runs on the contour",
+            written(*entry.word), number));
     return 0.0;
 }
 
@@ -177,11 +179,12 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     const bool ends = entry && entry->code->tenths == tenths(40);
     if (modal.compensation != Side::none && !ends) {
         if (entry && execution.dialect.contour_breaks_are_errors)
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{}: cutter radius compensation is on already; switch it "
-                                          "off with G40 before",
-                                          written(*entry->word)),
-                              entry->word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format(
+                    "{}: cutter radius compensation is already on; cancel it with G40 first",
+                    written(*entry->word)),
+                entry->word->span);
         if (auto checked = check_contour(execution); !checked) return checked;
     }
     if (!entry) return {};
@@ -195,11 +198,11 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     const bool third =
         modal.plane == Plane::yz && execution.dialect.contour_codes == ContourCodes::fanuc;
     if (modal.plane != Plane::xy && modal.plane != Plane::zx && !third)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: cutter radius compensation works in the planes of G17 "
-                                      "and G18",
-                                      written(*entry->word)),
-                          entry->word->span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: cutter radius compensation works in the G17 and G18 planes only",
+                        written(*entry->word)),
+            entry->word->span);
     FEELER_TRY(const int orientation, turning_orientation(execution, *entry));
     FEELER_TRY(const double diameter, offset_diameter(execution, *entry));
     const bool left = entry->code->tenths / 10 == 41;

@@ -131,14 +131,14 @@ CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
 core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
     if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
         return {};
-    return refusal(compensation.waiting_where,
-                   fmt::format("the tool, of radius {:g} mm, does not fit beside this move: the "
-                               "inside corners at its ends take more than its whole length; take "
-                               "a smaller tool, or make the move longer{}",
-                               compensation.radius,
-                               compensation.extends_corners
-                                   ? "; the control stops with an alarm (PS0041 on Fanuc)"
-                                   : ""));
+    return refusal(
+        compensation.waiting_where,
+        fmt::format(
+            "the tool, radius {:g} mm, does not fit along this move: the inside corners at its "
+            "ends take up more than its whole length; use a smaller tool or a longer move{}",
+            compensation.radius,
+            compensation.extends_corners ? "; the control stops with an alarm (PS0041 on Fanuc)"
+                                         : ""));
 }
 
 /// Makes the move the waiting one, with its end as far as that is known.
@@ -167,19 +167,18 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
     if (!move.arc || !is_inside(compensation.side, *move.arc)) return {};
     const double radius = length(move.end - move.arc->centre);
     if (radius > compensation.radius) return {};
-    return refusal(move.where,
-                   fmt::format("the tool, of radius {:g} mm, runs inside this arc of radius {:g} "
-                               "mm and does not fit into it; take a smaller tool or a larger arc",
-                               compensation.radius, radius));
+    return refusal(move.where, fmt::format("the tool, radius {:g} mm, does not fit inside this arc "
+                                           "of radius {:g} mm; use a smaller tool or a larger arc",
+                                           compensation.radius, radius));
 }
 
 /// On Fanuc the entry ends beside the start of the next move, wherever that is.
 core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
                                               const ContourMove& move) {
     if (move.arc)
-        return refusal(move.where, "the first move under cutter radius compensation must be a "
-                                   "straight line; the control stops with an alarm (PS0034 on "
-                                   "Fanuc)");
+        return refusal(move.where,
+                       "the first move with cutter radius compensation must be a straight line; "
+                       "the control stops with an alarm (PS0034 on Fanuc)");
     const FlatPoint heading = direction(move.end - compensation.programmed);
     wait_with(compensation, move, move.end + beside(compensation, heading), {});
     compensation.entered = compensation.entering = true;
@@ -190,12 +189,12 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     if (compensation.extends_corners) return enter_straight(compensation, move);
     const double way = length(move.end - compensation.programmed);
     if (way <= compensation.radius)
-        return refusal(move.where,
-                       fmt::format("the first move under cutter radius compensation leads the tool "
-                                   "to the contour: it must go farther in the plane than the "
-                                   "tool's radius of {:g} mm, and goes {:g} mm; start from "
-                                   "farther away",
-                                   compensation.radius, way));
+        return refusal(
+            move.where,
+            fmt::format(
+                "the first move with cutter radius compensation must be longer in the plane than "
+                "the tool radius of {:g} mm, but is {:g} mm long; start farther from the contour",
+                compensation.radius, way));
     if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
     const FlatPoint heading =
         move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
@@ -204,8 +203,8 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     if (move.arc) {
         arc = entry_arc(compensation.programmed, end, *move.arc);
         if (!arc)
-            return refusal(move.where, "no arc from here meets the contour as this one does with "
-                                       "cutter radius compensation; enter by a straight move");
+            return refusal(move.where, "no arc from here leads onto this arc with cutter radius "
+                                       "compensation; enter with a straight move");
     }
     wait_with(compensation, move, end, arc);
     if (arc) {
@@ -265,11 +264,11 @@ core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, con
     if (bend == Bend::inside) {
         const auto both = touching_both(compensation, corner, move);
         if (!both)
-            return refusal(move.where,
-                           fmt::format("the tool, of radius {:g} mm, does not fit into the inside "
-                                       "corner at the start of this move; take a smaller tool, or "
-                                       "round the corner",
-                                       compensation.radius));
+            return refusal(
+                move.where,
+                fmt::format("the tool, radius {:g} mm, does not fit into the inside corner at the "
+                            "start of this move; use a smaller tool or round the corner",
+                            compensation.radius));
         met = *both;
     }
     if (bend == Bend::inside || compensation.extends_corners)

@@ -20,11 +20,12 @@ std::array<double, 2> shift_of(const Drilling& hole) {
 
 void warn_of_direction(Drilling& hole) {
     if (shifts_by_words(hole.cycle) || !hole.cycle.peck) return;
-    hole.execution.warn(moving_word(hole.execution).span,
-                        fmt::format("G{}: a setting of the control says to which side Q shifts; "
-                                    "taken as +{}",
-                                    hole.cycle.code / 10, axis_letters[hole.first]),
-                        Severity::note);
+    hole.execution.warn(
+        moving_word(hole.execution).span,
+        fmt::format(
+            "G{}: a parameter of the control sets the direction of the shift Q; +{} is assumed",
+            hole.cycle.code / 10, axis_letters[hole.first]),
+        Severity::note);
 }
 
 /// Shifts the tool off centre, or with -1 back to it.

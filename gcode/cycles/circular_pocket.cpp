@@ -27,19 +27,19 @@ core::Result<void> check_radii(const Execution& execution, const CodeWord& entry
     const Word* step = execution.statement.word('Q');
     if (!first) return refusal(*entry.word, ErrorCode::missing_value, "the radius I is missing");
     if (length_of(execution, *first) <= tool_radius)
-        return refusal(*first, ErrorCode::invalid_value,
-                       fmt::format("the circle must be larger than the tool, whose radius is {:g} "
-                                   "mm",
-                                   tool_radius));
+        return refusal(
+            *first, ErrorCode::invalid_value,
+            fmt::format("the circle must be larger than the tool radius of {:g} mm", tool_radius));
     if (last && !step)
         return refusal(*last, ErrorCode::missing_value,
-                       "K needs Q, the step from circle to circle");
+                       "K also needs Q, the step from circle to circle");
     if (step && !last)
-        return refusal(*step, ErrorCode::missing_value, "Q needs K, the radius of the last circle");
+        return refusal(*step, ErrorCode::missing_value,
+                       "Q also needs K, the radius of the last circle");
     if (step && step->value <= 0.0)
-        return refusal(*step, ErrorCode::invalid_value, "the step must be above 0");
+        return refusal(*step, ErrorCode::invalid_value, "the step must be greater than 0");
     if (last && last->value <= first->value)
-        return refusal(*last, ErrorCode::invalid_value, "K must be larger than I");
+        return refusal(*last, ErrorCode::invalid_value, "K must be greater than I");
     return {};
 }
 
@@ -89,10 +89,11 @@ void mill_circles(Execution& execution, const CircularPocket& pocket) {
 core::Result<void> check_place(const Execution& execution, const CodeWord& entry) {
     const Position& place = execution.modal().position;
     if (execution.modal().plane != Plane::xy)
-        return refusal(*entry.word, ErrorCode::syntax, "this works in the plane of G17");
+        return refusal(*entry.word, ErrorCode::syntax,
+                       "circular pockets work in the G17 plane only");
     if (place[0] && place[1]) return {};
     return refusal(*entry.word, ErrorCode::missing_value,
-                   "the middle of the circle is not known: move there first, or write X and Y");
+                   "the centre of the circle is unknown: move there first, or add X and Y");
 }
 
 } // namespace

@@ -20,23 +20,24 @@ core::Result<void> check_turning(const Execution& execution) {
     const Word& mover = moving_word(execution);
     // On Mach3 and other controls these codes select the units.
     const std::string_view instead = execution.statement.word('Q') ? ""
-                                     : mover.value == 70.0 ? "; where it means inches, write G20"
-                                     : mover.value == 71.0
-                                         ? "; where it means millimetres, write G21"
-                                         : "";
+                                     : mover.value == 70.0         ? "; if it means inches, use G20"
+                                     : mover.value == 71.0 ? "; if it means millimetres, use G21"
+                                                           : "";
     const auto refuse = [&](std::string_view why) {
         return core::fail(ErrorCode::syntax, fmt::format("{}: {}{}", written(mover), why, instead),
                           mover.span);
     };
     const ModalState& modal = execution.modal();
     if (modal.plane != Plane::zx)
-        return refuse("turning cycles work in the ZX plane: say G18 before");
+        return refuse("turning cycles work in the ZX plane: program G18 first");
     if (modal.compensation != Side::none)
-        return refuse("no turning cycle while cutter radius compensation is on: write G40 before");
+        return refuse("no turning cycle is allowed while cutter radius compensation is on: cancel "
+                      "it with G40 first");
     if (modal.distance == DistanceMode::incremental)
-        return refuse("under G91 the control loses the contour's place: say G90 before");
+        return refuse(
+            "with G91 the control puts the contour in the wrong place: program G90 first");
     if (!execution.statement.word('Q'))
-        return refuse("Q is missing, the number of the subprogram with the contour");
+        return refuse("no Q word: it must give the number of the subprogram with the contour");
     return {};
 }
 
@@ -76,16 +77,18 @@ core::Result<void> Tracing::take(const BlockResult& block, const Position& befor
         const core::SourceSpan where{.line = block.line, .column = block.columns[i], .length = 1};
         const Position& now = state.modal.position;
         if (block.is_cycle || (arc && arc->plane != Plane::zx))
-            return core::fail(ErrorCode::syntax,
-                              "a contour that is turned has lines and arcs of the ZX plane only",
-                              where);
+            return core::fail(
+                ErrorCode::syntax,
+                "the contour of a turning cycle may only have lines and arcs in the ZX plane",
+                where);
         if (now[fillet_axis] && now[chamfer_axis])
             return core::fail(ErrorCode::syntax,
-                              "a corner has a fillet (A) or a chamfer (C), not both", where);
+                              "a corner can have a fillet (A) or a chamfer (C), not both", where);
         if (contour.size() == greatest_contour)
             return core::fail(
                 ErrorCode::invalid_value,
-                fmt::format("a contour that is turned has at most {} moves", greatest_contour),
+                fmt::format("the contour of a turning cycle may have at most {} moves",
+                            greatest_contour),
                 where);
         TurningSegment segment{point_of(now)};
         if (arc) segment.arc = TurningArc{{arc->centre[1], arc->centre[0]}, arc->turns > 0};
@@ -168,12 +171,11 @@ core::Result<void> turn_contour(Execution& execution) {
     const Word& mover = moving_word(execution);
     FEELER_TRY(const Position start, target_of(execution));
     if (!start[0] || !start[2])
-        return core::fail(
-            ErrorCode::missing_value,
-            fmt::format("{} begins at an unknown place: give it X and Z, or say where "
-                        "the machine starts",
-                        written(mover)),
-            mover.span);
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{}: the start position is unknown: add X and Z, or set "
+                                      "[program] start in the set-up",
+                                      written(mover)),
+                          mover.span);
     execution.result.is_cycle = true;
     execution.traverse(start);
     execution.modal().motion = tenths(0);

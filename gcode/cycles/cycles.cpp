@@ -76,14 +76,15 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
         if (taps(cycle.code) && depth == 0.0)
             cycle.peck.reset();
         else if (*cycle.peck <= 0.0)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: a peck goes deeper than 0", written(*word)),
-                              word->span);
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: the peck depth must be greater than 0", written(*word)),
+                word->span);
     }
     if (const Word* word = statement.word('P')) {
         if (word->value < 0.0)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: a time is not negative", written(*word)),
+                              fmt::format("{}: a time must not be negative", written(*word)),
                               word->span);
         const bool milliseconds =
             execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
@@ -112,35 +113,33 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
     if (upwards && r > bottom)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{} works upwards from R to {}, and R is at {:.4f} mm, above "
-                        "{:.4f} mm",
+            fmt::format("G{} works upwards from R to {}, but R at {:.4f} mm is above {:.4f} mm",
                         cycle.code / 10, axis_letters[axes_of(execution.modal().plane).normal], r,
                         bottom),
             where);
     if (upwards && execution.modal().retract == RetractMode::r_level)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("G{} must return to the initial level: G99 would leave the "
+                                      "tool below the work; use G98",
+                                      cycle.code / 10),
+                          where);
+    if (!upwards && r < bottom)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{} comes out at the initial level: G99 would leave the tool "
-                        "below the work; write G98",
-                        cycle.code / 10),
+            fmt::format("G{}: R at {:.4f} mm is below the bottom of the hole at {:.4f} mm",
+                        cycle.code / 10, r, bottom),
             where);
-    if (!upwards && r < bottom)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("G{}: R is at {:.4f} mm, below the bottom of the hole at "
-                                      "{:.4f} mm",
-                                      cycle.code / 10, r, bottom),
-                          where);
     const double least_peck =
         pecks_shrink(cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
     if (least_peck > 0.0 && (r - bottom) / least_peck > most_commands / 4)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{}: Q makes more than {} pecks", cycle.code / 10, most_commands / 4),
+            fmt::format("G{}: this Q gives more than {} pecks", cycle.code / 10, most_commands / 4),
             where);
     if (execution.modal().feed_mode == FeedMode::inverse_time)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{}: a cycle has no time of its own, so not under G93", cycle.code / 10),
+            fmt::format("G{}: a cycle cannot run in inverse-time feed mode (G93)", cycle.code / 10),
             where);
     return {};
 }
@@ -160,7 +159,8 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     const core::SourceSpan where = moving_word(execution).span;
     if (cycle.r_is_way && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("G{} under G91 counts from a level that is unknown along {}",
+                          fmt::format("G{}: with G91 the cycle is relative to the current "
+                                      "position, which is unknown in {}",
                                       cycle.code / 10, axis_letters[axes.normal]),
                           where);
     const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
@@ -339,7 +339,7 @@ core::Result<void> run_canned_cycle(Execution& execution) {
         }
         if (execution.result.commands.size() > most_commands)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("G{}: this block makes more than {} moves",
+                              fmt::format("G{}: this block gives more than {} moves",
                                           cycle.code / 10, most_commands),
                               moving_word(execution).span);
     }
@@ -404,8 +404,8 @@ core::Result<void> run_hole_pattern(Execution& execution) {
     if (execution.statement.of(ModalGroup::cycle)) return {}; // drilled by the cycle
     if (!execution.modal().cycle)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("{} has no cycle to drill its holes with: write one such as "
-                                      "G81 with L0 before it",
+                          fmt::format("{}: no canned cycle to drill the holes with: program one, "
+                                      "such as G81 with L0, first",
                                       written(*entry.word)),
                           entry.word->span);
     return run_canned_cycle(execution);

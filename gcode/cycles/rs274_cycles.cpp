@@ -17,20 +17,17 @@ core::Result<void> check_axes(const Execution& execution, int code) {
     if (!execution.statement.has_axis_word())
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("G{} has no axis word, so no place to work at: write where the "
-                        "hole is",
-                        code / 10),
+            fmt::format("G{} has no axis word: add the position of the hole", code / 10),
             moving_word(execution).span);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word || axis == plane.first || axis == plane.second || axis == plane.normal) continue;
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: a cycle moves {}, {} and {} only: move {} in a block "
-                                      "before it",
-                                      written(*word), axis_letters[plane.first],
-                                      axis_letters[plane.second], axis_letters[plane.normal],
-                                      word->letter),
-                          word->span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: a cycle moves only {}, {} and {}: move {} in an earlier block",
+                        written(*word), axis_letters[plane.first], axis_letters[plane.second],
+                        axis_letters[plane.normal], word->letter),
+            word->span);
     }
     return {};
 }
@@ -41,7 +38,7 @@ core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cy
     if (waits && !cycle.dwell)
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("G{} needs a P word, the seconds it waits at the bottom", cycle.code / 10),
+            fmt::format("G{} needs a P word, the dwell at the bottom in seconds", cycle.code / 10),
             moving_word(execution).span);
     return {};
 }
@@ -53,8 +50,8 @@ core::Result<void> check_shift(const Execution& execution, const CannedCycle& cy
     for (const char letter : {'I', 'J', 'K'})
         if (!execution.statement.word(letter))
             return core::fail(ErrorCode::missing_value,
-                              fmt::format("G87 has no {}: it needs I, J and K, how far the tool "
-                                          "leaves the middle and where the boring ends",
+                              fmt::format("G87 has no {}: it needs I and J, the shift off centre, "
+                                          "and K, where the boring ends",
                                           letter),
                               moving_word(execution).span);
     return {};
@@ -67,27 +64,23 @@ core::Result<void> check_spindle(const Execution& execution, int code) {
     if (taps && axes_of(execution.modal().plane).normal > 2)
         return core::fail(
             ErrorCode::unsupported,
-            fmt::format("G{}: taps along X, Y and Z only, the control has none in this "
-                        "plane: say G17",
+            fmt::format("G{}: the control taps along X, Y and Z only, not in this plane: use G17",
                         code / 10),
             moving_word(execution).span);
     const core::SourceSpan where = moving_word(execution).span;
     if ((taps || bores) && direction == SpindleDirection::stopped)
-        return core::fail(
-            ErrorCode::missing_value,
-            fmt::format("G{} works with a turning spindle, and it stands still: start "
-                        "it with {} before",
-                        code / 10, code == tenths(74) ? "M4" : "M3"),
-            where);
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("G{}: the spindle is stopped: start it with {} first",
+                                      code / 10, code == tenths(74) ? "M4" : "M3"),
+                          where);
     const SpindleDirection needed =
         code == tenths(74) ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
     if (taps && direction != needed)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{} cuts a {} thread, and the spindle turns the other way: start it with "
-                        "{} before",
-                        code / 10, code == tenths(74) ? "left-hand" : "right-hand",
-                        name_of_start(needed)),
+            fmt::format(
+                "G{} cuts a {} thread, but the spindle turns the other way: start it with {} first",
+                code / 10, code == tenths(74) ? "left-hand" : "right-hand", name_of_start(needed)),
             where);
     return {};
 }
@@ -117,8 +110,8 @@ void feed_tapping(Drilling& hole, std::optional<double> level) {
 void warn_of_plane(Drilling& hole) {
     if (hole.execution.modal().plane == Plane::xy) return;
     hole.execution.warn(moving_word(hole.execution).span,
-                        fmt::format("G{} outside of G17 leads off the hole: LinuxCNC 2.9 mixes up "
-                                    "the axes of its feeds; tap in G17 or with G33.1",
+                        fmt::format("G{} outside G17 moves the tool off the hole: LinuxCNC 2.9 "
+                                    "swaps the axes of the feed moves; tap in G17, or with G33.1",
                                     hole.cycle.code / 10));
 }
 
@@ -135,8 +128,8 @@ void enable_overrides(Execution& execution, bool enabled) {
 core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle) {
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("G{}: no cycle while cutter radius compensation is on: write "
-                                      "G40 before",
+                          fmt::format("G{}: no cycle is allowed while cutter radius compensation "
+                                      "is on: cancel it with G40 first",
                                       cycle.code / 10),
                           moving_word(execution).span);
     if (auto checked = check_axes(execution, cycle.code); !checked) return checked;
@@ -207,10 +200,9 @@ void bore_and_stop(Drilling& hole) {
     hole.turn(SpindleDirection::stopped);
     execution.emit(ProgramStop{});
     hole.turn(direction);
-    execution.warn(
-        moving_word(execution).span,
-        "G88 leaves the tool at the bottom of the hole: unless the operator draws it out "
-        "during the stop, the next move begins there");
+    execution.warn(moving_word(execution).span,
+                   "G88 leaves the tool at the bottom of the hole: unless the operator retracts it "
+                   "during the stop, the next move starts there");
     execution.modal().position[hole.normal] = hole.clear;
 }
 

@@ -30,12 +30,13 @@ core::Result<CubicSpline> cubic_spline(SplinePoint start, SplinePoint tangent,
                                        const CubicWords& words) {
     if (words.i.has_value() != words.j.has_value())
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("G5 has {} but no {}: it needs both, or neither to go on in "
-                                      "the direction of the last G5",
+                          fmt::format("G5 has {} but no {}: it needs both, or neither to continue "
+                                      "in the direction of the previous G5",
                                       words.i ? 'I' : 'J', words.i ? 'J' : 'I'));
     if (!words.p || !words.q)
-        return core::fail(ErrorCode::missing_value,
-                          "G5 needs both P and Q, the way from its end to the control point there");
+        return core::fail(
+            ErrorCode::missing_value,
+            "G5 needs both P and Q, the offset from its end point to the second control point");
     if (words.i) tangent = {*words.i, *words.j};
     const SplinePoint before_end = sum(words.end, {*words.p, *words.q});
     return CubicSpline{{{{start}, {sum(start, tangent)}, {before_end}, {words.end}}, 4},
@@ -45,8 +46,9 @@ core::Result<CubicSpline> cubic_spline(SplinePoint start, SplinePoint tangent,
 core::Result<NurbsCurve> quadratic_spline(SplinePoint start, std::optional<double> i,
                                           std::optional<double> j, SplinePoint end) {
     if (!i || !j)
-        return core::fail(ErrorCode::missing_value,
-                          "G5.1 needs both I and J, the way from its start to its control point");
+        return core::fail(
+            ErrorCode::missing_value,
+            "G5.1 needs both I and J, the offset from its start point to its control point");
     return NurbsCurve{{{start}, {sum(start, {*i, *j})}, {end}}, 3};
 }
 
@@ -55,20 +57,21 @@ core::Result<void> add_control_point(NurbsGathering& gathering, SplinePoint star
     const bool first = gathering.points.empty();
     if (words.x.has_value() != words.y.has_value())
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("a control point of G5.2 has {} but no {}: it needs both",
+                          fmt::format("this control point of G5.2 has {} but no {}: it needs both",
                                       words.x ? 'X' : 'Y', words.x ? 'Y' : 'X'));
     const bool positive = words.weight && *words.weight > 0.0;
     if (!first && positive && !words.x)
         return core::fail(ErrorCode::missing_value,
                           "G5.2 has a weight P without X and Y: only the first block may, for the "
-                          "weight of the start");
+                          "weight of the start point");
     if (!first && !positive)
         return core::fail(ErrorCode::invalid_value,
-                          "every control point of G5.2 needs a positive weight P");
+                          "each control point of G5.2 needs a positive weight P");
     if (words.order && *words.order > greatest_nurbs_order)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("L{}: an order above {} cannot be computed in time",
-                                      *words.order, greatest_nurbs_order));
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("L{}: orders above {} are not supported, as they take too long to compute",
+                        *words.order, greatest_nurbs_order));
     if (first) gathering = {{{start, positive && !words.x ? *words.weight : 1.0}}, 3};
     if (words.order && *words.order > 3) gathering.order = *words.order;
     if (words.x) gathering.points.push_back({{*words.x, *words.y}, words.weight.value_or(-1.0)});
@@ -77,11 +80,11 @@ core::Result<void> add_control_point(NurbsGathering& gathering, SplinePoint star
 
 core::Result<NurbsCurve> finish_nurbs(const NurbsGathering& gathering) {
     if (gathering.points.empty())
-        return core::fail(ErrorCode::missing_value, "G5.3 has no G5.2 before it");
+        return core::fail(ErrorCode::missing_value, "G5.3 without a G5.2 before it");
     if (static_cast<int>(gathering.points.size()) < gathering.order)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("the curve that G5.3 ends has {} control points with its "
-                                      "start, too few for its order {}: add points, or lower L",
+                          fmt::format("the curve that G5.3 ends has {} control points including "
+                                      "its start, too few for order {}: add points or lower L",
                                       gathering.points.size(), gathering.order));
     return NurbsCurve{gathering.points, gathering.order};
 }
@@ -122,8 +125,8 @@ core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve) {
         const SplinePoint at = point_at(curve, parameter);
         if (!std::isfinite(at.x) || !std::isfinite(at.y))
             return core::fail(ErrorCode::invalid_value,
-                              "the weights of the control points cancel, so that the curve runs to "
-                              "infinity: make every weight P positive");
+                              "the weights of the control points cancel out and the curve runs to "
+                              "infinity: make each weight P positive");
         chords.push_back(at);
     }
     chords.push_back(curve.points.back().at);

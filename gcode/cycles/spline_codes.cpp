@@ -20,8 +20,8 @@ core::Result<SplinePoint> start_of(const Execution& execution) {
     const Position& place = execution.modal().position;
     if (!place[0] || !place[1])
         return core::fail(ErrorCode::missing_value,
-                          "a spline begins at an unknown place: move X and Y first, or say where "
-                          "the machine starts",
+                          "the start position of the spline is unknown: move X and Y first, or set "
+                          "[program] start in the set-up",
                           moving_word(execution).span);
     return SplinePoint{*place[0], *place[1]};
 }
@@ -30,8 +30,8 @@ core::Result<void> refuse_compensation(const Execution& execution) {
     if (execution.modal().compensation == Side::none) return {};
     const Word& mover = moving_word(execution);
     return core::fail(ErrorCode::syntax,
-                      fmt::format("{}: no spline while cutter radius compensation is on: write G40 "
-                                  "before",
+                      fmt::format("{}: no spline is allowed while cutter radius compensation is "
+                                  "on: cancel it with G40 first",
                                   written(mover)),
                       mover.span);
 }
@@ -42,19 +42,19 @@ core::Result<void> check_plane_spline(const Execution& execution) {
     if (execution.modal().plane != Plane::xy)
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("{} is a curve of the XY plane: say G17 before", written(mover)),
+            fmt::format("{} works in the XY plane only: program G17 first", written(mover)),
             mover.span);
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("{} has no end: it needs X or Y", written(mover)),
+                          fmt::format("{} has no end point: it needs X or Y", written(mover)),
                           mover.span);
     for (const char letter : {'Z', 'A', 'B', 'C'})
         if (const Word* word = execution.statement.word(letter))
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{}: a spline moves X and Y only: move {} in a block of "
-                                          "its own",
-                                          written(*word), letter),
-                              word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("{}: a spline moves X and Y only: move {} in a separate block",
+                            written(*word), letter),
+                word->span);
     return refuse_compensation(execution);
 }
 
@@ -134,8 +134,8 @@ core::Result<void> gather_control_point(Execution& execution) {
     NurbsGathering& gathering = execution.state.spline.write().gathering;
     if (gathering.points.empty() && words.x && !words.weight)
         execution.warn(moving_word(execution).span,
-                       "the first control point has no P: the control takes its weight as -1, and "
-                       "the curve leaves its points; write P1");
+                       "the first control point has no P: the control uses the weight -1, and the "
+                       "curve leaves its control points; add P1");
     return placed(add_control_point(gathering, start, words), moving_word(execution).span);
 }
 
@@ -143,15 +143,16 @@ core::Result<void> finish_spline(Execution& execution) {
     ModalState& modal = execution.modal();
     const Word& mover = moving_word(execution);
     if (execution.statement.has_axis_word())
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{} takes no axis words: write the last control point in a "
-                                      "block before it",
-                                      written(mover)),
-                          mover.span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format(
+                "{} takes no axis words: program the last control point in the block before it",
+                written(mover)),
+            mover.span);
     if (modal.motion != tenths(5, 2))
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("{} ends a curve, and none was begun with G5.2", written(mover)),
+            fmt::format("{} ends a curve, but none was started with G5.2", written(mover)),
             mover.span);
     FEELER_TRY(const NurbsCurve curve,
                placed(finish_nurbs(execution.state.spline->gathering), mover.span));
@@ -210,13 +211,13 @@ core::Result<std::vector<SplinePoint>> chords_within(const NurbsCurve& curve, do
         for (int count = 4 * curve.order;; count *= 2) {
             if (count > most_chords_of_span)
                 return core::fail(core::ErrorCode::invalid_value,
-                                  "this spline bends too sharply: its weights nearly cancel");
+                                  "this spline bends too sharply: its weights nearly cancel out");
             ends = chords_of_span(curve, span, count);
             for (const SplinePoint end : ends)
                 if (!is_finite(end))
                     return core::fail(core::ErrorCode::invalid_value,
-                                      "the weights of this spline cancel: it leads infinitely far "
-                                      "away; make all P positive");
+                                      "the weights of this spline cancel out and it runs to "
+                                      "infinity: make each weight P positive");
             if (are_near(curve, span, from, ends, tolerance)) break;
         }
         all.insert(all.end(), ends.begin(), ends.end());

@@ -25,24 +25,23 @@ core::Result<void> check_thread(const Execution& execution) {
                           "G76 has no axis word: it needs Z, the end of the thread", where);
     for (const char letter : {'A', 'B', 'C'})
         if (const Word* word = execution.statement.word(letter))
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{}: G76 moves no rotary axes: move {} in a block before "
-                                          "it",
-                                          written(*word), letter),
-                              word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("{}: G76 does not move rotary axes: move {} in an earlier block",
+                            written(*word), letter),
+                word->span);
     if (modal.compensation != Side::none)
         return core::fail(ErrorCode::syntax,
-                          "G76: no thread while cutter radius compensation is on: write G40 before",
+                          "G76: no threading is allowed while cutter radius compensation is on: "
+                          "cancel it with G40 first",
                           where);
     if (modal.spindle == core::SpindleDirection::stopped)
         return core::fail(ErrorCode::missing_value,
-                          "G76 threads with a turning spindle, and it stands still: start it with "
-                          "M3 or M4",
-                          where);
+                          "G76: the spindle is stopped: start it with M3 or M4 first", where);
     if (!modal.position[0] || !modal.position[2])
         return core::fail(ErrorCode::missing_value,
-                          "G76 begins at an unknown place: move X and Z first, or say where the "
-                          "machine starts",
+                          "G76: the start position is unknown: move X and Z first, or set "
+                          "[program] start in the set-up",
                           where);
     return {};
 }

@@ -25,29 +25,28 @@ core::Result<void> check(const ThreadingWords& words) {
     const auto wrong = [](ErrorCode code, std::string message) {
         return core::fail(code, std::move(message));
     };
-    if (!words.pitch) return wrong(ErrorCode::missing_value, "G76 needs the thread's pitch P");
+    if (!words.pitch)
+        return wrong(ErrorCode::missing_value, "G76 needs a P word, the pitch of the thread");
     if (!words.i || !words.j || !words.k)
-        return wrong(
-            ErrorCode::missing_value,
-            fmt::format("G76 has no {}: it needs I to the crest, J for the first depth and "
-                        "K for the full depth",
-                        !words.i   ? 'I'
-                        : !words.j ? 'J'
-                                   : 'K'));
+        return wrong(ErrorCode::missing_value,
+                     fmt::format("G76 has no {}: it needs I, the offset of the crest, J, the first "
+                                 "depth, and K, the full depth",
+                                 !words.i   ? 'I'
+                                 : !words.j ? 'J'
+                                            : 'K'));
     if (*words.i == 0.0)
         return wrong(ErrorCode::invalid_value,
-                     "G76: I must not be 0, its sign says on which side the thread is");
+                     "G76: I must not be 0: its sign gives the side of the thread");
     if (!(*words.j > 0.0))
         return wrong(ErrorCode::invalid_value, "G76: J, the first depth, must be positive");
     if (!(*words.k > *words.j))
         return wrong(ErrorCode::invalid_value,
-                     "G76: K, the full depth, must be greater than J, the first");
+                     "G76: K, the full depth, must be greater than J, the first depth");
     if (words.spring_passes < -1 || words.tapered_ends < 0)
         return wrong(ErrorCode::invalid_value, fmt::format("G76: {} must not be negative",
                                                            words.tapered_ends < 0 ? 'L' : 'H'));
     if (std::abs(std::cos(words.compound_angle)) < 1e-9)
-        return wrong(ErrorCode::invalid_value,
-                     "G76: a compound angle Q of 90 degrees leads along the thread for ever");
+        return wrong(ErrorCode::invalid_value, "G76: the compound angle Q must not be 90 degrees");
     return {};
 }
 
@@ -107,8 +106,7 @@ core::Result<std::vector<ThreadingMove>> threading_moves(TurningPoint start, Tur
     if (passes > greatest_thread_passes || words.spring_passes > greatest_thread_passes)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G76: these words ask for more than {} passes: a greater J, a "
-                        "smaller R or a smaller H makes them fewer",
+            fmt::format("G76: these words give more than {} passes: increase J, or reduce R or H",
                         greatest_thread_passes));
     for (int i = 0; i <= words.spring_passes; ++i) add_pass(moves, thread, thread.depth);
     moves.push_back({end, {}});

@@ -146,15 +146,15 @@ core::Result<TurningMoves> checked(MoveWriter writer) {
     for (const TurningMove& move : writer.moves)
         if (!finite(move.end) || (move.arc && !finite(move.arc->centre)))
             return core::fail(ErrorCode::invalid_value,
-                              "the cycle cannot follow this contour: two of its pieces do not meet "
-                              "at the distance asked for");
+                              "the cycle cannot follow this contour: two of its segments do not "
+                              "meet at the given distance");
     return std::move(writer.moves);
 }
 
 tl::unexpected<core::Error> endless() {
     return core::fail(ErrorCode::invalid_value,
-                      "the cycle does not come to an end on this contour: a greater depth of cut "
-                      "I, or a contour without arcs that come back, may help");
+                      "the cycle does not finish on this contour: try a greater depth of cut I, or "
+                      "a contour without arcs that turn back");
 }
 
 /// Roughing: cuts levels from the lead-in on, `depth` apart, then follows the contour upwards until
@@ -195,8 +195,8 @@ core::Result<PassResult> dive_along_line(Roughing& roughing, const OutlinePiece&
     const std::vector<double> places = crossings(piece, level);
     if (places.empty())
         return core::fail(ErrorCode::invalid_value,
-                          "the cycle starts below a piece of its contour that leads down: start it "
-                          "outside of the material");
+                          "the cycle starts below a descending segment of its contour: start it "
+                          "outside the material");
     go(roughing, {places.front(), level}, rapid);
     return PassResult::done;
 }
@@ -244,7 +244,7 @@ core::Result<PassResult> climb(Roughing& roughing) {
         if (piece.end.imag() + zx_tolerance < piece.start.imag()) return PassResult::not_this_way;
         if (std::abs(roughing.at - piece.start) > zx_tolerance)
             return core::fail(ErrorCode::invalid_value,
-                              "the cycle has lost its contour: its pieces do not meet");
+                              "the cycle cannot follow its contour: the segments do not meet");
         go(roughing, piece.end, false);
         return PassResult::done;
     }
@@ -380,7 +380,7 @@ core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningConto
     Outline outline = outline_from_contour(start, contour, mm_per_unit);
     if (outline.pieces.size() < 2) return TurningMoves{};
     if (!(depth > 0.0))
-        return core::fail(ErrorCode::invalid_value, "I, the depth of a cut, must be positive");
+        return core::fail(ErrorCode::invalid_value, "I, the depth of cut, must be positive");
     const ZxPoint tool = outline.pieces.front().start;
     if (words.facing) turn(outline);
     face_cutting_direction(outline);
@@ -446,8 +446,8 @@ core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoin
     const double square = radius * radius / std::norm(to - from) - 0.25;
     if (!(square >= 0.0))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("the radius {:.4f} mm does not reach from the arc's start to "
-                                      "its end, half of the way is {:.4f} mm",
+                          fmt::format("the radius {:.4f} mm is too small to reach from the start "
+                                      "of the arc to its end: half the distance is {:.4f} mm",
                                       radius, 0.5 * std::abs(to - from)));
     const ZxPoint aside = ZxPoint(0, 1) * std::sqrt(square) * (to - from);
     const ZxPoint centre = (from + to) / 2.0 + (counterclockwise ? aside : -aside);
@@ -524,8 +524,8 @@ core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
         const ZxPoint to = (first.end - second.end) * level;
         if ((from - to).imag() == 0.0)
             return core::fail(ErrorCode::invalid_value,
-                              "two lines of the contour that follow each other are parallel, their "
-                              "offsets do not meet: make one line of them");
+                              "two consecutive lines of the contour are parallel and their offsets "
+                              "do not meet: combine them into one line");
         const double t = from.imag() / (from - to).imag();
         at = (from + t * (to - from)) / level + second.end;
     } else {
@@ -538,8 +538,7 @@ core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
 }
 
 tl::unexpected<core::Error> nothing_left() {
-    return core::fail(ErrorCode::invalid_value,
-                      "nothing is left of the contour at this distance from it");
+    return core::fail(ErrorCode::invalid_value, "nothing is left of the contour at this distance");
 }
 
 /// Fits one fillet or chamfer between its neighbours.
@@ -557,8 +556,8 @@ core::Result<void> shape_corner(OutlinePiece& before, OutlinePiece& corner, Outl
         size = -size;
         if (overlap(size))
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("the corner at X{:.4f} Z{:.4f}, as the cycle has turned "
-                                          "the contour, has no room for its fillet or chamfer",
+                              fmt::format("the corner at X{:.4f} Z{:.4f} (as the cycle orients the "
+                                          "contour) has no room for its fillet or chamfer",
                                           before.end.imag(), before.end.real()));
     }
     if (auto joined = join(p, n); !joined) return joined;
@@ -665,9 +664,10 @@ core::Result<void> check_runs_down(Outline& outline) {
             const ZxPoint at = lathe_from_outline(outline, piece.end);
             return core::fail(
                 ErrorCode::invalid_value,
-                fmt::format("the contour turns back before X{:.4f} Z{:.4f}: it must run one way "
-                            "along the cuts, and an arc at most a quarter from each side",
-                            at.imag(), at.real()));
+                fmt::format(
+                    "the contour turns back before X{:.4f} Z{:.4f}: it must run in one direction "
+                    "along the cuts, and an arc may span at most a quarter on each side",
+                    at.imag(), at.real()));
         }
     return {};
 }

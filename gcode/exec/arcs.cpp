@@ -30,7 +30,7 @@ core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const d
     const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
     if (to_start < reach_tolerance || to_end < reach_tolerance)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: the arc has no radius, its centre is on its {}",
+                          fmt::format("{}: the arc has no radius: its centre is on its {}",
                                       arc.code, to_start < reach_tolerance ? "start" : "end"),
                           arc.where);
     const ArcTolerance& allowed = execution.dialect.arc;
@@ -42,7 +42,7 @@ core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const d
                           && difference <= allowed.relative * std::max(to_start, to_end);
     if (difference <= absolute || relative) return {};
     const std::string message =
-        fmt::format("{}: the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end",
+        fmt::format("{}: the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
                     arc.code, to_start, to_end);
     if (difference > allowed.warned_mm)
         return core::fail(ErrorCode::invalid_value, message, arc.where);
@@ -75,7 +75,7 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
     if (absolute && !(words.first && words.second))
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("{}: under G90.1 an arc needs both words of its centre", arc.code),
+            fmt::format("{}: with G90.1 an arc needs both words of its centre", arc.code),
             arc.where);
     centre[0] = origin(words.first, arc.start[0])
                 + (words.first ? length_of(execution, *words.first) : 0.0);
@@ -83,8 +83,8 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
                 + (words.second ? length_of(execution, *words.second) : 0.0);
     auto checked = check_radii(execution, arc, centre);
     if (!checked && !absolute && fits_as_coordinates(execution, arc, words))
-        checked.error().message += "; it would fit if the centre's words were coordinates, as "
-                                   "under G90.1, rather than distances from the start";
+        checked.error().message += "; it would fit if the centre words were absolute coordinates "
+                                   "(G90.1) rather than distances from the start";
     return checked;
 }
 
@@ -94,15 +94,16 @@ core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, doub
     const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
     const double half = 0.5 * std::hypot(chord[0], chord[1]);
     if (half == 0.0)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: an arc with R cannot end where it starts; give its "
-                                      "centre with I, J, K",
-                                      written(word)),
-                          word.span);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format(
+                "{}: an arc with R cannot end where it starts; give the centre with I, J, K",
+                written(word)),
+            word.span);
     if (half - std::abs(radius) > reach_tolerance)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: the radius {:.4f} mm does not reach the end, half of "
-                                      "the way is {:.4f} mm",
+                          fmt::format("{}: the radius {:.4f} mm is too small to reach the end "
+                                      "point: half the distance is {:.4f} mm",
                                       written(word), std::abs(radius), half),
                           word.span);
     const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
@@ -126,7 +127,7 @@ core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, con
                                    : nullptr;
     if (surplus) {
         const std::string message =
-            fmt::format("{}: {} has no use for it here", written(*surplus), arc.code);
+            fmt::format("{}: {} does not use this word here", written(*surplus), arc.code);
         if (execution.dialect.unused_words_are_errors)
             return core::fail(ErrorCode::syntax, message, surplus->span);
         if (surplus->value != 0.0) execution.warn(surplus->span, message);
@@ -160,12 +161,11 @@ core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes
     for (int i = 0; i < 2; ++i) {
         const size_t axis = i == 0 ? axes.first : axes.second;
         if (!start[axis] || !end[axis])
-            return core::fail(
-                ErrorCode::missing_value,
-                fmt::format("{}: where the arc starts is unknown along {}; move there "
-                            "first, or say where the machine starts",
-                            arc.code, axis_letters[axis]),
-                arc.where);
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("{}: the start position of the arc is unknown in {}: "
+                                          "move there first, or set [program] start in the set-up",
+                                          arc.code, axis_letters[axis]),
+                              arc.where);
         arc.start[i] = *start[axis];
         arc.end[i] = *end[axis];
     }
@@ -210,7 +210,7 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
     const double angle = arc_angle(arc.start, arc.end, centre, arc.clockwise ? -1 : 1);
     FEELER_TRY(const double rate, feed_rate(execution, std::abs(size * angle)));
     execution.warn(arc.where, fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}; the "
-                                          "control makes an arc of radius {:.6g} mm of it",
+                                          "control moves along an arc of radius {:.6g} mm",
                                           arc.code, axis_letters[axes.first], scale[0],
                                           axis_letters[axes.second], scale[1], std::abs(size)));
     const double step = 2.0 * std::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
@@ -237,8 +237,8 @@ core::Result<void> move_along_arc(Execution& execution) {
     const PlaneAxes axes = axes_of(modal.plane);
     if (is_secondary(axes.first))
         return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: there are no arcs in the planes of G17.1, G18.1 and "
-                                      "G19.1: say G17, G18 or G19 before",
+                          fmt::format("{}: arcs are not possible in the G17.1, G18.1 and G19.1 "
+                                      "planes: program G17, G18 or G19 first",
                                       written(moving_word(execution))),
                           moving_word(execution).span);
     if (auto checked = check_arc_in_frame(execution, axes); !checked) {
@@ -247,8 +247,8 @@ core::Result<void> move_along_arc(Execution& execution) {
     }
     if (modal.leaves_contour && execution.dialect.arc_after_contour_is_error)
         return core::fail(ErrorCode::syntax,
-                          "the first move behind G40 must be straight: an arc would not start "
-                          "where the tool is",
+                          "the first move after G40 must be straight: an arc would not start at "
+                          "the tool position",
                           moving_word(execution).span);
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const SeenArc arc, flat_arc(execution, axes, end));

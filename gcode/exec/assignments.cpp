@@ -146,12 +146,11 @@ core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double
     const std::string text =
         block.comments.empty() ? std::string() : std::string(block.comments.back().text);
     if (number == alarm)
-        return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("the program raises alarm {:.12g} here{}{}; the control goes "
-                                      "no further",
-                                      dialect.first_alarm + value.value_or(0.0),
-                                      text.empty() ? "" : ": ", text),
-                          where);
+        return core::fail(
+            core::ErrorCode::invalid_value,
+            fmt::format("the program raises alarm {:.12g} here{}{}; the control stops",
+                        dialect.first_alarm + value.value_or(0.0), text.empty() ? "" : ": ", text),
+            where);
     if (number != message_stop) return {};
     if (!text.empty()) {
         result.commands.emplace_back(Message{text});
@@ -173,8 +172,8 @@ void note_clock(const Block& block, InterpreterState& state, BlockResult& result
         result.warnings.push_back(
             {Severity::warning,
              {.line = block.line, .column = steps[i].column},
-             fmt::format("#{:.0f}: there is no clock here: it is noon of 1 January 2020, and "
-                         "timers go on by a second a block",
+             fmt::format("#{:.0f}: clock and timers are simulated: the time is noon on 1 January "
+                         "2020, and timers advance by one second per block",
                          steps[i].number)});
     }
 }

@@ -270,7 +270,7 @@ core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environmen
     if (!range) return false;
     if (!range->write)
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("#{} is the control's own and cannot be set", number), where);
+                          fmt::format("#{} is read-only and cannot be set", number), where);
     range->write(state, number - range->first, value.value_or(0.0));
     return true;
 }

@@ -36,9 +36,9 @@ private:
         return core::fail(ErrorCode::syntax, std::move(message), step_.block.flow.span);
     }
     tl::unexpected<core::Error> refuse_in_repeat(std::string_view word) const {
-        return refuse(fmt::format("the control refuses '{}' in a 'repeat' loop: make it a 'while' "
-                                  "or 'do' loop",
-                                  word));
+        return refuse(fmt::format(
+            "the control does not accept '{}' in a 'repeat' loop: use a 'while' or 'do' loop",
+            word));
     }
     void set_line(uint32_t line) { step_.state.next = {source_, line}; }
     void go_behind(uint32_t line) { set_line(line + 1); }
@@ -96,8 +96,8 @@ core::Result<const FlowMark*> Flowing::partner(std::initializer_list<FlowKind> k
         if (auto read = check_skipped(found ? found->line : UINT32_MAX); !read)
             return tl::unexpected(std::move(read).error());
     if (found) return found;
-    return refuse(
-        fmt::format("'{}' of {} is missing {} it", wanted, name_, ahead ? "behind" : "before"));
+    return refuse(fmt::format("'{}' of {} is missing {} this line", wanted, name_,
+                              ahead ? "after" : "before"));
 }
 
 core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> kinds, bool ahead,
@@ -111,9 +111,9 @@ core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> ki
 core::Result<void> Flowing::skip_sub() {
     const FlowMark* first = index_.first(sub, name_);
     if (first->line != line_)
-        return refuse(fmt::format("there are two subprograms {}, the other one begins in line {}: "
-                                  "the control stops here",
-                                  name_, first->line));
+        return refuse(
+            fmt::format("subprogram {} is defined twice, first in line {}: the control stops here",
+                        name_, first->line));
     const FlowMark* end = index_.next(line_, 0, name_, {end_sub});
     if (!end)
         if (auto read = check_skipped(UINT32_MAX); !read) return read;
@@ -121,12 +121,12 @@ core::Result<void> Flowing::skip_sub() {
         const bool inside = mark.line > line_ && (!end || mark.line < end->line);
         if (inside && (mark.kind == sub || mark.kind == program_number))
             return core::fail(ErrorCode::syntax,
-                              fmt::format("a subprogram begins here inside of {}, which begins in "
-                                          "line {}: end that one with endsub before",
+                              fmt::format("a subprogram starts here inside {}, which starts in "
+                                          "line {}: end that one with endsub first",
                                           name_, line_),
                               {.line = mark.line, .column = 1});
     }
-    if (!end) return refuse(fmt::format("the subprogram {} has no endsub", name_));
+    if (!end) return refuse(fmt::format("subprogram {} has no endsub", name_));
     if (auto read = check_skipped(end->line); !read) return read;
     go_behind(end->line);
     return {};
@@ -157,8 +157,8 @@ void Flowing::warn_of_second_use() const {
     if (!other || other->closes_do_loop) return;
     step_.result.warnings.push_back(
         {Severity::warning, step_.block.flow.span,
-         fmt::format("the label {} is that of line {} already: the control stops here if that "
-                     "line was run; use another one",
+         fmt::format("label {} is already used in line {}: the control stops here if that line has "
+                     "been run; use another label",
                      name_, other->line)});
 }
 
@@ -193,7 +193,7 @@ core::Result<void> Flowing::call_sub() {
 /// `return` and `endsub`, with or without a value.
 core::Result<void> Flowing::give_back() {
     const bool inside = step_.state.frames.size() > 1;
-    if (!inside) return refuse("there is no subprogram to return from here");
+    if (!inside) return refuse("return outside a subprogram");
     Value value;
     if (step_.block.flow.has_condition) {
         FEELER_TRY(value, evaluate(step_.block.pool, step_.block.flow.condition, line_, parameters_,
@@ -220,7 +220,7 @@ core::Result<void> Flowing::take_branch() {
     while (true) {
         const FlowMark* mark = index_.next(line, scope_, name_, {else_if, otherwise, end_if});
         if (auto read = check_skipped(mark ? mark->line : UINT32_MAX); !read) return read;
-        if (!mark) return refuse(fmt::format("'endif' of {} is missing behind it", name_));
+        if (!mark) return refuse(fmt::format("'endif' of {} is missing after this line", name_));
         line = mark->line;
         if (mark->kind == else_if) {
             FEELER_TRY(const Block block, read_line(line));
@@ -235,7 +235,7 @@ core::Result<void> Flowing::take_branch() {
 /// `endif`, and `elseif` and `else` behind a branch that was run.
 core::Result<void> Flowing::end_if_statement() {
     if (!index_.previous(line_, scope_, name_, {if_branch}))
-        return refuse(fmt::format("there is no 'if' of {} before", name_));
+        return refuse(fmt::format("'if' of {} is missing before this line", name_));
     if (step_.block.flow.kind == end_if) return {};
     // The control works the condition out even when it does not need it.
     if (step_.block.flow.kind == else_if) {
@@ -276,7 +276,7 @@ core::Result<void> Flowing::end_repeat_statement() {
 
 core::Result<void> Flowing::leave_loop() {
     FEELER_TRY(const FlowMark* const end,
-               partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
+               partner({end_while, end_repeat, while_loop}, true, "endwhile"));
     if (end->kind == end_repeat) return refuse_in_repeat("break");
     go_behind(end->line);
     return {};
@@ -284,7 +284,7 @@ core::Result<void> Flowing::leave_loop() {
 
 core::Result<void> Flowing::continue_loop_early() {
     FEELER_TRY(const FlowMark* const end,
-               partner({end_while, end_repeat, while_loop}, true, "the end of the loop"));
+               partner({end_while, end_repeat, while_loop}, true, "endwhile"));
     if (end->kind == end_repeat) return refuse_in_repeat("continue");
     set_line(end->line);
     return {};
@@ -302,8 +302,8 @@ core::Result<void> Flowing::jump() {
     if (other && *other != *line)
         step_.result.warnings.push_back(
             {Severity::warning, step_.block.flow.span,
-             fmt::format("N{} stands in lines {} and {}: the control takes the first one behind "
-                         "the jump, else the first of the program",
+             fmt::format("N{} is in lines {} and {}: the control jumps to the first one after this "
+                         "block, or else to the first in the program",
                          name_, std::min(*line, *other), std::max(*line, *other))});
     set_line(*line);
     return {};
@@ -399,8 +399,8 @@ core::Result<void> enter(InterpreterState& state, const Environment& environment
     const size_t deepest = environment.limits.calls ? environment.limits.calls : own;
     if (state.frames.size() > deepest)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("calls go deeper than the {} levels this control has: does "
-                                      "a subprogram call itself without end?",
+                          fmt::format("calls are nested deeper than the {} levels this control "
+                                      "allows: check whether a subprogram calls itself endlessly",
                                       deepest),
                           where);
     state.next = frame.begin;
@@ -437,10 +437,10 @@ core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
     if (!back || ++watch.jumps % interval != 0) return {};
     const uint64_t now = digest_of(state);
     if (now == watch.noted && watch.next_note > 1)
-        return core::fail(ErrorCode::invalid_value,
-                          "the program never ends: it comes back here in exactly the same state, "
-                          "so it will do so again",
-                          {.line = from.line, .column = 1});
+        return core::fail(
+            ErrorCode::invalid_value,
+            "the program never ends: it returns here in exactly the same state again and again",
+            {.line = from.line, .column = 1});
     if (watch.jumps / interval < watch.next_note) return {};
     watch.noted = now;
     watch.next_note *= 2;

@@ -19,11 +19,12 @@ core::Result<double> centre_along(const Execution& execution, const CodeWord& en
     if (const Word* word = execution.statement.word(axis_letters[axis]))
         return axis_value(execution, axis, *word);
     if (const auto& place = execution.modal().position[axis]) return *place;
-    return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} has no {} word for its centre, and where the machine is "
-                                  "along {} is unknown: write the word",
-                                  written(*entry.word), axis_letters[axis], axis_letters[axis]),
-                      entry.word->span);
+    return core::fail(
+        ErrorCode::missing_value,
+        fmt::format(
+            "{} has no {} word for its centre, and the {} position is unknown: add the word",
+            written(*entry.word), axis_letters[axis], axis_letters[axis]),
+        entry.word->span);
 }
 
 core::Result<double> factor_of(Execution& execution, const Word& word) {
@@ -32,10 +33,11 @@ core::Result<double> factor_of(Execution& execution, const Word& word) {
     const double factor = thousandths ? word.value / 1000.0 : word.value;
     if (factor == 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a scale is not 0", written(word)), word.span);
+                          fmt::format("{}: a scaling factor must not be 0", written(word)),
+                          word.span);
     if (thousandths && std::abs(factor) < 0.05)
-        execution.warn(word.span, fmt::format("{}: without a decimal point this control counts "
-                                              "thousandths, so the scale is {:.4g}",
+        execution.warn(word.span, fmt::format("{}: without a decimal point this control reads "
+                                              "thousandths, so the scaling factor is {:.4g}",
                                               written(word), factor));
     return factor;
 }
@@ -54,8 +56,8 @@ core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
     }
     if (!said)
         return core::fail(ErrorCode::missing_value,
-                          "G51 does not say how much to scale: write P, or I, J and K; a scale "
-                          "kept in the control's parameters is not known here",
+                          "G51 has no scaling factor: add P, or I, J and K; a factor stored in the "
+                          "parameters of the control is not known here",
                           entry.word->span);
     for (int axis = 0; axis < 3; ++axis) {
         if (scaling.factors[axis] == 1.0) continue;
@@ -92,14 +94,15 @@ core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry)
     const Word* word = execution.statement.word('R');
     if (!word)
         return core::fail(ErrorCode::missing_value,
-                          "G68 does not say how far to turn: write R; an angle kept in the "
-                          "control's parameters is not known here",
+                          "G68 has no angle: add R; an angle stored in the parameters of the "
+                          "control is not known here",
                           entry.word->span);
     const auto& before = execution.modal().transforms.rotation;
     if (execution.modal().distance == DistanceMode::absolute || !before) return word->value;
-    execution.warn(word->span, fmt::format("{}: counted from the angle before, as under G91 a "
-                                           "setting of the control says; G90 leaves no doubt",
-                                           written(*word)));
+    execution.warn(word->span,
+                   fmt::format("{}: assumed to be relative to the previous angle, which with G91 "
+                               "depends on a parameter of the control; use G90 to be sure",
+                               written(*word)));
     return before->degrees + word->value;
 }
 
@@ -109,8 +112,8 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     for (const char letter : {'I', 'J', 'K'})
         if (const Word* word = execution.statement.word(letter))
             return core::fail(ErrorCode::unsupported,
-                              fmt::format("{}: G68 with I, J or K turns about any direction, which "
-                                          "is not supported yet: use G68.2",
+                              fmt::format("{}: G68 with I, J or K (rotation about any axis) is not "
+                                          "supported yet: use G68.2",
                                           written(*word)),
                               word->span);
     const PlaneAxes axes = axes_of(modal.plane);
@@ -145,8 +148,8 @@ core::Result<void> check_contour_is_off(const Execution& execution, const CodeWo
         || (cancels && !is_on))
         return {};
     return core::fail(ErrorCode::unsupported,
-                      fmt::format("{} between G41 or G42 and G40 is not supported yet: switch "
-                                  "cutter radius compensation off before",
+                      fmt::format("{} between G41 or G42 and G40 is not supported yet: cancel "
+                                  "cutter radius compensation first",
                                   written(*entry.word)),
                       entry.word->span);
 }
@@ -220,8 +223,8 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
     const Word& mover = moving_word(execution);
     return core::fail(ErrorCode::unsupported,
                       fmt::format("{}: G51 scales {} by {:.6g} and {} by {:.6g}, and the scaled "
-                                  "centre is not that of an arc between the scaled ends: scale "
-                                  "both alike, or write the arc with R",
+                                  "centre does not fit an arc between the scaled end points: use "
+                                  "the same factor for both, or program the arc with R",
                                   written(mover), axis_letters[axes.first], first,
                                   axis_letters[axes.second], second),
                       mover.span);
@@ -248,10 +251,12 @@ core::Result<core::Mat3> by_roll_pitch_yaw(const Execution& execution) {
         for (const int digit : digits)
             if (digit >= 1 && digit <= 3) found |= 1 << digit;
         if (found != 0b1110)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: the order of the rotations is 1, 2 and 3, each once",
-                                          written(*word)),
-                              word->span);
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format(
+                    "{}: the order of the rotations must have the digits 1, 2 and 3 once each",
+                    written(*word)),
+                word->span);
     }
     core::Mat3 axes(1.0);
     for (const int digit : {order / 100, order / 10 % 10, order % 10})
@@ -269,8 +274,8 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     if (form == 1) return by_roll_pitch_yaw(execution);
     if (form != 0)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: planes by points, vectors or projected angles are not "
-                                      "supported yet: give Euler angles, G68.2 X Y Z I J K",
+                          fmt::format("{}: planes defined by points, vectors or projected angles "
+                                      "are not supported yet: use Euler angles, G68.2 X Y Z I J K",
                                       written(*word)),
                           word->span);
     // About Z, then about the new X, then about the new Z.
@@ -293,8 +298,8 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
         if (is_rotary(axis) && offsets.machine->axes[axis].present && !place[axis])
             return core::fail(
                 ErrorCode::missing_value,
-                fmt::format("{}: turns the tool, and where axis {} stands is not known: say it "
-                            "under [program] start, or the machine's home",
+                fmt::format("{}: this tilts the tool, but the position of axis {} is unknown: set "
+                            "[program] start or the machine's home in the set-up",
                             written(word), axis_letters[axis]),
                 word.span);
         values[axis] = place[axis].value_or(0.0);
@@ -304,11 +309,12 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
     const core::Vec3 in_table =
         table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
     if (const auto found = core::point_tool(*offsets.machine, values, in_table)) return *found;
-    return core::fail(ErrorCode::invalid_value,
-                      fmt::format("{}: no rotary axes of this machine turn the tool that way "
-                                  "within their limits",
-                                  written(word)),
-                      word.span);
+    return core::fail(
+        ErrorCode::invalid_value,
+        fmt::format(
+            "{}: the rotary axes of this machine cannot tilt the tool that way within their limits",
+            written(word)),
+        word.span);
 }
 
 core::Result<void> turn_rotary_axes(Execution& execution, const Word& word) {
@@ -338,14 +344,13 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
         if (entry.code->letter != 'G' || entry.code->tenths != tenths(53, 1)) continue;
         if (!execution.modal().transforms.tilt)
             return core::fail(ErrorCode::invalid_value,
-                              "G53.1 turns the tool to a tilted plane, and none is set: write "
-                              "G68.2 before it",
+                              "G53.1 needs a tilted plane, but none is set: program G68.2 first",
                               entry.word->span);
         if (execution.modal().offsets.machine) return turn_rotary_axes(execution, *entry.word);
         if (execution.modal().offsets.frame.tilts_tool)
             execution.warn(entry.word->span,
-                           "G53.1 turns rotary axes as the machine's build says: where they go is "
-                           "not followed");
+                           "G53.1 moves rotary axes as the machine is built: without a machine in "
+                           "the set-up these moves are not followed");
     }
     return {};
 }
@@ -359,9 +364,10 @@ core::Result<void> point_by_vector(const Execution& execution, Position& target)
         if (const Word* found = execution.statement.word(letter)) word = found;
     if (!word) return {};
     if (!(glm::length(direction) > 0.0))
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: I, J and K give the tool no direction", written(*word)),
-                          word->span);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: I, J and K are all 0 and give no tool direction", written(*word)),
+            word->span);
     FEELER_TRY(const AxisValues values, pointed(execution, *word, direction));
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (is_rotary(axis) && modal.offsets.machine->axes[axis].present)

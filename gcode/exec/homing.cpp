@@ -14,9 +14,10 @@ Position home_of(Execution& execution, const CodeWord& entry) {
     const bool known = home[0] && home[1] && home[2];
     if (!known && !execution.state.said_home) {
         execution.state.said_home = true;
-        execution.warn(entry.word->span,
-                       fmt::format("{}: where home is was not said, taken as machine zero",
-                                   written(*entry.word)));
+        execution.warn(
+            entry.word->span,
+            fmt::format("{}: the home position is not given and assumed to be machine zero",
+                        written(*entry.word)));
     }
     for (std::optional<double>& axis : home)
         if (!axis) axis = 0.0;
@@ -74,11 +75,11 @@ core::Result<void> check_home(Execution& execution) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         const std::optional<double>& home = modal.home[axis];
         if (!word || !home || !machine[axis] || std::abs(*machine[axis] - *home) < 0.002) continue;
-        execution.warn(
-            word->span,
-            fmt::format("{}: this is not the reference point: the machine is at {}{:.3f} "
-                        "and the point at {:.3f}, so the control stops here",
-                        written(*entry.word), axis_letters[axis], *machine[axis], *home));
+        execution.warn(word->span,
+                       fmt::format("{}: not at the reference point: the machine is at {}{:.3f} and "
+                                   "the reference point at {:.3f}, so the control stops here",
+                                   written(*entry.word), axis_letters[axis], *machine[axis],
+                                   *home));
     }
     return {};
 }
@@ -88,9 +89,10 @@ core::Result<void> return_from_home(Execution& execution) {
     ModalState& modal = execution.modal();
     execution.result.is_cycle = true;
     if (!modal.way_home)
-        return core::fail(core::ErrorCode::missing_value,
-                          "G29 goes back by the place that G28 passed, and no G28 came before it",
-                          entry.word->span);
+        return core::fail(
+            core::ErrorCode::missing_value,
+            "G29 returns through the intermediate point of G28, but no G28 came before it",
+            entry.word->span);
     const Position between = program_from_machine(modal.offsets, *modal.way_home);
     Position over = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -107,9 +109,11 @@ core::Result<void> skip_move(Execution& execution) {
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const double rate,
                feed_rate(execution, way_between(execution.modal().position, end)));
-    execution.warn(entry.word->span,
-                   fmt::format("{}: where it is stopped is not known here; it is taken to its end",
-                               written(*entry.word)));
+    execution.warn(
+        entry.word->span,
+        fmt::format(
+            "{}: where the skip signal stops the move is unknown; the whole move is checked",
+            written(*entry.word)));
     execution.modal().position = end;
     execution.emit(StraightProbe{end, rate, true, false});
     return {};
@@ -125,8 +129,7 @@ core::Result<void> store_home(Execution& execution) {
             home[axis] = machine[axis];
         else
             execution.warn(entry.word->span,
-                           fmt::format("{}: where the machine is along {} is unknown, so nothing "
-                                       "is stored for it",
+                           fmt::format("{}: the {} position is unknown and is not stored",
                                        written(*entry.word), axis_letters[axis]));
     }
     return {};

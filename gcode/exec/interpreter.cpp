@@ -174,12 +174,11 @@ core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
         return true;
     }
     if (state.ending == Ending::running && state.frames.size() > 1)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("the subprogram {} ends here without {}: the control stops "
-                                      "with an alarm",
-                                      state.frames.back().name,
-                                      dialect.has_o_words ? "endsub or M99" : "M99"),
-                          {.line = state.next.line - 1});
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("subprogram {} ends here without {}: the control stops with an alarm",
+                        state.frames.back().name, dialect.has_o_words ? "endsub or M99" : "M99"),
+            {.line = state.next.line - 1});
     if (state.ending == Ending::running) state.ending = Ending::text_end;
     return false;
 }
@@ -264,8 +263,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     begin_result(state, place);
     if (state.next_block >= environment.limits.blocks)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("the program was stopped after {} blocks; if it is meant to "
-                                      "be that long, raise the limit with --max-blocks",
+                          fmt::format("the program was stopped after {} blocks; if it really is "
+                                      "that long, raise the limit with --max-blocks",
                                       environment.limits.blocks),
                           {.line = block.line, .column = 1});
     if (asks_for_stop(state) && environment.limits.is_stopped())
@@ -411,7 +410,7 @@ std::optional<Warning> ending_warning(const Environment& environment,
     const core::SourceSpan where{.line = static_cast<uint32_t>(state.next.line - 1)};
     if (state.ending == Ending::main_return)
         return Warning{Severity::warning, where,
-                       "M99 in a main program starts it again; one pass was looked at"};
+                       "M99 in a main program starts it again; one pass was checked"};
     const bool proper_mark =
         state.ending == Ending::tape_mark && dialect(environment.dialect).tape_mark_ends_program;
     if (state.ending == Ending::text_end || (state.ending == Ending::tape_mark && !proper_mark))
@@ -517,9 +516,9 @@ void note_points(const Block& block, InterpreterState& state, BlockResult& resul
         points.said = true;
         result.warnings.push_back(
             {Severity::warning, word.span,
-             fmt::format("{} has {} decimal point, lengths before it have {}: those without one "
-                         "are taken as whole units; a control set to count its smallest steps "
-                         "makes them a thousandth or less",
+             fmt::format("{} has {} decimal point, earlier lengths have {}: lengths without a "
+                         "point are read as whole units; a control set to count least increments "
+                         "reads them as a thousandth or less",
                          written(word), word.has_point ? "a" : "no",
                          word.has_point ? "none" : "one"),
              "missing-decimal-point", "Write every length with a decimal point."});

@@ -228,7 +228,7 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
     const double given = value.value_or(0.0);
     if ((number >= tool_number && number <= tool_orientation) || is_axis_of(number, first_place))
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("#{} is the control's own and cannot be set", number), where);
+                          fmt::format("#{} is read-only and cannot be set", number), where);
     const auto take = [&](Position& position, int first) {
         const auto axis = static_cast<size_t>(number - first);
         position[axis] = taken(given, axis, unit);

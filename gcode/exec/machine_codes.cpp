@@ -37,8 +37,8 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
     const bool analog = execution.statement.word('E') != nullptr;
     if (digital == analog)
         return core::fail(ErrorCode::missing_value,
-                          "M66 needs the number of an input: P of a digital or E of an analogue "
-                          "one, not both",
+                          "M66 needs the number of an input: P for a digital one or E for an "
+                          "analogue one, not both",
                           entry.word->span);
     FEELER_TRY(const int number, number_under(execution, entry, digital ? 'P' : 'E'));
     int kind = 0;
@@ -48,8 +48,8 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
     const Word* time = execution.statement.word('Q');
     if (kind > 0 && (analog || !time || time->value <= 0.0))
         return core::fail(ErrorCode::invalid_value,
-                          analog ? "M66 waits for digital inputs only: E goes with L0"
-                                 : "M66 L1 to L4 waits: it needs the longest time as Q",
+                          analog ? "M66 can wait for digital inputs only: use E with L0"
+                                 : "M66 L1 to L4 waits: it needs a Q word, the longest time",
                           entry.word->span);
     execution.emit(WaitForInput{number, analog, kind > 0 ? time->value : 0.0});
     execution.state.parameters.write().set_numbered(5399, 0.0);
@@ -102,9 +102,10 @@ core::Result<void> save_or_restore_modes(Execution& execution) {
             frame.saved.write().reset();
         } else if (code == 72) {
             if (!*frame.saved)
-                return core::fail(ErrorCode::missing_value,
-                                  "M72 has no modes to restore: M70 did not save any on this level",
-                                  entry.word->span);
+                return core::fail(
+                    ErrorCode::missing_value,
+                    "M72 has no modes to restore: no M70 saved them on this call level",
+                    entry.word->span);
             const ModalState before = state.modal;
             for (const std::string& loss : losses_of_restoring(before, **frame.saved))
                 execution.warn(entry.word->span, "M72: " + loss);
@@ -142,13 +143,13 @@ core::Result<void> feed_with_spindle(Execution& execution) {
     if (!pitch)
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("{} needs K, its way for each turn of the spindle", written(mover)),
+            fmt::format("{} needs a K word, the distance per revolution of the spindle",
+                        written(mover)),
             mover.span);
     const bool back_again = modal.motion == tenths(33, 1);
     if (back_again && modal.spindle == core::SpindleDirection::stopped)
         return core::fail(ErrorCode::missing_value,
-                          "G33.1 taps with a turning spindle, and it stands still: start it with "
-                          "M3 or M4",
+                          "G33.1: the spindle is stopped: start it with M3 or M4 first",
                           mover.span);
     FEELER_TRY(const Position end, target_of(execution));
     execution.emit(ThreadFeed{end, length_of(execution, *pitch), back_again});
@@ -160,21 +161,21 @@ core::Result<void> probe(Execution& execution) {
     ModalState& modal = execution.modal();
     const Word& mover = moving_word(execution);
     if (modal.feed_mode != FeedMode::per_minute)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: a probe feeds in mm a minute: say G94", written(mover)),
-                          mover.span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: probing needs feed per minute: program G94 first", written(mover)),
+            mover.span);
     FEELER_TRY(const Position end, target_of(execution));
     const std::optional<double> way = way_between(modal.position, end);
     FEELER_TRY(const double rate, feed_rate(execution, way));
     if (way && *way < 0.254)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("{}: the probe starts too near to where it should end", written(mover)),
-            mover.span);
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the probe move is too short", written(mover)),
+                          mover.span);
     const int kind = *modal.motion % 10;
     execution.warn(mover.span,
-                   fmt::format("{}: where the probe meets something is not known before; the whole "
-                               "way is looked at, and the program goes on from its end",
+                   fmt::format("{}: where the probe makes contact is unknown; the whole move is "
+                               "checked, and the program continues from its end point",
                                written(mover)));
     execution.emit(StraightProbe{end, rate, kind == 2 || kind == 3, kind == 2 || kind == 4});
     modal.position = end;

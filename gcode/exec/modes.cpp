@@ -38,7 +38,7 @@ core::Result<void> set_feed(Execution& execution) {
     if (!word) return {};
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a feed rate is not negative", written(*word)),
+                          fmt::format("{}: a feed rate must not be negative", written(*word)),
                           word->span);
     ModalState& modal = execution.modal();
     const CodeWord* units = execution.statement.of(ModalGroup::units);
@@ -54,7 +54,7 @@ core::Result<void> set_speed(Execution& execution) {
     if (!word) return {};
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a spindle speed is not negative", written(*word)),
+                          fmt::format("{}: a spindle speed must not be negative", written(*word)),
                           word->span);
     ModalState& modal = execution.modal();
     modal.speed = word->value;
@@ -73,7 +73,7 @@ core::Result<void> check_orientation(const Execution& execution, const CodeWord&
     if (angle && (angle->value < 0.0 || angle->value > 360.0))
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("{}: the angle of M19 is from 0 to 360 degrees", written(*angle)),
+            fmt::format("{}: the angle of M19 must be from 0 to 360 degrees", written(*angle)),
             angle->span);
     const Word* way = execution.statement.word('P');
     if (way && way->value != 0.0 && way->value != 1.0 && way->value != 2.0
@@ -141,7 +141,8 @@ core::Result<void> dwell(Execution& execution) {
                           entry->word->span);
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a time is not negative", written(*word)), word->span);
+                          fmt::format("{}: a time must not be negative", written(*word)),
+                          word->span);
     const bool milliseconds =
         execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
     execution.emit(Dwell{milliseconds ? word->value / 1000.0 : word->value});
@@ -186,11 +187,12 @@ core::Result<void> set_units(Execution& execution) {
     const bool changes = unit != execution.modal().unit;
     const bool has_offset = execution.modal().offsets.tool != AxisValues{};
     if (changes && has_offset && execution.dialect.system_parameters == SystemParameters::rs274)
-        execution.warn(entry->word->span,
-                       fmt::format("{} while a tool length offset is on: LinuxCNC goes on with its "
-                                   "number in the new units, so the next G43, G49 or G28 leads to "
-                                   "another place than here; say G49 before",
-                                   written(*entry->word)));
+        execution.warn(
+            entry->word->span,
+            fmt::format("{} while a tool length offset is on: LinuxCNC keeps the number of the "
+                        "offset but reads it in the new units, so the next G43, G49 or G28 goes to "
+                        "a different place than here; program G49 first",
+                        written(*entry->word)));
     execution.modal().unit = unit;
     execution.modal().unit_said = true;
     return {};
@@ -240,10 +242,10 @@ core::Result<void> set_spindle_mode(Execution& execution) {
     modal.surface_speed = entry->code->tenths == tenths(96);
     if (modal.surface_speed && execution.dialect.surface_speed_needs_s
         && !execution.statement.word('S'))
-        return core::fail(
-            ErrorCode::missing_value,
-            fmt::format("{} needs the surface speed as S in the same block", written(*entry->word)),
-            entry->word->span);
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} needs an S word, the surface speed, in the same block",
+                                      written(*entry->word)),
+                          entry->word->span);
     const Word* fastest = execution.statement.word('D');
     modal.fastest_speed = modal.surface_speed && fastest ? std::abs(fastest->value) : 0.0;
     execution.column = entry->word->span.column;
@@ -394,26 +396,26 @@ std::vector<std::string> losses_of_restoring(const ModalState& now, const ModalS
     std::vector<std::string> losses;
     const std::optional<double> feed = restored_feed(now, saved);
     if (saved.feed && saved.feed_mode != FeedMode::inverse_time && !feed)
-        losses.emplace_back("the feed rate is not brought back: say F before the next feed");
+        losses.emplace_back("the feed rate is not restored: program F before the next feed move");
     else if (saved.feed && feed && std::abs(*feed - *saved.feed) > 1e-9)
-        losses.push_back(fmt::format("the feed rate comes back as F{:.1f}, rounded from F{:g}",
+        losses.push_back(fmt::format("the feed rate is restored as F{:.1f}, rounded from F{:g}",
                                      from_mm(*feed, saved.unit), feed_number(saved)));
     if (restored_speed(now, saved) != saved.speed)
-        losses.push_back(fmt::format("the speed comes back as S{:.0f}, rounded from S{:g}",
+        losses.push_back(fmt::format("the spindle speed is restored as S{:.0f}, rounded from S{:g}",
                                      saved.speed, saved.speed));
     if (saved.surface_speed && !now.surface_speed && saved.fastest_speed > 0.0)
-        losses.push_back(fmt::format("G96 comes back without its limit D{:g}: the spindle may run "
-                                     "away near the axis",
-                                     saved.fastest_speed));
+        losses.push_back(fmt::format(
+            "G96 is restored without its limit D{:g}: the spindle may overspeed near the axis",
+            saved.fastest_speed));
     const bool had = has_tool_offset(saved), has = has_tool_offset(now);
     if (had && !has)
-        losses.emplace_back("the tool length offset comes back as that of the tool in the "
-                            "spindle, whatever was on");
+        losses.emplace_back("the tool length offset is restored as that of the tool in the "
+                            "spindle, whichever was on");
     else if (had && saved.offsets.tool != now.offsets.tool)
-        losses.emplace_back("the tool length offset stays as it is now, another one was saved");
+        losses.emplace_back("the tool length offset is not restored: the current one stays on");
     if (saved.compensation != Side::none && now.compensation == Side::none)
-        losses.emplace_back("cutter radius compensation was on when the modes were saved, and is "
-                            "left off here");
+        losses.emplace_back(
+            "cutter radius compensation was on when the modes were saved, but stays off here");
     return losses;
 }
 

@@ -45,10 +45,10 @@ void assume_feed(Execution& execution) {
     const Word& mover = moving_word(execution);
     execution.result.warnings.push_back(
         {Severity::warning, mover.span,
-         fmt::format("{}: no F word came before this feed: Grbl 1.1 stops here (error 22), older "
-                     "ones take {:g} mm/min, which is taken here too",
+         fmt::format("{}: no feed rate: no F word has been programmed yet; Grbl 1.1 stops here "
+                     "(error 22), older versions use {:g} mm/min, which is assumed",
                      written(mover), assumed),
-         "no-feed", "Say F before the first feed."});
+         "no-feed", "Program F before the first feed move."});
     modal.feed = assumed;
 }
 
@@ -82,8 +82,8 @@ core::Result<void> refuse_lone_arc(const Execution& execution) {
     for (const char letter : {'I', 'J', 'K', 'R'})
         if (statement.word(letter)) return {};
     return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} has no centre: say I, J or K, or the radius as R; if no arc "
-                                  "is meant here, leave the code out",
+                      fmt::format("{} has no centre: add I, J or K, or the radius as R; if no arc "
+                                  "is intended here, remove the code",
                                   written(*motion->word)),
                       motion->word->span);
 }
@@ -137,11 +137,11 @@ core::Result<void> set_motion_mode(Execution& execution) {
     const bool homes = taker && taker->code->tenths != tenths(4)
                        && (statement.has_axis_word() || wants_axes_alone(*taker));
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{} and {} both want the axis words of this block: write two "
-                                      "blocks",
-                                      written(*taker->word), written(*mover->word)),
-                          mover->word->span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{} and {} both use the axis words of this block: split it into two blocks",
+                        written(*taker->word), written(*mover->word)),
+            mover->word->span);
     if (motion && !acts_once(motion->code->tenths)) {
         set_motion(execution.state, motion->code->tenths);
         modal.cycle.reset();
@@ -168,13 +168,15 @@ core::Result<void> move_without_mode(Execution& execution) {
     for (const Word& word : execution.block.words) {
         if (axis_letters.find(word.letter) == std::string_view::npos) continue;
         if (!execution.dialect.begins_with_g0)
-            return core::fail(
-                ErrorCode::missing_value,
-                fmt::format("{}: no motion code is active; say G0, G1, G2 or G3", written(word)),
-                word.span);
-        execution.warn(word.span, fmt::format("{}: no motion code came before it; taken as G0, "
-                                              "with which the control begins as delivered",
-                                              written(word)));
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("{}: no motion code is active; program G0, G1, G2 or G3",
+                                          written(word)),
+                              word.span);
+        execution.warn(
+            word.span,
+            fmt::format(
+                "{}: no motion code is active; G0, the power-on default of the control, is assumed",
+                written(word)));
         execution.modal().motion = tenths(0);
         return move_straight(execution, true);
     }
@@ -189,7 +191,7 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     const bool incremental = modal.distance == DistanceMode::incremental;
     if (execution.dialect.machine_move_needs_g90 && incremental)
         return core::fail(ErrorCode::unsupported,
-                          "G53 under G91 stops some controls and is passed over by others: say G90",
+                          "G53 with G91 stops some controls and is ignored by others: use G90",
                           action->word->span);
     if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
     if (modal.cycle || !is_straight(modal.motion))
@@ -202,8 +204,8 @@ core::Result<void> refuse_lone_machine_place(const Execution& execution) {
     if (!execution.dialect.machine_move_needs_motion || !in_machine_coordinates(execution))
         return {};
     return core::fail(ErrorCode::missing_value,
-                      "G53 is for its own block only, and this one does not move: write G0 or G1 "
-                      "and the place behind it",
+                      "G53 applies to its own block only, and this block has no move: add G0 or G1 "
+                      "and a position",
                       execution.statement.of(ModalGroup::action)->word->span);
 }
 
@@ -266,12 +268,11 @@ core::Result<void> refuse_polar_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* word = statement.polar_radius ? statement.polar_radius : statement.polar_angle;
     if (!word) return {};
-    return core::fail(
-        ErrorCode::syntax,
-        fmt::format("{}: @ and ^ are about the origin of the program, so G53 does not "
-                    "take them: give the place as X and Y",
-                    written(*word)),
-        word->span);
+    return core::fail(ErrorCode::syntax,
+                      fmt::format("{}: @ and ^ are relative to the program origin and cannot be "
+                                  "used with G53: use X and Y",
+                                  written(*word)),
+                      word->span);
 }
 
 /// @ and ^: X and Y by their distance from the origin and the angle there, in every plane. What is
@@ -281,26 +282,26 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
     const Word& first = statement.polar_radius ? *statement.polar_radius : *statement.polar_angle;
     for (const char letter : {'X', 'Y'})
         if (const Word* word = statement.word(letter))
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{}: a place is given with @ and ^ or with X and Y, not "
-                                          "with both",
-                                          written(*word)),
-                              word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("{}: use either @ and ^ or X and Y, not both", written(*word)),
+                word->span);
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
     const bool needs_place = incremental || !statement.polar_radius || !statement.polar_angle;
     if (needs_place && !(target[0] && target[1]))
-        return core::fail(ErrorCode::missing_value,
-                          fmt::format("{}: this counts from the present place, which is unknown; "
-                                      "give both @ and ^",
-                                      written(first)),
-                          first.span);
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format(
+                "{}: this is relative to the current position, which is unknown; give both @ and ^",
+                written(first)),
+            first.span);
     double radius = needs_place ? std::hypot(*target[0], *target[1]) : 0.0;
     double angle =
         needs_place ? std::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
     if (!statement.polar_angle && radius < 1e-9)
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("{}: at the origin there is no angle to keep: give ^", written(first)),
+            fmt::format("{}: the tool is at the origin, which has no angle: add ^", written(first)),
             first.span);
     if (statement.polar_radius)
         radius = length_of(execution, *statement.polar_radius) + (incremental ? radius : 0.0);
@@ -377,11 +378,11 @@ namespace {
 
 tl::unexpected<core::Error> unknown_place(const Execution& execution, size_t axis) {
     const Word& mover = moving_word(execution);
-    return core::fail(ErrorCode::missing_value,
-                      fmt::format("{}: under G16 this counts from where the machine is, and that "
-                                  "is unknown along {}",
-                                  written(mover), axis_letters[axis]),
-                      mover.span);
+    return core::fail(
+        ErrorCode::missing_value,
+        fmt::format("{}: with G16 this is relative to the current position, which is unknown in {}",
+                    written(mover), axis_letters[axis]),
+        mover.span);
 }
 
 } // namespace
@@ -446,8 +447,8 @@ std::optional<size_t> axis_left_out_of_rotation(const Execution& execution) {
 void warn_of_axis_left_out(Execution& execution) {
     if (const auto axis = axis_left_out_of_rotation(execution))
         execution.warn(moving_word(execution).span,
-                       fmt::format("the first move after G68 does not name {}, and a parameter of "
-                                   "the control says where that is: write both axes",
+                       fmt::format("the first move after G68 has no {} word, and where that axis "
+                                   "goes depends on a parameter of the control: program both axes",
                                    axis_letters[*axis]));
 }
 

@@ -14,8 +14,7 @@ core::Result<size_t> work_offset_index(const Execution& execution, const CodeWor
     const Word* word = execution.statement.word('P');
     if (!word)
         return core::fail(ErrorCode::missing_value,
-                          "G10 does not say which work offset: it needs a P word",
-                          entry.word->span);
+                          "G10 needs a P word, the number of the work offset", entry.word->span);
     const bool extended = execution.dialect.has_extended_offsets;
     if (extended && execution.statement.word('L')->value == 20.0) {
         FEELER_TRY(const int number, whole_number(*word, 1, extended_offset_count));
@@ -47,7 +46,7 @@ core::Result<void> write_origin_here(const Execution& execution, WorkOffset& off
     if (const Word* word = execution.statement.word('R'))
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("{}: G10 L20 does not turn an offset, L2 does", written(*word)),
+            fmt::format("{}: G10 L20 does not rotate an offset: use L2", written(*word)),
             word->span);
     Offsets there = modal.offsets;
     there.work = offset;
@@ -56,11 +55,11 @@ core::Result<void> write_origin_here(const Execution& execution, WorkOffset& off
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
         if (!read[axis])
-            return core::fail(ErrorCode::missing_value,
-                              fmt::format("{}: G10 L20 needs a known place, and where the machine "
-                                          "is along {} is unknown",
-                                          written(*word), axis_letters[axis]),
-                              word->span);
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{}: G10 L20 needs a known position, and the {} position is unknown",
+                            written(*word), axis_letters[axis]),
+                word->span);
         read[axis] = axis_value(execution, axis, *word);
     }
     // The origin moves by what the wanted reading is off from the machine's place.
@@ -76,7 +75,7 @@ core::Result<void> check_turn(const Execution& execution) {
     if (!word || execution.dialect.work_offsets_turn) return {};
     return core::fail(
         ErrorCode::unsupported,
-        fmt::format("{}: work offsets are not turned by this control; use G68", written(*word)),
+        fmt::format("{}: this control cannot rotate work offsets; use G68", written(*word)),
         word->span);
 }
 
@@ -98,10 +97,10 @@ core::Result<size_t> selected_offset(const Execution& execution, const CodeWord&
         return plain_offset_count + static_cast<size_t>(code / 10 - 110);
     const bool is_numbered = code == tenths(54, 1) || code == tenths(154);
     if (is_numbered && !word)
-        return core::fail(ErrorCode::missing_value,
-                          fmt::format("{} does not say which work offset: it needs a P word",
-                                      written(*entry.word)),
-                          entry.word->span);
+        return core::fail(
+            ErrorCode::missing_value,
+            fmt::format("{} needs a P word, the number of the work offset", written(*entry.word)),
+            entry.word->span);
     const auto wants_p = [](const CodeWord& other) { return other.code->uses('P'); };
     const std::span<const CodeWord> codes = execution.statement.codes();
     const bool is_free = std::none_of(codes.begin(), codes.end(), wants_p);
@@ -156,10 +155,10 @@ void use_written_offset(Execution& execution, const CodeWord& entry) {
         program_from_machine(plain, machine_from_program(plain_before, modal.position));
     modal.offsets = offsets;
     execution.emit(SetOffset{offsets});
-    execution.warn(entry.word->span,
-                   "G10 turns the work offset while G92 or G52 is on: the control is wrong about "
-                   "where it stands now, and axes that the next move does not name move as well; "
-                   "say G92.1 before");
+    execution.warn(
+        entry.word->span,
+        "G10 rotates the work offset while G92 or G52 is on: the control loses its position, and "
+        "the next move also moves axes it does not name; program G92.1 first");
 }
 
 } // namespace
@@ -203,16 +202,12 @@ core::Result<void> select_offset(Execution& execution) {
 core::Result<void> write_offset(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     const Word* kind = execution.statement.word('L');
-    if (!kind)
-        return core::fail(ErrorCode::missing_value,
-                          "G10 does not say what to write: it needs L2 "
-                          "or L20",
-                          entry.word->span);
+    if (!kind) return core::fail(ErrorCode::missing_value, "G10 needs L2 or L20", entry.word->span);
     if (kind->value == 0.0 && execution.dialect.tool_entries_by_axes) {
-        execution.warn(kind->span,
-                       "G10 L0 reads the control's tool table again, which is taken "
-                       "as unchanged",
-                       Severity::note);
+        execution.warn(
+            kind->span,
+            "G10 L0 reloads the tool table of the control, which is assumed to be unchanged",
+            Severity::note);
         return {};
     }
     const bool is_tool = kind->value == 1.0 || kind->value == 10.0 || kind->value == 11.0;
@@ -229,11 +224,11 @@ core::Result<void> write_offset(Execution& execution) {
         }
     }
     if (kind->value != 2.0 && kind->value != 20.0)
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: this kind of G10 is not supported yet; L2 and L20 write "
-                                      "work offsets",
-                                      written(*kind)),
-                          kind->span);
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: this form of G10 is not supported yet; L2 and L20 write work offsets",
+                        written(*kind)),
+            kind->span);
     if (auto checked = check_turn(execution); !checked) return checked;
     if (auto done = write_work_offset(execution, entry, *kind); !done) return done;
     use_written_offset(execution, entry);
@@ -248,9 +243,8 @@ core::Result<void> need_an_axis(const Execution& execution) {
         return {};
     const Word& word = *execution.statement.of(ModalGroup::action)->word;
     return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} does not say of which axis: it needs an axis word{}",
-                                  written(word),
-                                  word.value == 92.0 ? ", or G92.1 to clear all" : ""),
+                      fmt::format("{} needs an axis word{}", written(word),
+                                  word.value == 92.0 ? "; use G92.1 to clear all axes" : ""),
                       word.span);
 }
 
@@ -281,8 +275,8 @@ core::Result<void> set_axis_offset(Execution& execution) {
     Offsets offsets = modal.offsets;
     if (offsets.has_frame)
         return core::fail(ErrorCode::invalid_value,
-                          "G92 cannot be used in coordinates that are scaled, reflected or turned: "
-                          "cancel that first with G50, G50.1 or G69",
+                          "G92 cannot be used while scaling, mirroring or rotation is on: cancel "
+                          "it with G50, G50.1 or G69 first",
                           execution.statement.of(ModalGroup::action)->word->span);
     const int code = execution.statement.of(ModalGroup::action)->code->tenths;
     modal.axis_offset_on = code == tenths(92) || code == tenths(92, 3);
@@ -370,8 +364,8 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
     }
     if (is_active && kind <= 11)
         execution.warn(value->span,
-                       fmt::format("H{} is in use: the new length is taken from the next G43 or H "
-                                   "on, which a parameter of the control may change",
+                       fmt::format("H{} is in use: the new length is assumed to take effect at the "
+                                   "next G43 or H, which depends on a parameter of the control",
                                    index));
     return {};
 }
@@ -385,10 +379,9 @@ core::Result<void> write_external_offset(Execution& execution) {
 }
 
 void pass_over_data(Execution& execution, const Word& kind) {
-    execution.warn(kind.span,
-                   fmt::format("G10 {}: tool lives and parameters of the control are not kept "
-                               "here; what stands up to G11 changes nothing",
-                               written(kind)));
+    execution.warn(kind.span, fmt::format("G10 {}: tool life data and control parameters are not "
+                                          "modelled; the blocks up to G11 have no effect",
+                                          written(kind)));
 }
 
 } // namespace gcode

@@ -21,10 +21,11 @@ core::Result<int> parameter_number(double number, int lowest, const Dialect& dia
     if (whole == 0.0 && std::abs(number) < 1e-4 && dialect.has_parameter_zero)
         return highest_parameter;
     if (std::abs(number - whole) > 1e-4 || !(whole >= lowest && whole <= highest_parameter))
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}{:.12g}: parameters have whole numbers from {} to {}",
-                                      dialect.parameter_letter, number, lowest, highest_parameter),
-                          where);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}{:.12g}: parameter numbers are whole numbers from {} to {}",
+                        dialect.parameter_letter, number, lowest, highest_parameter),
+            where);
     return static_cast<int>(whole);
 }
 
@@ -70,13 +71,13 @@ core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan 
 tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
                                                           core::SourceSpan where) const {
     const bool system = name.starts_with('$');
-    return core::fail(ErrorCode::invalid_value,
-                      fmt::format("'{}': {}", name,
-                                  system ? "this variable of the control is not known here; write "
-                                           "its value instead"
-                                         : "there is no variable of this name in this program: "
-                                           "declare it with DEF REAL, or write its value"),
-                      where);
+    return core::fail(
+        ErrorCode::invalid_value,
+        fmt::format("'{}': {}", name,
+                    system ? "this system variable is not supported; program its value instead"
+                           : "this variable is not defined in this program: declare it with DEF "
+                             "REAL, or program its value"),
+        where);
 }
 
 core::Result<Value> ProgramParameters::named(std::string_view name, core::SourceSpan where) const {
@@ -85,8 +86,8 @@ core::Result<Value> ProgramParameters::named(std::string_view name, core::Source
     const auto found = all.find(name);
     if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
     if (found == all.end())
-        return core::fail(ErrorCode::invalid_value, fmt::format("#<{}> was never set", name),
-                          where);
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("#<{}> is used before it is set", name), where);
     return Value{found->second};
 }
 
@@ -139,7 +140,7 @@ core::Result<void> ProgramParameters::set_named(std::string_view name, Value val
                                                 core::SourceSpan where) {
     if (system_parameter(state_, environment_, name))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("#<{}> is the control's own and cannot be set", name), where);
+                          fmt::format("#<{}> is read-only and cannot be set", name), where);
     const NamedValues& all = named_values(name);
     if (dialect_.names_are_declared) {
         if (all.find(name) == all.end()) return undeclared(name, where);
@@ -148,7 +149,7 @@ core::Result<void> ProgramParameters::set_named(std::string_view name, Value val
             value = held_as(type->second, value.value_or(0.0));
     }
     if (all.size() >= most_named_parameters && all.find(name) == all.end())
-        return core::fail(ErrorCode::invalid_value, "there are too many named parameters", where);
+        return core::fail(ErrorCode::invalid_value, "too many named parameters", where);
     if (is_global(name))
         state_.parameters.write().set_named(name, value.value_or(0.0));
     else

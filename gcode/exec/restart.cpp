@@ -95,7 +95,7 @@ private:
         if (lacks(&ModalState::plane) && modal.plane <= Plane::yz)
             need(fmt::format("G{}", 17 + static_cast<int>(modal.plane)));
         if (modal.transforms != at_.alone.transforms)
-            need("the rotation, scaling, mirror image or tilted plane that is on");
+            need("the active rotation, scaling, mirror image or tilted plane");
         if (modal.offsets.axis != at_.alone.offsets.axis) need("G92");
         if (lacks(&ModalState::compensation) && modal.compensation != Side::none)
             need(modal.compensation == Side::left ? "G41" : "G42");
@@ -187,7 +187,7 @@ core::Result<uint32_t> line_meant(const Program& program, const Dialect& dialect
         if (block_number(*found, !counts_blocks) == number) return line;
     }
     return core::fail(core::ErrorCode::invalid_value,
-                      fmt::format("there is no line {} to start at", text));
+                      fmt::format("the program has no line {} to start at", text));
 }
 
 core::Result<Restart> restart_at(ProgramLibrary& library, const Environment& environment,
@@ -203,10 +203,10 @@ core::Result<Restart> restart_at(ProgramLibrary& library, const Environment& env
         before = whole;
         const auto block = interpreter.next(whole);
         if (!block || !*block)
-            return core::fail(core::ErrorCode::invalid_value,
-                              fmt::format("the program does not come to line {} when it runs from "
-                                          "its beginning",
-                                          line));
+            return core::fail(
+                core::ErrorCode::invalid_value,
+                fmt::format("the program does not reach line {} when run from its beginning",
+                            line));
         if ((*block)->file.empty() && (*block)->line >= line) break;
     }
     if (const auto meeting = meet(library, environment, std::move(before), restart.state))

@@ -74,7 +74,7 @@ void look_at_tool_change(Execution& execution, const ModalState& before) {
         before.distance == DistanceMode::incremental && modal.distance == DistanceMode::incremental;
     if (const std::string on = left_over(before, false); !on.empty())
         advise(execution, entry->word->span, "state-left-over",
-               fmt::format("{}: still on at this tool change: {}", written(*entry->word), on),
+               fmt::format("{}: still active at this tool change: {}", written(*entry->word), on),
                "Cancel it before the tool change.");
 }
 
@@ -97,23 +97,22 @@ void look_at_length(Execution& execution, const ModalState& before) {
     if (!moves(execution)) return; // a frame gave the place another name
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
-    const std::string cure = fmt::format("Write G43 H{} before the first motion in Z.", tool);
+    const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
     if (watch.lacks_length && modal.length_sign != 0.0 && modal.length_number)
         advise(execution, where, "missing-length-offset",
-               fmt::format("tool {} is in the spindle and the length offset of another one, H{}, "
-                           "is still on",
+               fmt::format("tool {} is in the spindle, but H{}, the length offset of another tool, "
+                           "is still active",
                            tool, core::value_of(*modal.length_number)),
                cure);
     else if (watch.lacks_length)
         advise(execution, where, "missing-length-offset",
-               fmt::format("tool {} moves in Z without a length offset: Z counts from the gauge "
-                           "line, not from the tip",
+               fmt::format("tool {} moves in Z without a length offset: Z refers to the gauge "
+                           "line, not to the tip",
                            tool),
                cure);
     else if (before.position[2] && modal.position[2] < before.position[2])
         advise(execution, where, "length-offset-cancelled",
-               fmt::format("tool {} moves down after G49 has cancelled its length offset", tool),
-               cure);
+               fmt::format("tool {} moves down after G49 cancelled its length offset", tool), cure);
     else
         return; // up and away after G49
     watch.lacks_length = watch.length_cancelled = false;
@@ -134,10 +133,9 @@ void look_at_work_offset(Execution& execution) {
             return index < 6 ? fmt::format("G{}", 54 + index) : fmt::format("G59.{}", index - 5);
         };
         advise(execution, moving_word(execution).span, "work-offset-unset",
-               fmt::format("{} is in use and has never been set, while {} is set", name(active),
+               fmt::format("{} is active but has never been set, while {} is set", name(active),
                            name(other)),
-               fmt::format("Set {}, or call the work offset that the job was set up in.",
-                           name(active)));
+               fmt::format("Set {}, or use the work offset the job was set up in.", name(active)));
         return;
     }
 }
@@ -149,8 +147,9 @@ void look_at_increments(Execution& execution) {
     if (!watch.increments_stay || !moves(execution) || goes_to_machine_place(execution)) return;
     watch.increments_stay = false;
     advise(execution, moving_word(execution).span, "incremental-left-on",
-           "this first motion of a tool is incremental: G91 is on since before the tool change",
-           "Write G90 behind the tool change.");
+           "the first move of this tool is incremental: G91 has been active since before the tool "
+           "change",
+           "Add G90 after the tool change.");
 }
 
 void look_at_machine_moves(Execution& execution, const ModalState& before) {
@@ -163,7 +162,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
             on += fmt::format("{}G91", on.empty() ? "" : ", ");
         if (!on.empty())
             advise(execution, action->word->span, "machine-move-with-state",
-                   fmt::format("{}: a place of the machine, while this is on: {}",
+                   fmt::format("{}: move in machine coordinates while active: {}",
                                written(*action->word), on),
                    "Cancel it before G53.");
         return;
@@ -176,20 +175,21 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
     const std::optional<double>& from = before.position[2];
     if (from ? *between->end[2] >= *from : *between->end[2] > 0.0) return;
     advise(execution, action->word->span, "home-through-part",
-           fmt::format("{} {}: under G90 the way home leads down to Z{:.3f} of the work first",
-                       written(*action->word), written(*word), *between->end[2]),
-           "Write G91 G28 Z0, or G53 with a place of the machine.");
+           fmt::format(
+               "{} {}: with G90 the move to home first goes down to Z{:.3f} in work coordinates",
+               written(*action->word), written(*word), *between->end[2]),
+           "Use G91 G28 Z0, or G53 with a position in machine coordinates.");
 }
 
 void look_at_units(Execution& execution, const ModalState& before) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry || !execution.state.rules.has_moved || execution.modal().unit == before.unit) return;
     advise(execution, entry->word->span, "units-jump",
-           fmt::format("{}: the unit changes in the middle of the program: the same numbers are "
-                       "25.4 times as {} from here on",
+           fmt::format("{}: the units change in the middle of the program: from here on the same "
+                       "numbers are 25.4 times as {}",
                        written(*entry->word),
                        execution.modal().unit == LengthUnit::inch ? "long" : "short"),
-           "Write a program in one unit.");
+           "Use one unit throughout the program.");
 }
 
 void look_at_end(Execution& execution) {
@@ -198,10 +198,11 @@ void look_at_end(Execution& execution) {
         return;
     const std::string on = left_over(execution.modal(), true);
     if (on.empty()) return;
-    advise(execution, execution.statement.of(ModalGroup::stopping)->word->span, "state-left-over",
-           fmt::format("still on at the end of the program: {}; the next program may begin with it",
-                       on),
-           "Cancel it before the end.");
+    advise(
+        execution, execution.statement.of(ModalGroup::stopping)->word->span, "state-left-over",
+        fmt::format(
+            "still active at the end of the program: {}; the next program may start with it", on),
+        "Cancel it before the end.");
 }
 
 void look_at_block_delete(Execution& execution) {
@@ -211,8 +212,8 @@ void look_at_block_delete(Execution& execution) {
     watch.said_block_delete = true;
     advise(
         execution, {.line = execution.block.line, .column = 1}, "block-delete",
-        "blocks with '/' are run here; with the switch on at the machine the path is another one",
-        "Check the program with --block-delete on as well.", Severity::note);
+        "blocks with '/' are run here; with block delete on at the machine, the path is different",
+        "Also check the program with --block-delete on.", Severity::note);
 }
 
 } // namespace

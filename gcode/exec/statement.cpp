@@ -41,25 +41,26 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
                                       const Dialect& dialect, const Environment& environment) {
     if (environment.known_m_codes.count(static_cast<int>(word.value))) return {};
     if (word.value < 0.0 || std::abs(word.value - std::round(word.value)) > 1e-6)
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: an M code is a whole number, not negative; take it out "
-                                      "or correct it",
-                                      written(word)),
-                          word.span);
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: an M code must be a whole number, not negative; correct or remove it",
+                        written(word)),
+            word.span);
     if (goes_elsewhere(word))
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: other controls jump or call with it, the dialect {} has "
-                                      "no such code; take it out or name the program's dialect",
-                                      written(word), dialect.name),
-                          word.span);
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: on other controls this code jumps or calls, but the dialect {} does "
+                        "not have it; remove it, or select the dialect of the program",
+                        written(word), dialect.name),
+            word.span);
     statement.unknown_m_codes.push_back(&word);
     return {};
 }
 
 /// What a code of other controls is called here.
 std::string_view meant_instead(const Word& word) {
-    if (word.value == 70.0) return "; where it means inches, write G20";
-    if (word.value == 71.0) return "; where it means millimetres, write G21";
+    if (word.value == 70.0) return "; if it means inches, use G20";
+    if (word.value == 71.0) return "; if it means millimetres, use G21";
     return {};
 }
 
@@ -70,8 +71,8 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
         return add_unknown_m_code(statement, word, dialect, environment);
     if (!code)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: there is no such code in the dialect {}{}",
-                                      written(word), dialect.name, meant_instead(word)),
+                          fmt::format("{}: the dialect {} has no such code{}", written(word),
+                                      dialect.name, meant_instead(word)),
                           word.span);
     if (!code->refusal.empty())
         return core::fail(ErrorCode::unsupported,
@@ -79,14 +80,15 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
     const CodeWord* other = rival_of(statement, *code, dialect);
     const bool repeated = other && other->code == code && !dialect.repeated_codes_are_errors;
     if (other && !repeated)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{} and {} are of one modal group: a block takes one of them",
-                                      written(*other->word), written(word)),
-                          word.span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{} and {} are in the same modal group: a block may have only one of them",
+                        written(*other->word), written(word)),
+            word.span);
     if (repeated) return {};
     if (statement.code_count == Statement::most_codes)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: there are too many codes in this block", written(word)),
+                          fmt::format("{}: too many codes in this block", written(word)),
                           word.span);
     statement.code_words[statement.code_count++] = {code, &word};
     statement.groups |= uint64_t{1} << static_cast<unsigned>(code->group);
@@ -149,7 +151,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
             if (place)
                 return core::fail(ErrorCode::syntax,
-                                  fmt::format("{} and {} in one block: a motion ends in one corner",
+                                  fmt::format("{} and {} in one block: only one corner is allowed",
                                               written(*place), written(word)),
                                   word.span);
             place = &word;
@@ -169,7 +171,7 @@ core::Result<int> whole_number(const Word& word, int lowest, int highest) {
     const double rounded = std::round(word.value);
     if (std::abs(word.value - rounded) > 1e-4 || !(rounded >= lowest && rounded <= highest))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: {} takes a whole number from {} to {}", written(word),
+                          fmt::format("{}: {} must be a whole number from {} to {}", written(word),
                                       word.letter, lowest, highest),
                           word.span);
     return static_cast<int>(rounded);

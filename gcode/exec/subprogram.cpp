@@ -89,12 +89,12 @@ std::string missing_program(ProgramLibrary& library, uint32_t source, int number
     std::string message = fmt::format(
         "there is no program O{} in this file, and no file such as O{}.nc in ", number, number);
     if (library.search_path().empty())
-        message += "a search path, for there is none";
+        message += "a search path (none is set)";
     else
         message += fmt::format("{}", fmt::join(library.search_path(), ", "));
     if (!others.empty()) message += fmt::format("; this file has {}", fmt::join(others, ", "));
     if (index.line_of_number(number, 1, UINT32_MAX))
-        message += fmt::format("; N{} is a block of it, which {} calls", number,
+        message += fmt::format("; it has a block N{}, which {} calls", number,
                                find_code('M', 97.0, library.dialect().id)
                                    ? fmt::format("M97 P{}", number)
                                    : fmt::format("M98 Q{}", number));
@@ -121,7 +121,7 @@ core::Result<int> rounds_of(Execution& execution) {
     const Word* word = execution.statement.word('L');
     if (!word) return 1;
     FEELER_TRY(const int rounds, whole_number(*word));
-    if (rounds == 0) execution.warn(word->span, "L0: the subprogram is not run at all");
+    if (rounds == 0) execution.warn(word->span, "L0: the subprogram is not run");
     return rounds;
 }
 
@@ -178,14 +178,14 @@ core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
     if (block && execution.dialect.has_o_words)
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("{}: M98 takes P and L only on this control", written(*block)),
+            fmt::format("{}: on this control M98 takes only P and L", written(*block)),
             block->span);
     if (!program && block) return call_block(execution, *block);
     if (!program)
-        return core::fail(
-            ErrorCode::missing_value,
-            fmt::format("{} does not say what to call: it needs a P word", written(*entry.word)),
-            entry.word->span);
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} needs a P word, the number of the program to call",
+                                      written(*entry.word)),
+                          entry.word->span);
     const bool external = entry.code->tenths == tenths(198);
     FEELER_TRY(Called called, called_by(execution, *program, external));
     if (block) {
@@ -204,19 +204,19 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
     const bool inside = state.frames.size() > 1;
     if (target && execution.dialect.has_o_words)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: M99 takes no P on this control", written(*target)),
+                          fmt::format("{}: on this control M99 takes no P", written(*target)),
                           target->span);
     if (inside && execution.dialect.has_o_words && !frame.shares_locals)
         return core::fail(ErrorCode::syntax,
-                          "M99 belongs to what M98 calls; this subprogram was called by an O word "
-                          "and ends with endsub or return",
+                          "M99 ends only subprograms called with M98; this one was called with an "
+                          "O word and must end with endsub or return",
                           entry.word->span);
     if (target) {
         const Place from =
             inside ? frame.called_from : Place{state.next.source, execution.block.line};
-        FEELER_TRY(const uint32_t line,
-                   block_named(execution, *target, from,
-                               inside ? "the program that called" : "this program"));
+        FEELER_TRY(
+            const uint32_t line,
+            block_named(execution, *target, from, inside ? "the calling program" : "this program"));
         if (inside)
             leave_to(state, line);
         else
@@ -236,21 +236,21 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
 core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
     const Word* target = execution.statement.word('P');
     if (!target)
-        return core::fail(ErrorCode::missing_value,
-                          "M96 does not say where to jump: it needs a P word", entry.word->span);
+        return core::fail(ErrorCode::missing_value, "M96 needs a P word, the block to jump to",
+                          entry.word->span);
     const Place here{execution.state.next.source, execution.block.line};
     FEELER_TRY(const uint32_t line, block_named(execution, *target, here, "this program"));
     const Word* input = execution.statement.word('Q');
     const std::string name = input ? written(*input) : "its input";
     if (line <= execution.block.line) {
-        execution.warn(entry.word->span,
-                       fmt::format("M96 waits for {}: taken as on, so it goes on", name));
+        execution.warn(
+            entry.word->span,
+            fmt::format("M96 waits for {}: assumed to be on, so the program continues", name));
         return {};
     }
-    execution.warn(entry.word->span,
-                   fmt::format("M96: {} is taken as off, so it jumps; the blocks up to {} were "
-                               "not looked at",
-                               name, written(*target)));
+    execution.warn(entry.word->span, fmt::format("M96: {} is assumed to be off, so the program "
+                                                 "jumps; the blocks up to {} were not checked",
+                                                 name, written(*target)));
     execution.state.next.line = line;
     return {};
 }
@@ -261,7 +261,7 @@ core::Result<void> check_company(const Execution& execution, const CodeWord& ent
     for (const Word& word : execution.block.words) {
         if (std::string_view("NMPLQ").find(word.letter) != std::string_view::npos) continue;
         return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: {} stands in a block of its own on this control",
+                          fmt::format("{}: on this control {} must be in a block by itself",
                                       written(word), written(*entry.word)),
                           word.span);
     }
@@ -280,8 +280,7 @@ core::Result<void> call_subprogram(Execution& execution) {
     case tenths(97): {
         const Word* word = execution.statement.word('P');
         if (word) return call_block(execution, *word);
-        return core::fail(ErrorCode::missing_value,
-                          "M97 does not say which block to call: it needs a P word",
+        return core::fail(ErrorCode::missing_value, "M97 needs a P word, the block to call",
                           entry->word->span);
     }
     case tenths(99):
@@ -321,7 +320,7 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
     const Word* program = argument(execution, 'P');
     if (!program)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("{} does not say which macro: it needs a P word behind it",
+                          fmt::format("{} must be followed by a P word, the number of the macro",
                                       written(*entry.word)),
                           entry.word->span);
     FEELER_TRY(const int number, whole_number(*program));
@@ -335,7 +334,7 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
     ModalMacro macro{.name = fmt::format("O{}", number), .begin = *begin};
     if (const Word* rounds = argument(execution, 'L')) {
         FEELER_TRY(macro.rounds, whole_number(*rounds));
-        if (macro.rounds == 0) execution.warn(rounds->span, "L0: the macro is not run at all");
+        if (macro.rounds == 0) execution.warn(rounds->span, "L0: the macro is not run");
     }
     FEELER_TRY(macro.arguments, arguments_of(words_of_call(execution)));
     macro.each_block = entry.code->tenths == tenths(66, 1);
@@ -384,11 +383,11 @@ core::Result<LocalParameters> arguments_of(const std::vector<const Word*>& words
         const char letter = word->letter;
         if (letter == 'N' || letter == 'O') continue;
         if (letter == 'G' || argument_number(letter) == 0)
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{} cannot be an argument of a macro: write it before "
-                                          "the call",
-                                          written(*word)),
-                              word->span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("{} cannot be a macro argument: program it before the call",
+                            written(*word)),
+                word->span);
         if (!is_offset(letter)) {
             locals[argument_number(letter)] = word->value;
             continue;
@@ -398,7 +397,8 @@ core::Result<LocalParameters> arguments_of(const std::vector<const Word*>& words
         if (set == most_offset_sets)
             return core::fail(
                 ErrorCode::invalid_value,
-                fmt::format("{}: a macro takes I, J and K ten times at most", written(*word)),
+                fmt::format("{}: a macro call may have at most ten sets of I, J and K",
+                            written(*word)),
                 word->span);
         locals[argument_number(letter) + 3 * static_cast<size_t>(set)] = word->value;
     }
@@ -432,11 +432,11 @@ core::Result<void> call_macro(Execution& execution) {
     if (entry->code->tenths == tenths(65))
         return enter_macro(execution, macro, 0, entry->word->span);
     if (state.modal_macros.size() == execution.dialect.deepest_calls)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: {} macros are called by every motion already: cancel "
-                                      "them with G67",
-                                      written(*entry->word), state.modal_macros.size()),
-                          entry->word->span);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: {} modal macros are already active: cancel them with G67",
+                        written(*entry->word), state.modal_macros.size()),
+            entry->word->span);
     const bool now = macro.each_block;
     state.modal_macros.push_back(std::move(macro));
     if (!now) return {};

@@ -50,8 +50,8 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     execution.modal().length_sign = sign;
     const core::SourceSpan where = word.span;
     if (!number) {
-        execution.warn(where, fmt::format("{} has no H word and no tool to take it from: no length "
-                                          "offset is applied",
+        execution.warn(where, fmt::format("{} has no H word, and no tool is in the spindle to take "
+                                          "it from: no length offset is applied",
                                           written(word)));
         use_offset(execution, std::nullopt, {}, follows_tip);
         return {};
@@ -59,8 +59,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     const std::optional<double> length =
         *number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, *number);
     if (!length)
-        execution.warn(where, fmt::format("{}: nothing is known about length offset H{}, taken as "
-                                          "0",
+        execution.warn(where, fmt::format("{}: length offset H{} is unknown and assumed to be 0",
                                           written(word), *number));
     use_offset(execution, OffsetNumber(*number),
                offset_under(execution, *number, sign * length.value_or(0.0)), follows_tip);
@@ -68,9 +67,9 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     if (tool && *number != 0 && *number != value_of(*tool))
         execution.result.warnings.push_back(
             {Severity::warning, where,
-             fmt::format("{}: H{} is not the offset of the tool in the spindle, T{}", written(word),
+             fmt::format("{}: H{} is not the offset of T{}, the tool in the spindle", written(word),
                          *number, value_of(*tool)),
-             "offset-not-tool", fmt::format("Write H{}.", value_of(*tool))});
+             "offset-not-tool", fmt::format("Use H{}.", value_of(*tool))});
     return {};
 }
 
@@ -96,15 +95,14 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
         FEELER_TRY(const int entry, whole_number(*number));
         const std::optional<double> length = length_under(*execution.state.tables, entry);
         if (!length)
-            return core::fail(
-                ErrorCode::invalid_value,
-                fmt::format("{}: nothing is known about length offset H{}", written(word), entry),
-                number->span);
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: length offset H{} is unknown", written(word), entry),
+                              number->span);
         more = offset_under(execution, entry, *length);
     } else if (!execution.statement.has_axis_word()) {
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("{} needs an H word, or the offset itself as axis words", written(word)),
+            fmt::format("{} needs an H word, or axis words with the offset", written(word)),
             word.span);
     }
     for (size_t axis = 0; axis < axis_count; ++axis) sum[axis] += more[axis];
@@ -119,8 +117,8 @@ core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord&
     use_transforms(execution, transforms);
     if (!execution.modal().offsets.machine)
         execution.warn(entry.word->span,
-                       fmt::format("{}: taken as G43; rotary axes are followed in the program's "
-                                   "coordinates, not in those of the machine",
+                       fmt::format("{}: treated as G43: without a machine in the set-up, rotary "
+                                   "axes are followed in program coordinates",
                                    written(*entry.word)),
                        Severity::note);
     return use_table_length(execution, *entry.word, +1.0, true);
@@ -167,7 +165,7 @@ core::Result<void> change_tool(Execution& execution) {
     if (entry->code->tenths == tenths(61)) return name_tool(execution);
     if (!modal.selected_tool)
         return core::fail(ErrorCode::missing_value,
-                          "M6 has no tool to change to: no T word came before it",
+                          "M6 has no tool to change to: no T word has been programmed yet",
                           entry->word->span);
     modal.tool = modal.selected_tool;
     // RS274/NGC 3.6.3: the spindle is stopped when the tool change is complete.
@@ -213,8 +211,7 @@ namespace {
 core::Result<int> tool_of_entry(const Execution& execution) {
     const Word* word = execution.statement.word('P');
     if (!word)
-        return core::fail(ErrorCode::missing_value,
-                          "G10 does not say which tool: it needs a P word",
+        return core::fail(ErrorCode::missing_value, "G10 needs a P word, the number of the tool",
                           execution.statement.of(ModalGroup::action)->word->span);
     return whole_number(*word, 1, 99999);
 }
@@ -225,8 +222,7 @@ core::Result<void> need_a_value(const Execution& execution) {
         if (statement.word(letter)) return {};
     if (statement.has_axis_word()) return {};
     return core::fail(ErrorCode::missing_value,
-                      "G10 does not say what to write into the tool table: it needs an axis word, "
-                      "R, I, J or Q",
+                      "G10 has no value for the tool table: it needs an axis word, R, I, J or Q",
                       statement.of(ModalGroup::action)->word->span);
 }
 
@@ -274,11 +270,11 @@ core::Result<void> take_offsets_here(const Execution& execution, bool in_last_of
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
         if (!read[axis])
-            return core::fail(ErrorCode::missing_value,
-                              fmt::format("{}: this needs a known place, and where the machine is "
-                                          "along {} is unknown",
-                                          written(*word), axis_letters[axis]),
-                              word->span);
+            return core::fail(
+                ErrorCode::missing_value,
+                fmt::format("{}: this needs a known position, and the {} position is unknown",
+                            written(*word), axis_letters[axis]),
+                word->span);
         off[axis] = *read[axis] - axis_value(execution, axis, *word);
     }
     const Position shift = machine_from_program(only_turned, off);
@@ -314,7 +310,7 @@ core::Result<void> name_tool(Execution& execution) {
     const Word* word = execution.statement.word('Q');
     if (!word)
         return core::fail(ErrorCode::missing_value,
-                          "M61 does not say which tool is in the spindle: it needs a Q word",
+                          "M61 needs a Q word, the number of the tool in the spindle",
                           execution.statement.of(ModalGroup::tool_change)->word->span);
     FEELER_TRY(const int tool, whole_number(*word));
     execution.modal().tool = ToolNumber(tool);

@@ -39,11 +39,12 @@ core::Result<void> refuse_unknown_home(const Execution& execution) {
     if (!place || !execution.dialect.p_names_more_places) return {};
     const CodeWord* action = statement.of(ModalGroup::action);
     if (action && action->code->tenths == tenths(30) && !names_second_home(execution))
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: G30 knows the second reference position only: go to "
-                                      "another one with G53",
-                                      written(*place)),
-                          place->span);
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format(
+                "{}: G30 supports the second reference position only: go to others with G53",
+                written(*place)),
+            place->span);
     return {};
 }
 
@@ -71,9 +72,9 @@ core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
     const bool exponent = word.letter == 'E'; // of a number, most likely
     const std::string message =
-        fmt::format("{}: nothing in this block uses it{}", written(word),
-                    exponent ? "; an exponent such as 1E3 is written out, and the extruder of a "
-                               "3D printer is none of a milling machine's"
+        fmt::format("{}: no code in this block uses this word{}", written(word),
+                    exponent ? "; write an exponent such as 1E3 as a plain number; the extruder "
+                               "axis of a 3D printer is not supported"
                              : "");
     if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
@@ -95,9 +96,10 @@ std::optional<double> length_word(const Execution& execution, char letter) {
 core::Result<void> check_words(Execution& execution) {
     if (auto checked = refuse_unknown_home(execution); !checked) return checked;
     for (const Word* word : execution.statement.unknown_m_codes)
-        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
-                                               "builder; it is passed over",
-                                               written(*word)));
+        execution.warn(
+            word->span,
+            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
+                        written(*word)));
     if (!(execution.statement.letters & bits_that_need_a_code)) return {};
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))
@@ -114,7 +116,7 @@ core::Result<void> note_assumed_units(Execution& execution) {
         const bool inch = execution.modal().unit == LengthUnit::inch;
         execution.state.said_unit = true;
         execution.warn(word.span,
-                       fmt::format("units not said (G20 or G21) before {}, taken as {}",
+                       fmt::format("no units (G20 or G21) programmed before {}; {} assumed",
                                    written(word), inch ? "inches" : "millimetres"),
                        Severity::note);
         return {};
@@ -137,33 +139,34 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target) 
     const ModalState& modal = execution.modal();
     if (modal.cycle || (modal.motion != tenths(0) && modal.motion != tenths(1)))
         return tl::unexpected(
-            refusal(*angle, ErrorCode::syntax, "an angle gives the direction of a G0 or G1"));
+            refusal(*angle, ErrorCode::syntax, "an angle can only be used with G0 or G1"));
     const PlaneAxes axes = axes_of(modal.plane);
     const bool first = execution.statement.word(axis_letters[axes.first]) != nullptr;
     const bool second = execution.statement.word(axis_letters[axes.second]) != nullptr;
     const std::string both =
         fmt::format("{} or {}", axis_letters[axes.first], axis_letters[axes.second]);
     if (first && second)
-        return tl::unexpected(refusal(*angle, ErrorCode::syntax,
-                                      fmt::format("beside an angle stands {}, not both", both)));
-    if (!first && !second)
         return tl::unexpected(
-            refusal(*angle, ErrorCode::unsupported,
-                    fmt::format("a line to where it crosses the next one is not supported yet: "
-                                "write {} as well",
-                                both)));
+            refusal(*angle, ErrorCode::syntax, fmt::format("an angle needs {}, not both", both)));
+    if (!first && !second)
+        return tl::unexpected(refusal(
+            *angle, ErrorCode::unsupported,
+            fmt::format(
+                "a line that ends where it crosses the next one is not supported yet: add {}",
+                both)));
     const size_t given = first ? axes.first : axes.second;
     const size_t other = first ? axes.second : axes.first;
     if (!modal.position[given] || !modal.position[other])
-        return tl::unexpected(refusal(*angle, ErrorCode::missing_value,
-                                      "where the line begins is unknown: move there first"));
+        return tl::unexpected(
+            refusal(*angle, ErrorCode::missing_value,
+                    "the start position of the line is unknown: move there first"));
     const double radians = angle->value * std::numbers::pi / 180.0;
     const double along = first ? std::cos(radians) : std::sin(radians);
     const double across = first ? std::sin(radians) : std::cos(radians);
     const double way = *target[given] - *modal.position[given];
     if (std::abs(along) < 1e-9)
         return tl::unexpected(refusal(*angle, ErrorCode::invalid_value,
-                                      fmt::format("in this direction {} does not change: write {}",
+                                      fmt::format("{} does not change in this direction: use {}",
                                                   axis_letters[given], axis_letters[other])));
     target[other] = *modal.position[other] + way * across / along;
     return {};
@@ -206,17 +209,17 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     };
     const bool inverse = modal.feed_mode == FeedMode::inverse_time;
     if (inverse && !execution.statement.word('F'))
-        return refuse("under G93 every feed needs its own F word");
-    if (!modal.feed) return refuse("this motion has no feed rate, no F word came before it");
-    if (*modal.feed == 0.0) return refuse("this motion has the feed rate F0");
+        return refuse("with G93 each feed move needs its own F word");
+    if (!modal.feed) return refuse("no feed rate: no F word has been programmed yet");
+    if (*modal.feed == 0.0) return refuse("the feed rate is F0");
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)
-        return refuse("G93 gives no feed rate here, where the motion starts is unknown");
+        return refuse("G93 gives no feed rate here: the start position is unknown");
     const bool has_slowest = execution.dialect.system_parameters == SystemParameters::rs274;
     const double slowest = has_slowest ? to_mm(0.1, modal.unit) : 0.0; // a minute
     if (inverse) return std::max(slowest, *modal.feed * *path_length);
     if (modal.spindle == core::SpindleDirection::stopped || modal.speed == 0.0)
-        return refuse("G95 gives no feed rate here, the spindle does not turn");
+        return refuse("G95 gives no feed rate here: the spindle is stopped");
     return *modal.feed * turns_a_minute(modal);
 }
 

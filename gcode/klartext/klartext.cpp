@@ -26,13 +26,14 @@ bool ends_block(const Execution& execution, ModalGroup group, int last_tenths) {
 
 void warn_of_m_codes(Execution& execution) {
     for (const Word* word : execution.statement.unknown_m_codes)
-        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
-                                               "builder; it is passed over",
-                                               written(*word)));
+        execution.warn(
+            word->span,
+            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
+                        written(*word)));
     for (const CodeWord& entry : execution.statement.codes())
         if (entry.code->letter == 'M' && entry.code->tenths == tenths(128))
-            execution.warn(entry.word->span, "M128: the linear axes do not follow the rotary ones "
-                                             "here; ends are taken as they are written");
+            execution.warn(entry.word->span, "M128 is not modelled: the linear axes do not follow "
+                                             "the rotary axes; end points are used as programmed");
 }
 
 core::Result<void> take_feed(Execution& execution) {
@@ -41,7 +42,7 @@ core::Result<void> take_feed(Execution& execution) {
     if (const Word* word = execution.statement.word('E')) {
         if (!execution.state.klartext->call_feed)
             return core::fail(ErrorCode::missing_value,
-                              "FAUTO: no TOOL CALL with an F came before it", word->span);
+                              "FAUTO: no TOOL CALL with F has been programmed yet", word->span);
         execution.modal().feed = execution.state.klartext->call_feed;
     }
     return set_feed(execution);
@@ -50,7 +51,7 @@ core::Result<void> take_feed(Execution& execution) {
 core::Result<void> program_error_of(const Execution& execution) {
     const Word* word = execution.statement.word('P');
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("FN 14: the program stops itself here with its error {:.12g}",
+                      fmt::format("FN 14: the program stops here with its own error {:.12g}",
                                   word ? word->value : 0.0),
                       execution.block.command.span);
 }
@@ -135,7 +136,7 @@ core::Result<double> klartext_feed(const Execution& execution) {
     const std::optional<double> feed = execution.modal().feed;
     if (feed && *feed > 0.0) return *feed;
     tl::unexpected<core::Error> error = refuse_statement(
-        execution, feed ? "this motion has the feed F0" : "no feed F came before this motion");
+        execution, feed ? "the feed rate is F0" : "no feed rate: no F has been programmed yet");
     error.value().code = no_feed;
     return error;
 }
@@ -179,9 +180,9 @@ void use_length(Execution& execution, int number, const Word& tool) {
     const std::optional<double> length =
         number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, number);
     if (!length)
-        execution.warn(tool.span, fmt::format("{}: nothing is known about the length of tool {}, "
-                                              "taken as 0",
-                                              written(tool), number));
+        execution.warn(tool.span,
+                       fmt::format("{}: the length of tool {} is unknown and assumed to be 0",
+                                   written(tool), number));
     const Word* longer = execution.statement.word('L');
     const Word* wider = execution.statement.word('D');
     Offsets offsets = execution.modal().offsets;
@@ -204,10 +205,9 @@ void use_length(Execution& execution, int number, const Word& tool) {
 void warn_of_other_length(Execution& execution, int number, double length, const Word& word) {
     const auto known = length_under(*execution.state.tables, number);
     if (!known || std::abs(*known - length) < 1e-6) return;
-    execution.warn(word.span,
-                   fmt::format("{}: the tool table has the length {:.4f} mm for tool {}; "
-                               "the program's counts",
-                               written(word), *known, number));
+    execution.warn(word.span, fmt::format("{}: the tool table gives {:.4f} mm as the length of "
+                                          "tool {}; the value from the program is used",
+                                          written(word), *known, number));
 }
 
 } // namespace
@@ -220,8 +220,7 @@ core::Result<void> call_klartext_tool(Execution& execution) {
         use_length(execution, number, *tool);
     } else if (const Word* longer = statement.word('L')) {
         if (!execution.modal().tool)
-            return refuse_statement(execution, "no tool is in the spindle that DL could make "
-                                               "longer");
+            return refuse_statement(execution, "DL without a tool in the spindle");
         use_length(execution, value_of(*execution.modal().tool), *longer);
     }
     if (statement.word('F')) execution.state.klartext.write().call_feed = execution.modal().feed;
@@ -231,7 +230,7 @@ core::Result<void> call_klartext_tool(Execution& execution) {
 core::Result<void> define_klartext_tool(Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* tool = statement.word('T');
-    if (!tool) return refuse_statement(execution, "the number of the tool is missing");
+    if (!tool) return refuse_statement(execution, "the tool number is missing");
     FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
     const Word* length = statement.word('L');
     const Word* radius = statement.word('R');
@@ -258,8 +257,8 @@ core::Result<void> read_system_datum(Execution& execution) {
     const bool machine = group == 240, program = group == 270;
     if (!(machine || program) || item != 1 || index < 1 || index > long(axis_count))
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("FN 18: ID{} NR{} IDX{} is not known here: of the system's "
-                                      "data the positions can be read, ID240 and ID270 NR1",
+                          fmt::format("FN 18: ID{} NR{} IDX{} is not supported: only the positions "
+                                      "can be read, ID240 NR1 and ID270 NR1",
                                       group, item, index),
                           execution.block.command.span);
     const ModalState& modal = execution.modal();
@@ -268,8 +267,8 @@ core::Result<void> read_system_datum(Execution& execution) {
     const auto axis = static_cast<size_t>(index - 1);
     if (!place[axis])
         execution.warn(execution.block.command.span,
-                       fmt::format("FN 18: where the machine is along {} is not known, taken as 0; "
-                                   "say where it starts",
+                       fmt::format("FN 18: the {} position is unknown and assumed to be 0; set "
+                                   "[program] start in the set-up",
                                    axis_letters[axis]));
     execution.state.parameters.write().set_numbered(static_cast<int>(statement.word('Q')->value),
                                                     place[axis].value_or(0.0));

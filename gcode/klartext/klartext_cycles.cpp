@@ -163,9 +163,9 @@ core::Result<void> mill_bore(KlartextHole& hole) {
     const std::optional<double>& x = centre[hole.axes.first];
     const std::optional<double>& y = centre[hole.axes.second];
     if (!x || !y || tool <= 0.0 || radius < 0.0 || hole.cycle.infeed <= 0.0)
-        return refuse_statement(execution,
-                                "CYCL DEF 208 needs a known place, a tool whose radius is known "
-                                "and not above that of the bore, and an infeed Q334 above zero");
+        return refuse_statement(
+            execution, "CYCL DEF 208 needs a known position, a tool radius that is known and not "
+                       "larger than the bore radius, and an infeed Q334 greater than 0");
     if (radius < 1e-9) {
         hole.feed(hole.bottom);
         hole.rapid(hole.above);
@@ -229,17 +229,16 @@ core::Result<void> check(const Execution& execution, const DefinedCycle& cycle) 
         return refuse_statement(execution, fmt::format("CYCL DEF {}: {}", cycle.number, why));
     };
     if (cycle.depth > 0.0)
-        return refuse("the depth is above zero, so the tool would go up into the hole; depths are "
-                      "negative");
+        return refuse("the depth is positive, so the tool would move up; program a negative depth");
     if (rigid ? cycle.pitch == 0.0 : !(cycle.feed > 0.0))
-        return refuse(rigid ? "the pitch Q239 is missing" : "its feed is missing");
+        return refuse(rigid ? "the pitch Q239 is missing" : "the feed rate is missing");
     if (cycle.number == 1 && cycle.peck <= 0.0) return refuse("the pecking depth is missing");
     const double least = std::max(cycle.least_peck, 1e-3);
     const double step = cycle.number == 208     ? cycle.infeed
                         : cycle.decrement > 0.0 ? std::min(cycle.peck, least)
                                                 : cycle.peck;
     if (step > 0.0 && -cycle.depth / step > most_commands / 4)
-        return refuse("it makes too many pecks");
+        return refuse("the hole needs too many pecks");
     return {};
 }
 
@@ -319,8 +318,8 @@ core::Result<void> define_cycle(Execution& execution) {
         return run_pattern(execution);
     case 247:
         execution.warn(command.span,
-                       fmt::format("CYCL DEF 247: datum {:.12g} of the preset table "
-                                   "is taken as the set-up's work offset",
+                       fmt::format("CYCL DEF 247: datum {:.12g} of the preset table is assumed to "
+                                   "be the work offset of the set-up",
                                    q_number(execution, 339)),
                        Severity::note);
         return {};
@@ -341,14 +340,16 @@ core::Result<void> define_cycle(Execution& execution) {
 core::Result<void> call_defined_cycle(Execution& execution) {
     const DefinedCycle cycle = execution.state.klartext->cycle;
     if (cycle.number == 0)
-        return refuse_statement(execution, "there is no cycle to call: no CYCL DEF came before it");
+        return refuse_statement(execution,
+                                "there is no cycle to call: no CYCL DEF has been programmed yet");
     if (cycle.depth == 0.0) return {}; // as on the control
     if (auto checked = check(execution, cycle); !checked) return checked;
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const std::optional<double> here = modal.position[axes.normal];
     if (cycle.number == 1 && !here)
-        return refuse_statement(execution, "cycle 1 starts where the tool is, which is not known");
+        return refuse_statement(execution,
+                                "cycle 1 starts at the current position, which is unknown");
     const double surface = cycle.number == 1 ? *here - cycle.clearance : cycle.surface;
     execution.result.is_cycle = true;
     KlartextHole hole{
@@ -374,7 +375,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     if (execution.block.command.number == 220) {
         const double count = plain(241);
         if (!(count >= 1.0 && count <= most_places))
-            return refuse_statement(execution, "Q241 is the number of holes, from 1");
+            return refuse_statement(execution, "Q241, the number of holes, must be at least 1");
         double step = plain(247);
         // Q246 is used if no step is given. On a full circle the first hole is not repeated.
         const double sweep = plain(246) - plain(245);
@@ -389,8 +390,8 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     }
     const double columns = plain(242), rows = plain(243);
     if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_places))
-        return refuse_statement(execution, "Q242 and Q243 are the numbers of columns and lines, "
-                                           "from 1");
+        return refuse_statement(
+            execution, "Q242 and Q243, the numbers of columns and rows, must be at least 1");
     const double turn = plain(224) * core::radians_per_degree;
     for (int row = 0; row < static_cast<int>(rows); ++row)
         for (int i = 0; i < static_cast<int>(columns); ++i) {
@@ -408,8 +409,8 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
 core::Result<void> run_pattern(Execution& execution) {
     DefinedCycle cycle = execution.state.klartext->cycle;
     if (cycle.number < 200)
-        return refuse_statement(execution, "there is no cycle from 200 on that the pattern could "
-                                           "repeat: no CYCL DEF of one came before it");
+        return refuse_statement(execution, "there is no cycle for the pattern to repeat: program "
+                                           "the CYCL DEF of a cycle from 200 on first");
     cycle.clearance = std::abs(q_length(execution, 200));
     cycle.surface = q_length(execution, 203);
     cycle.second_clearance = std::abs(q_length(execution, 204));

@@ -30,7 +30,7 @@ core::Result<uint32_t> line_of_label(const FlowStep& step) {
         if (const FlowMark* mark =
                 step.library.index(step.state.next.source).first(FlowKind::label, name))
             return mark->line;
-    return refuse(step, fmt::format("there is no LBL {} in this program to go to", name));
+    return refuse(step, fmt::format("there is no LBL {} in this program", name));
 }
 
 /// Whether the current call level was started by `CALL LBL`. Such a level stays in the program of
@@ -90,9 +90,10 @@ core::Result<void> call_program(const FlowStep& step) {
 
 core::Result<void> end_program(const FlowStep& step) {
     if (is_label_call(step.state))
-        return refuse(step, fmt::format("END PGM inside the subprogram that line {} calls: its "
-                                        "LBL 0 is missing",
-                                        step.state.frames.back().called_from.line));
+        return refuse(
+            step,
+            fmt::format("END PGM inside the subprogram called in line {}: its LBL 0 is missing",
+                        step.state.frames.back().called_from.line));
     if (step.state.frames.size() > 1) {
         leave(step.state);
         return {};

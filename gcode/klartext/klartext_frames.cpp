@@ -98,7 +98,8 @@ void turn(Execution& execution, Transforms& transforms) {
 core::Result<void> scale(Execution& execution, Transforms& transforms) {
     const Word* word = execution.statement.word('P');
     if (!word) return {};
-    if (!(word->value > 0.0)) return refuse_statement(execution, "a scaling factor is above zero");
+    if (!(word->value > 0.0))
+        return refuse_statement(execution, "the scaling factor must be greater than 0");
     transforms.scale = word->value;
     keep_order(transforms, Kind::scale, transforms.scale != 1.0);
     return {};

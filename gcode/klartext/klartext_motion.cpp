@@ -39,15 +39,15 @@ core::Result<PlanePoint> known_point(const Execution& execution, const Position&
     for (const size_t axis : {axes.first, axes.second})
         if (!place[axis])
             return refuse_statement(execution,
-                                    fmt::format("where the tool is along {} is not known: move "
-                                                "there first, or say where the machine starts",
+                                    fmt::format("the {} position is unknown: move there first, or "
+                                                "set [program] start in the set-up",
                                                 axis_letters[axis]));
     return PlanePoint{*place[axes.first], *place[axes.second]};
 }
 
 core::Result<PlanePoint> known_pole(const Execution& execution) {
     const auto& pole = execution.state.klartext->pole;
-    if (!pole[0] || !pole[1]) return refuse_statement(execution, "no CC came before it");
+    if (!pole[0] || !pole[1]) return refuse_statement(execution, "no CC has been programmed yet");
     return PlanePoint{*pole[0], *pole[1]};
 }
 
@@ -105,12 +105,13 @@ core::Result<void> check_radii(Execution& execution, const PlanePoint& start, co
     const double to_start = std::hypot(start[0] - centre[0], start[1] - centre[1]);
     const double to_end = std::hypot(end[0] - centre[0], end[1] - centre[1]);
     if (to_start < shortest)
-        return refuse_arc(execution, "the arc has no radius, its centre is where it starts");
+        return refuse_arc(execution, "the arc has no radius: its centre is its start point");
     const double difference = std::abs(to_start - to_end);
     const ArcTolerance& allowed = execution.dialect.arc;
     if (difference <= allowed.absolute_mm) return {};
-    const std::string message = fmt::format(
-        "the arc's radius is {:.4f} mm at its start and {:.4f} mm at its end", to_start, to_end);
+    const std::string message =
+        fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
+                    to_start, to_end);
     if (difference > allowed.warned_mm) return refuse_arc(execution, message);
     execution.warn(execution.block.command.span, message);
     return {};
@@ -152,13 +153,13 @@ core::Result<PathElement> of_radius(Execution& execution) {
     const double chord[2] = {end[0] - start[0], end[1] - start[1]};
     const double half = 0.5 * std::hypot(chord[0], chord[1]);
     if (half < shortest)
-        return refuse_statement(execution, "an arc with a radius cannot end where it starts: write "
-                                           "a full circle as CC and C");
+        return refuse_statement(
+            execution,
+            "an arc with a radius cannot end where it starts: program a full circle with CC and C");
     if (half - std::abs(radius) > execution.dialect.arc.absolute_mm)
-        return refuse_arc(execution,
-                          fmt::format("the radius {:.4f} mm does not reach the end, half of the "
-                                      "way is {:.4f} mm",
-                                      std::abs(radius), half));
+        return refuse_arc(execution, fmt::format("the radius {:.4f} mm is too small to reach the "
+                                                 "end point: half the distance is {:.4f} mm",
+                                                 std::abs(radius), half));
     const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
     const double side = (radius > 0.0 ? contour.turn : -contour.turn) * height / (2.0 * half);
     contour.centre = {0.5 * (start[0] + end[0]) - side * chord[1],
@@ -176,8 +177,8 @@ core::Result<PathElement> tangent(Execution& execution) {
     }
     const auto& direction = execution.state.klartext->direction;
     if (!direction)
-        return refuse_statement(execution, "no motion in the plane came before it whose direction "
-                                           "it could go on in");
+        return refuse_statement(execution,
+                                "there is no previous move in the plane to continue tangentially");
     FEELER_TRY(const PlanePoint start, known_point(execution, execution.modal().position));
     FEELER_TRY(const PlanePoint end, known_point(execution, contour.end));
     const double way[2] = {end[0] - start[0], end[1] - start[1]};
@@ -187,8 +188,8 @@ core::Result<PathElement> tangent(Execution& execution) {
     const double squared = way[0] * way[0] + way[1] * way[1];
     if (std::abs(aside) <= 1e-9 * std::sqrt(squared)) {
         if (ahead > 0.0) return contour; // straight on
-        return refuse_statement(execution, "no arc goes on in the direction of the motion before "
-                                           "it and ends there");
+        return refuse_statement(
+            execution, "no arc that continues the previous move tangentially ends at this point");
     }
     const double radius = squared / (2.0 * aside); // positive to the left
     contour.turn = radius > 0.0 ? 1 : -1;
@@ -249,7 +250,7 @@ core::Result<void> go_along(Execution& execution, const PathElement& contour) {
     }
     if (rapid)
         execution.warn(execution.block.command.span,
-                       "FMAX on an arc is looked at as a motion with the feed F");
+                       "FMAX on an arc is checked as a move at feed rate F");
     FEELER_TRY(const double feed, klartext_feed(execution));
     if (contour.turn == 0) {
         execution.feed(contour.end, feed);
@@ -270,9 +271,9 @@ core::Result<void> set_pole(Execution& execution) {
     const Statement& statement = execution.statement;
     if (const Word* word = statement.word(axis_letters[axes.normal]))
         return refuse_statement(
-            execution, fmt::format("{}: arcs out of the working plane are not supported yet: write "
-                                   "short lines",
-                                   written(*word)));
+            execution,
+            fmt::format("{}: arcs outside the working plane are not supported yet: use short lines",
+                        written(*word)));
     const Position base = base_of(execution);
     std::array<std::optional<double>, 2> pole = execution.state.klartext->pole;
     const size_t plane_axes[] = {axes.first, axes.second};
@@ -356,12 +357,13 @@ core::Result<double> size_of_corner(Execution& execution, const Block& block) {
             value = found.value_or(0.0);
         }
         if (value < 0.0)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{:.12g}: the size of a corner is not negative", value),
-                              word.span);
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{:.12g}: the size of a corner must not be negative", value),
+                word.span);
         return to_mm(value, execution.modal().unit);
     }
-    return core::fail(ErrorCode::missing_value, "RND needs R and a radius, CHF a length",
+    return core::fail(ErrorCode::missing_value, "RND needs R with a radius, CHF a length",
                       block.command.span);
 }
 
@@ -414,12 +416,13 @@ core::Error refusal(const Block& corner, std::string_view why) {
 std::string_view fault_of(const CornerCut& cut, CornerKind kind) {
     switch (cut.fit) {
     case CornerFit::no_length:
-        return "the motion before or behind it has no length";
+        return "the move before or after it has no length";
     case CornerFit::none:
-        return kind == CornerKind::rounding ? "there is no such rounding between the two motions"
-                                            : "a chamfer lies between two straight lines";
+        return kind == CornerKind::rounding
+                   ? "no rounding of this size fits between the two moves"
+                   : "a chamfer is only possible between two straight lines";
     case CornerFit::too_large:
-        return "it is too large for the motions before and behind it";
+        return "it is too large for the moves before and after it";
     default:
         return {};
     }
@@ -430,8 +433,8 @@ core::Result<Position> lay_corner(Execution& execution, const Block& block, cons
                                   const CornerSide& first, double corner_size) {
     FEELER_TRY(const auto second, motion_ahead(execution, end, first));
     if (!second)
-        return tl::unexpected(refusal(block, "a motion with feed in the plane belongs behind it, "
-                                             "at the same height"));
+        return tl::unexpected(
+            refusal(block, "it must be followed by a feed move in the plane at the same height"));
     const CornerKind kind =
         block.command.kind == CommandKind::rounding ? CornerKind::rounding : CornerKind::chamfer;
     CornerCut cut = cut_corner(first, *second, kind, corner_size);
@@ -468,9 +471,10 @@ core::Result<Position> end_before_corner(Execution& execution, const Position& e
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const Position& start = execution.modal().position;
     if (!is_known(start, axes) || !is_known(end, axes))
-        return tl::unexpected(refusal(*block, "where the motion before it begins is not known"));
+        return tl::unexpected(
+            refusal(*block, "the start position of the move before it is unknown"));
     if (start[axes.normal] != end[axes.normal])
-        return tl::unexpected(refusal(*block, "the motion before it leaves its height"));
+        return tl::unexpected(refusal(*block, "the move before it changes height"));
     CornerSide before{.start = flat(start, axes), .end = flat(end, axes)};
     if (turn != 0) before.arc = FlatArc{{centre[0], centre[1]}, turn};
     return lay_corner(execution, *block, end, before, corner_size);
@@ -483,7 +487,8 @@ core::Result<void> make_corner(Execution& execution) {
     const Corner corner = *before.corner;
     std::optional<double> feed = execution.modal().feed;
     if (const Word* word = execution.statement.word('F')) feed = length_of(execution, *word);
-    if (!feed || *feed <= 0.0) return refuse_statement(execution, "no feed F came before it");
+    if (!feed || *feed <= 0.0)
+        return refuse_statement(execution, "no feed rate: no F has been programmed yet");
     if (corner.turn == 0) {
         execution.feed(corner.end, *feed);
     } else {

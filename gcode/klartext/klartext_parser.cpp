@@ -59,7 +59,7 @@ core::Result<void> read_begin(KlartextReader& reader) {
     const std::string_view unit =
         blank == std::string_view::npos ? std::string_view() : rest.substr(blank + 1);
     if (unit != "MM" && unit != "INCH" && unit != "mm" && unit != "inch")
-        return reader.refuse("'BEGIN PGM' needs the name of the program and MM or INCH behind it",
+        return reader.refuse("'BEGIN PGM' must be followed by the program name and MM or INCH",
                              reader.begin);
     reader.add_word('G', unit == "MM" || unit == "mm" ? 21.0 : 20.0, reader.begin);
     reader.block.command.kind = CommandKind::modes;
@@ -112,7 +112,7 @@ core::Result<void> read_keyword(KlartextReader& reader, const std::string& first
     const bool known =
         std::find(std::begin(refused), std::end(refused), first) != std::end(refused);
     return reader.refuse(known ? fmt::format("'{}' is not supported yet", first)
-                               : fmt::format("'{}' begins no statement of Klartext", first),
+                               : fmt::format("'{}' does not start a Klartext statement", first),
                          reader.begin, known ? ErrorCode::unsupported : ErrorCode::syntax);
 }
 
@@ -151,9 +151,10 @@ core::Result<void> read_block(KlartextReader& reader) {
     reader.begin = lexer.at;
     if (!is_letter(reader.next()) || (behind > digits && lexer.at == behind && c != '/')) {
         if (!is_letter(reader.next())) return reader.stray();
-        return reader.refuse(fmt::format("'{}' is no block number: a blank belongs behind it",
-                                         lexer.line.substr(digits, behind + 1 - digits)),
-                             digits);
+        return reader.refuse(
+            fmt::format("'{}' is not a block number: a block number must be followed by a space",
+                        lexer.line.substr(digits, behind + 1 - digits)),
+            digits);
     }
     if (auto done = read_statement(reader); !done) return done;
     return reader.next() == '\0' ? core::Result<void>{} : core::Result<void>(reader.stray());
@@ -255,7 +256,7 @@ core::Result<void> read_label_name(KlartextReader& reader) {
     }
     const size_t end = c == '"' ? lexer.line.find('"', from + 1) : std::string_view::npos;
     if (end == std::string_view::npos)
-        return reader.refuse("'LBL' needs a number behind it, or a name in quotation marks",
+        return reader.refuse("'LBL' must be followed by a number or a name in quotation marks",
                              reader.begin);
     lexer.at = end + 1;
     set_label(reader, lexer.written_from(from));
@@ -270,7 +271,8 @@ core::Result<int> read_whole(KlartextReader& reader, std::string_view behind) {
            && is_digit(reader.lexer.line[reader.lexer.at]) && value < 100000)
         value = value * 10 + (reader.lexer.line[reader.lexer.at++] - '0');
     if (reader.lexer.at == from)
-        return reader.refuse(fmt::format("'{}' needs a number behind it", behind), reader.begin);
+        return reader.refuse(fmt::format("'{}' must be followed by a number", behind),
+                             reader.begin);
     return value;
 }
 
@@ -304,7 +306,7 @@ core::Result<void> read_program_name(KlartextReader& reader) {
     if (path.size() > 1 && path.front() == '"' && path.back() == '"')
         path = path.substr(1, path.size() - 2);
     if (path.empty())
-        return reader.refuse("'CALL PGM' needs the name of a program behind it", reader.begin);
+        return reader.refuse("'CALL PGM' must be followed by the name of a program", reader.begin);
     reader.lexer.at += std::min(rest.find_first_of(";~\r\n"), rest.size());
     set_label(reader, std::string(path));
     return {};
@@ -323,7 +325,7 @@ core::Result<void> read_call(KlartextReader& reader) {
         if (auto named = read_program_name(reader); !named) return named;
         flow.kind = FlowKind::call_program;
     } else {
-        return reader.refuse("behind 'CALL' belongs LBL or PGM", reader.begin);
+        return reader.refuse("'CALL' must be followed by LBL or PGM", reader.begin);
     }
     flow.span = reader.span_from(reader.begin);
     return {};
@@ -359,7 +361,7 @@ core::Result<void> read_tool_call_word(KlartextReader& reader) {
 core::Result<void> read_tool_number(KlartextReader& reader) {
     const char c = reader.next();
     if (c == '"')
-        return reader.refuse("'TOOL' by name is not supported yet: give the tool's number",
+        return reader.refuse("'TOOL' by name is not supported yet: give the tool number",
                              reader.begin, ErrorCode::unsupported);
     if (!is_digit(c) && upper(c) != 'Q') return {};
     return reader.word('T', reader.lexer.at);
@@ -371,7 +373,7 @@ core::Result<void> read_tool(KlartextReader& reader) {
     Command& command = reader.block.command;
     const bool calls = reader.accept("CALL");
     if (!calls && !reader.accept("DEF"))
-        return reader.refuse("behind 'TOOL' belongs CALL or DEF", reader.begin);
+        return reader.refuse("'TOOL' must be followed by CALL or DEF", reader.begin);
     command.kind = calls ? CommandKind::tool_call : CommandKind::tool_definition;
     if (auto done = read_tool_number(reader); !done) return done;
     while (const char c = reader.next()) {
@@ -406,10 +408,10 @@ core::Result<void> read_cycle_parameters(KlartextReader& reader) {
         }
         FEELER_TRY(const int target, read_target(reader));
         if (auto letters = reader.letters(); letters == "FAUTO" || letters == "FMAX")
-            return reader.refuse(fmt::format("'{}' as a cycle's feed is not supported yet: give a "
-                                             "number",
-                                             letters),
-                                 lexer.at, ErrorCode::unsupported);
+            return reader.refuse(
+                fmt::format("'{}' as the feed of a cycle is not supported yet: give a number",
+                            letters),
+                lexer.at, ErrorCode::unsupported);
         FEELER_TRY(const Expression value, reader.operand());
         if (auto set = set_result(reader, target, value); !set) return set;
     }
@@ -479,7 +481,7 @@ core::Result<void> read_cycle(KlartextReader& reader) {
     Command& command = reader.block.command;
     if (reader.accept("CALL")) return read_cycle_call(reader);
     if (!reader.accept("DEF"))
-        return reader.refuse("behind 'CYCL' belongs DEF or CALL", reader.begin);
+        return reader.refuse("'CYCL' must be followed by DEF or CALL", reader.begin);
     FEELER_TRY(command.number, read_whole(reader, "CYCL DEF"));
     if (std::find(std::begin(cycles), std::end(cycles), command.number) == std::end(cycles))
         return reader.refuse(

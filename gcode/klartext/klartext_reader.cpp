@@ -20,8 +20,8 @@ core::Result<void> read_feed(KlartextReader& reader) {
     const size_t from = lexer.at;
     const std::string letters = reader.letters();
     if (letters == "FU" || letters == "FZ")
-        return reader.refuse(fmt::format("'{}': feeds per turn and per tooth are not supported "
-                                         "yet: write the feed in mm/min",
+        return reader.refuse(fmt::format("'{}': feed per revolution and per tooth is not supported "
+                                         "yet: program the feed in mm/min",
                                          letters),
                              from, ErrorCode::unsupported);
     lexer.at = from + 1;
@@ -55,8 +55,8 @@ core::Result<void> read_radius(KlartextReader& reader) {
         return reader.word('R', from);
     if (!lexer.is_at_number()) return {};
     if (lexer.accept('0')) return {};
-    return reader.refuse("'R' takes 0 here: R0 is without radius compensation; R+ and R- are not "
-                         "supported yet",
+    return reader.refuse("'R' must be followed by 0 here: R0 means no radius compensation; R+ and "
+                         "R- are not supported yet",
                          from, ErrorCode::unsupported);
 }
 
@@ -68,7 +68,7 @@ core::Result<void> read_turn(KlartextReader& reader) {
     else if (reader.lexer.accept('-'))
         reader.block.command.turn = -1;
     else
-        return reader.refuse("'DR' needs a sign: DR+ is counter-clockwise, DR- clockwise", from);
+        return reader.refuse("'DR' needs a sign: DR+ is counterclockwise, DR- clockwise", from);
     return {};
 }
 
@@ -141,7 +141,8 @@ core::Result<void> KlartextReader::word(char letter, size_t from, Addressing add
     const char c = upper(next());
     if (!lexer.is_at_number() && c != 'Q' && c != '(') {
         const std::string name(lexer.line.substr(from, std::max<size_t>(lexer.at - from, 1)));
-        return refuse(fmt::format("'{}' needs a number or a Q parameter behind it", name), from);
+        return refuse(fmt::format("'{}' must be followed by a number or a Q parameter", name),
+                      from);
     }
     FEELER_TRY(entry.expression, parse_value(lexer, dialect.expressions, block.pool, plain));
     entry.value = plain.value;
@@ -150,7 +151,7 @@ core::Result<void> KlartextReader::word(char letter, size_t from, Addressing add
     const auto same = [&](const Word& other) { return other.letter == letter; };
     const bool repeatable = letter == 'M' || letter == 'G';
     if (!repeatable && std::any_of(block.words.begin(), block.words.end(), same))
-        return refuse(fmt::format("'{}' stands twice in this block", lexer.written_from(from)),
+        return refuse(fmt::format("'{}' appears twice in this block", lexer.written_from(from)),
                       from);
     block.words.push_back(entry);
     return {};
@@ -182,7 +183,7 @@ tl::unexpected<core::Error> KlartextReader::stray() {
         return refuse(fmt::format("'{}' has no letter before it", lexer.written_from(from)), from);
     }
     if (word.empty()) return lexer.unexpected_character();
-    return refuse(fmt::format("'{}' has no meaning in this block", word), from);
+    return refuse(fmt::format("'{}' is not allowed in this block", word), from);
 }
 
 core::Result<void> read_m_word(KlartextReader& reader) {
@@ -249,14 +250,13 @@ core::Result<void> set_result(KlartextReader& reader, int target, Expression val
 
 core::Result<int> read_target(KlartextReader& reader) {
     if (upper(reader.next()) != 'Q')
-        return reader.refuse("this function needs the Q parameter that takes its result",
-                             reader.begin);
+        return reader.refuse("this function needs a Q parameter for its result", reader.begin);
     FEELER_TRY(const int target, parse_q_parameter(reader.lexer));
     if (reader.next() == '=') {
         ++reader.lexer.at;
         return target;
     }
-    return reader.refuse("a '=' is missing behind the Q parameter", reader.begin);
+    return reader.refuse("the Q parameter must be followed by '='", reader.begin);
 }
 
 namespace {
@@ -284,13 +284,14 @@ core::Result<void> read_arithmetic(KlartextReader& reader, const ArithmeticFunct
     reader.next();
     if (!function.name.empty() && !reader.accept_prefix(function.name))
         return reader.refuse(
-            fmt::format("'FN {}' computes with {}", function.number, function.name), reader.begin);
+            fmt::format("'FN {}' must be written with {}", function.number, function.name),
+            reader.begin);
     const auto first = static_cast<uint32_t>(reader.block.pool.instructions.size());
     if (auto left = reader.operand(); !left) return tl::unexpected(std::move(left).error());
     if (!function.sign.empty()) {
         reader.next();
         if (!reader.lexer.accept_word(function.sign))
-            return reader.refuse(fmt::format("'FN {}' needs a {} between its two values",
+            return reader.refuse(fmt::format("'FN {}' needs {} between its two values",
                                              function.number, function.sign),
                                  reader.begin);
         if (auto right = reader.operand(); !right) return tl::unexpected(std::move(right).error());
@@ -316,9 +317,9 @@ constexpr Comparison comparisons[] = {{9, "EQU", Operation::equal},
 /// `IF +Q1 EQU +Q2 GOTO LBL 5`
 core::Result<void> read_jump(KlartextReader& reader, const Comparison& comparison) {
     const auto wrong = [&] {
-        return reader.refuse(
-            fmt::format("'FN {}' reads IF a {} b GOTO LBL n", comparison.number, comparison.name),
-            reader.begin);
+        return reader.refuse(fmt::format("'FN {}' must be written as IF a {} b GOTO LBL n",
+                                         comparison.number, comparison.name),
+                             reader.begin);
     };
     if (!reader.accept("IF")) return wrong();
     const auto first = static_cast<uint32_t>(reader.block.pool.instructions.size());

@@ -23,38 +23,40 @@ constexpr DialectSet mills = linuxcnc | fanuc;
 constexpr DialectSet every = mills | grbl;
 
 constexpr std::string_view no_jump =
-    "jumps are not supported yet: write the blocks in the order they are run";
+    "jumps are not supported yet: program the blocks in the order in which they run";
 constexpr std::string_view no_other_change =
-    "this way to change a tool is not supported yet: write M6";
+    "this form of tool change is not supported yet: use M6";
 constexpr std::string_view no_pallet =
-    "pallets are not supported yet: check the program of each pallet on its own";
+    "pallets are not supported yet: check the program of each pallet separately";
 constexpr std::string_view no_pocket =
-    "the way the control takes inside the pocket is not published, so it cannot be checked: write "
-    "the passes out with G1, G2 and G3";
+    "the path of the control inside the pocket is not published and cannot be checked: program the "
+    "passes with G1, G2 and G3";
 constexpr std::string_view no_engraving =
-    "the strokes of the control's letters are not published, so they cannot be checked: write the "
-    "letters out with G1, G2 and G3";
+    "the strokes of the engraving font are not published and cannot be checked: program the "
+    "letters with G1, G2 and G3";
 
 constexpr std::string_view no_slanted_axis = "grinding with a slanted axis is not supported";
-constexpr std::string_view no_changing_pitch = "threads whose pitch changes are not supported yet";
+constexpr std::string_view no_changing_pitch = "threads with variable pitch are not supported yet";
 constexpr std::string_view no_axis_offset =
     "the programmable offset of single axes is not supported yet: use ATRANS";
 constexpr std::string_view no_smooth_approach =
-    "smooth approach and retract are not supported yet: write the moves with G1 and G2 or G3";
+    "smooth approach and retract are not supported yet: program the moves with G1 and G2 or G3";
 constexpr std::string_view no_point_between =
-    "a fixed point by way of another is not supported yet: write a move and G75";
+    "a fixed-point approach through an intermediate point is not supported yet: program a move, "
+    "then G75";
 constexpr std::string_view no_path_time =
-    "a feed by the time of travel is not supported yet: use G94";
+    "a feed given as travel time is not supported yet: use G94";
 
-constexpr std::string_view no_five_axes = "motion of rotary axes is not supported yet";
+constexpr std::string_view no_five_axes = "moves of rotary axes are not supported yet";
 
 constexpr std::string_view no_machine_point =
-    "the machine builder's own datum is not known here: use M91";
+    "the datum of the machine builder is not known here: use M91";
 
-constexpr std::string_view no_turn_feed = "feeds per turn are not supported yet: write F in mm/min";
+constexpr std::string_view no_turn_feed =
+    "feed per revolution is not supported yet: program F in mm/min";
 
 constexpr std::string_view no_retreat =
-    "a retreat along the tool axis is not supported yet: write it as L with M91";
+    "a retract along the tool axis is not supported yet: program it as L with M91";
 
 // Sorted by letter and number. The groups are those of NISTIR 6556, table 4, where it has them.
 constexpr Code codes[] = {

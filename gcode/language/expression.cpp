@@ -53,25 +53,28 @@ std::string_view objection_to(Operation operation, double a, double b) {
         return a < 0.0 ? "the square root of a negative number" : "";
     case Operation::logarithm:
     case Operation::decimal_logarithm:
-        return a <= 0.0 ? "the logarithm of a number that is not above zero" : "";
+        return a <= 0.0 ? "the logarithm of a number that is not positive" : "";
     case Operation::arc_cosine:
     case Operation::arc_sine:
-        return std::abs(a) > 1.0 ? "the arc sine or cosine of a number beyond 1" : "";
+        return std::abs(a) > 1.0 ? "the arc sine or cosine of a number outside -1 to 1" : "";
     case Operation::from_decimal_code:
     case Operation::to_decimal_code:
-        return a < 0.0 || a > largest_whole ? "BIN and BCD take whole numbers from 0" : "";
+        return a < 0.0 || a > largest_whole ? "BIN or BCD of a number that is negative or too large"
+                                            : "";
     case Operation::divide:
-        return b == 0.0 ? "a division by zero: what stands behind the '/' is 0" : "";
+        return b == 0.0 ? "a division by zero: the value after '/' is 0" : "";
     case Operation::modulo:
     case Operation::divide_whole:
         return b == 0.0 ? "a division by zero" : "";
     case Operation::power:
-        return a < 0.0 && b != std::floor(b) ? "a broken power of a negative number" : "";
+        return a < 0.0 && b != std::floor(b)
+                   ? "a negative number raised to a power that is not whole"
+                   : "";
     case Operation::bits_and:
     case Operation::bits_or:
     case Operation::bits_xor:
         return std::abs(a) > largest_whole || std::abs(b) > largest_whole
-                   ? "bits of a number that is too large"
+                   ? "a bit operation on a number that is too large"
                    : "";
     default:
         return "";
@@ -235,7 +238,7 @@ public:
             return core::fail(ErrorCode::invalid_value, fmt::format("this is {}", why), where);
         double result = pair ? of_two(operation, a, b, arithmetic_.equality) : of_one(operation, a);
         if (!std::isfinite(result))
-            return core::fail(ErrorCode::invalid_value, "this is beyond all numbers", where);
+            return core::fail(ErrorCode::invalid_value, "the result is too large", where);
         if (operation == Operation::round && arithmetic_.steps_in_one != 1.0)
             result = std::round(a * arithmetic_.steps_in_one) / arithmetic_.steps_in_one;
         if (arithmetic_.angles_have_no_sign && is_angle_of_turn(operation) && result < 0.0)
@@ -251,7 +254,7 @@ private:
     core::Result<void> push(Value value, core::SourceSpan where) {
         if (depth_ == deepest)
             return core::fail(ErrorCode::invalid_value,
-                              "this expression is nested too deeply: break it into steps", where);
+                              "this expression is nested too deeply: split it into steps", where);
         values_[depth_++] = value;
         return {};
     }

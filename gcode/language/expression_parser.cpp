@@ -57,7 +57,7 @@ core::Result<void> ExpressionReader::brackets() {
     lexer_.peek();
     if (++depth_ > deepest)
         return core::fail(ErrorCode::syntax,
-                          "brackets are nested too deeply here: break the expression into steps",
+                          "brackets are nested too deeply here: split the expression into steps",
                           lexer_.span(lexer_.at, lexer_.at + 1));
     if (auto done = expect(open()); !done) return done;
     if (auto done = expression(0); !done) return done;
@@ -68,8 +68,10 @@ core::Result<void> ExpressionReader::brackets() {
 core::Result<void> ExpressionReader::parameter() {
     const size_t begin = lexer_.at++;
     if (++depth_ > deepest)
-        return core::fail(ErrorCode::syntax, "parameters of parameters go too deep here",
-                          lexer_.span(begin, begin + 1));
+        return core::fail(
+            ErrorCode::syntax,
+            "parameters of parameters are nested too deeply here: split the expression into steps",
+            lexer_.span(begin, begin + 1));
     if (lexer_.peek() == '<') {
         FEELER_TRY(std::string name, parse_name(lexer_));
         pool_.instructions.push_back({named, static_cast<uint32_t>(begin + 1), 0.0,
@@ -101,7 +103,7 @@ core::Result<void> ExpressionReader::arc_tangent(size_t column) {
             emit(Operation::arc_tangent_of_one, column);
             return {};
         } else {
-            return core::fail(ErrorCode::syntax, "ATAN takes two values here, as ATAN[y]/[x]",
+            return core::fail(ErrorCode::syntax, "ATAN needs two values here: ATAN[y]/[x]",
                               lexer_.span(column, lexer_.at));
         }
     }
@@ -112,7 +114,7 @@ core::Result<void> ExpressionReader::arc_tangent(size_t column) {
 core::Result<void> ExpressionReader::exists(size_t column) {
     if (auto done = expect(open()); !done) return done;
     if (!lexer_.accept('#') || lexer_.peek() != '<')
-        return core::fail(ErrorCode::syntax, "EXISTS asks for a named parameter: EXISTS[#<name>]",
+        return core::fail(ErrorCode::syntax, "EXISTS needs a named parameter: EXISTS[#<name>]",
                           lexer_.span(column, lexer_.at));
     FEELER_TRY(std::string name, parse_name(lexer_));
     pool_.instructions.push_back({Operation::exists, static_cast<uint32_t>(column + 1), 0.0,
@@ -256,21 +258,22 @@ core::Result<int> parse_q_parameter(Lexer& lexer) {
     const char kind = lexer.at < lexer.line.size() ? upper(lexer.line[lexer.at]) : '\0';
     if (kind == 'R' || kind == 'L' || kind == 'S') ++lexer.at;
     if (kind == 'L' || kind == 'S')
-        return core::fail(
-            ErrorCode::unsupported,
-            fmt::format("'{}': {} are not supported yet: use Q0 to Q99", lexer.written_from(begin),
-                        kind == 'L' ? "the local QL parameters" : "the texts of QS parameters"),
-            lexer.span_from(begin));
-    if (lexer.at >= lexer.line.size() || !is_digit(lexer.line[lexer.at]))
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}' has no number behind it: Q parameters are Q0 to Q{}",
-                                      lexer.written_from(begin), highest),
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("'{}': {} are not supported yet: use Q0 to Q99",
+                                      lexer.written_from(begin),
+                                      kind == 'L' ? "local QL parameters" : "QS string parameters"),
                           lexer.span_from(begin));
+    if (lexer.at >= lexer.line.size() || !is_digit(lexer.line[lexer.at]))
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("'{}' must be followed by a number: Q parameters are Q0 to Q{}",
+                        lexer.written_from(begin), highest),
+            lexer.span_from(begin));
     FEELER_TRY(const Number number, lexer.number());
     const double last = kind == 'R' ? highest_kept : highest;
     if (number.value > last || number.value != std::floor(number.value))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("'{}': the numbers of Q parameters go to {}",
+                          fmt::format("'{}': the highest number of these Q parameters is {}",
                                       lexer.written_from(begin), last),
                           lexer.span_from(begin));
     const int index = static_cast<int>(number.value);
@@ -283,9 +286,10 @@ core::Result<std::string> parse_name(Lexer& lexer) {
     std::string name;
     while (lexer.peek() != '>') {
         if (lexer.peek() == '\0')
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("the name '{}' has no '>'", lexer.written_from(begin)),
-                              lexer.span_from(begin));
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("the name '{}' has no closing '>'", lexer.written_from(begin)),
+                lexer.span_from(begin));
         name.push_back(lower(lexer.line[lexer.at++]));
     }
     ++lexer.at;

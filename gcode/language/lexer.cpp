@@ -108,7 +108,7 @@ bool Lexer::is_at_number() {
 tl::unexpected<core::Error> Lexer::bad_exponent(size_t begin) const {
     return core::fail(
         ErrorCode::syntax,
-        fmt::format("the exponent of '{}' is no whole number up to 300", written_from(begin)),
+        fmt::format("the exponent of '{}' must be a whole number up to 300", written_from(begin)),
         span_from(begin));
 }
 
@@ -147,7 +147,7 @@ core::Result<Comment> Lexer::bracket_comment() {
         return Comment{line.substr(begin + 1, at - begin - 2), span_from(begin)};
     }
     return core::fail(ErrorCode::syntax,
-                      fmt::format("the comment '{}' is not closed: it needs a ')' on its line",
+                      fmt::format("the comment '{}' is not closed: it needs a ')' on the same line",
                                   written_from(begin)),
                       span_from(begin));
 }
@@ -161,18 +161,19 @@ Comment Lexer::line_comment() {
 tl::unexpected<core::Error> Lexer::unexpected_character() {
     const char c = peek();
     const core::SourceSpan where = span(at, at + 1);
-    if (c == '\0') return core::fail(ErrorCode::syntax, "the line ends too early", where);
+    if (c == '\0')
+        return core::fail(ErrorCode::syntax, "the line ends here, but more is expected", where);
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("the byte 0x{:02X} has no meaning outside of a comment",
+                          fmt::format("the byte 0x{:02X} is not allowed outside comments",
                                       static_cast<unsigned char>(c)),
                           where);
     if (c == '[')
         return core::fail(ErrorCode::syntax,
-                          "'[' has no meaning here: a value in brackets stands behind a letter, "
-                          "and comments in brackets (WinCNC) are written in ( and )",
+                          "'[' is not allowed here: a value in brackets must follow a letter, and "
+                          "comments in brackets (WinCNC) must be written in ( and )",
                           where);
-    return core::fail(ErrorCode::syntax, fmt::format("'{}' has no meaning here", c), where);
+    return core::fail(ErrorCode::syntax, fmt::format("'{}' is not allowed here", c), where);
 }
 
 } // namespace gcode

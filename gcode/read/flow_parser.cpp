@@ -100,12 +100,12 @@ private:
         if (auto done = label(); !done) {
             lexer_.at = begin_ + 1;
             return core::fail(ErrorCode::syntax,
-                              "'O' needs a number or a name such as o<loop>, then a keyword such "
-                              "as sub, call, if or while",
+                              "'O' must be followed by a number or a name such as o<loop>, then a "
+                              "keyword such as sub, call, if or while",
                               lexer_.span_from(begin_));
         }
         if (is_broken_)
-            return refuse(fmt::format("'{}': the number of an O word is whole",
+            return refuse(fmt::format("'{}': the number of an O word must be whole",
                                       lexer_.line.substr(begin_, lexer_.at - begin_)));
         const std::string letters = lexer_.letters();
         for (const FlowKeyword& keyword : o_keywords) {
@@ -118,10 +118,10 @@ private:
         }
         if (letters.empty() && lexer_.peek() != '#' && lexer_.peek() != '[')
             return finish(FlowKind::program_number);
-        return refuse(fmt::format("'{}' is no keyword of an O word: they are sub, endsub, call, "
-                                  "return, if, elseif, else, endif, while, endwhile, do, repeat, "
-                                  "endrepeat, break and continue",
-                                  letters));
+        return refuse(fmt::format(
+            "'{}' is not a keyword of an O word: these are sub, endsub, call, return, if, elseif, "
+            "else, endif, while, endwhile, do, repeat, endrepeat, break and continue",
+            letters));
     }
 
     core::Result<bool> o_arguments(FlowKind kind) {
@@ -134,13 +134,13 @@ private:
                            parse_bracketed(lexer_, dialect_.expressions, block_.pool));
                 flow().arguments.push_back(argument);
             }
-            if (flow().arguments.size() > 30) return refuse("a call takes at most 30 arguments");
+            if (flow().arguments.size() > 30) return refuse("a call may have at most 30 arguments");
         } else if (asks || (answers && lexer_.peek() == '[')) {
             if (auto done = condition(); !done) return tl::unexpected(std::move(done).error());
         }
         const char rest = lexer_.peek();
         if (rest != '\0' && rest != '(' && rest != ';')
-            return refuse("nothing but a comment may stand behind an O word's statement");
+            return refuse("only a comment may follow the statement of an O word");
         return finish(kind);
     }
 
@@ -148,7 +148,7 @@ private:
 
     core::Result<bool> go_to(FlowKind kind) {
         Number plain;
-        if (lexer_.peek() == '\0') return refuse("GOTO needs the number of a block");
+        if (lexer_.peek() == '\0') return refuse("GOTO must be followed by a block number");
         Expression target;
         FEELER_TRY(target, parse_value(lexer_, dialect_.expressions, block_.pool, plain));
         if (target)
@@ -162,21 +162,23 @@ private:
         if (auto done = condition(); !done) return tl::unexpected(std::move(done).error());
         if (lexer_.accept_word("GOTO")) return go_to(FlowKind::if_go_to);
         if (!lexer_.accept_word("THEN"))
-            return refuse("behind the condition of IF belongs GOTO or THEN");
+            return refuse("the condition of IF must be followed by GOTO or THEN");
         if (lexer_.accept_word("GOTO")) return go_to(FlowKind::if_go_to);
         return finish(FlowKind::if_then);
     }
 
     core::Result<bool> fanuc_while() {
         if (auto done = condition(); !done) return tl::unexpected(std::move(done).error());
-        if (!lexer_.accept_word("DO")) return refuse("behind the condition of WHILE belongs DO");
+        if (!lexer_.accept_word("DO"))
+            return refuse("the condition of WHILE must be followed by DO");
         return loop_number(FlowKind::while_do);
     }
 
     core::Result<bool> loop_number(FlowKind kind) {
         FEELER_TRY(const Number number, lexer_.number());
         if (number.value < 1.0 || number.value > 3.0 || number.value != std::floor(number.value))
-            return refuse("DO and END take 1, 2 or 3, the control gives an alarm here");
+            return refuse(
+                "DO and END must be followed by 1, 2 or 3; the control stops with an alarm");
         set_label(label_of(number.value));
         return finish(kind);
     }

@@ -38,11 +38,11 @@ core::Error missing_number(const Lexer& lexer, size_t begin) {
     while (end < lexer.line.size() && is_letter(lexer.line[end])) ++end;
     if (end - begin > 1)
         return {ErrorCode::unsupported, lexer.span(begin, end),
-                fmt::format("'{}' is no word of this control's language; a letter needs a number "
-                            "behind it",
+                fmt::format("'{}' is not a word of this control's language: a letter must be "
+                            "followed by a number",
                             lexer.line.substr(begin, end - begin))};
     return {ErrorCode::syntax, lexer.span(begin, begin + 1),
-            fmt::format("'{}' has no number behind it", lexer.line[begin])};
+            fmt::format("'{}' must be followed by a number", lexer.line[begin])};
 }
 
 bool calls_macro(double code) { return code == 65.0 || code == 66.0 || code == 66.1; }
@@ -72,8 +72,8 @@ private:
             && std::all_of(block_.words.begin(), block_.words.end(), numbers))
             return {};
         return core::fail(ErrorCode::syntax,
-                          "a jump or loop needs a block of its own: write the other words before "
-                          "or behind it",
+                          "a jump or loop must be in a block by itself: move the other words to "
+                          "the block before or after it",
                           block_.flow.span);
     }
 
@@ -117,7 +117,7 @@ private:
             return {};
         }
         if (!in_place || block_.block_delete)
-            return core::fail(ErrorCode::syntax, "'/' belongs at the start of the block",
+            return core::fail(ErrorCode::syntax, "'/' must be at the start of the block",
                               lexer_.span_from(begin));
         block_.block_delete = number;
         return {};
@@ -126,7 +126,7 @@ private:
     /// What follows a tape mark on its line is the name some controls put there.
     core::Result<void> tape_mark() {
         if (!block_.words.empty())
-            return core::fail(ErrorCode::syntax, "'%' belongs at the start of a line",
+            return core::fail(ErrorCode::syntax, "'%' must be at the start of the line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
         block_.tape_mark = true;
         return {};
@@ -154,8 +154,8 @@ private:
         }
         if (!lexer_.accept('='))
             return core::fail(ErrorCode::syntax,
-                              fmt::format("'{}' stands alone: a parameter is set with '=', or "
-                                          "gives the value of a word",
+                              fmt::format("'{}' alone has no effect: set the parameter with '=', "
+                                          "or use it as the value of a word",
                                           lexer_.written_from(begin)),
                               lexer_.span_from(begin));
         Number plain;
@@ -185,7 +185,7 @@ private:
         const size_t begin = lexer_.at++;
         const char letter = upper(lexer_.peek());
         if (letter != 'R' && letter != 'C' && letter != 'A')
-            return core::fail(ErrorCode::syntax, "behind a ',' belongs R, C or A",
+            return core::fail(ErrorCode::syntax, "',' must be followed by R, C or A",
                               lexer_.span_from(begin));
         return word(letter, static_cast<char>(lower(letter)), begin);
     }
@@ -197,13 +197,13 @@ private:
         if (flows && has_flow)
             return core::fail(
                 ErrorCode::syntax,
-                fmt::format("'{}' needs a block of its own", lexer_.written_from(begin)),
+                fmt::format("'{}' must be in a block by itself", lexer_.written_from(begin)),
                 lexer_.span_from(begin));
         if (flows) return {};
         if (word_letters.find(letter) == std::string_view::npos)
             return core::fail(ErrorCode::syntax,
-                              fmt::format("'{}' is not a word of this language; an exponent such "
-                                          "as 1E3 is written out",
+                              fmt::format("'{}' is not a word of this language; write an exponent "
+                                          "such as 1E3 as a plain number",
                                           lexer_.line.substr(lexer_.at, 1)),
                               lexer_.span(lexer_.at, lexer_.at + 1));
         return word(letter, letter);
@@ -241,7 +241,7 @@ private:
         if (!repeatable && std::any_of(first, block_.words.end(), same))
             return core::fail(
                 ErrorCode::syntax,
-                fmt::format("'{}': a block takes one {} word, this is the second",
+                fmt::format("'{}': a block may have only one {} word; this is the second",
                             lexer_.line.substr(entry.span.column - 1, entry.span.length),
                             entry.letter),
                 entry.span);
@@ -263,7 +263,7 @@ private:
         if (c == '@' || c == '^' || c == ',')
             return core::fail(
                 ErrorCode::unsupported,
-                fmt::format("'{}' has no meaning in the dialect {}", c, dialect_.name),
+                fmt::format("'{}' is not allowed in the dialect {}", c, dialect_.name),
                 lexer_.span(lexer_.at, lexer_.at + 1));
         return lexer_.unexpected_character();
     }

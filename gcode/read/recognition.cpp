@@ -146,10 +146,10 @@ void observe(const Block& block, Habits& habits) {
 Recognition clue_of_foreign_codes(const Habits& habits) {
     const bool fanuc = habits.unknown_count[1] < habits.unknown_count[0];
     const size_t index = fanuc ? 1 : 0;
-    return found(candidates[index], habits.first_unknown[index],
-                 fmt::format("has a code of a control that is not read here, and {} has most of "
-                             "the others",
-                             dialect(candidates[index]).name));
+    return found(
+        candidates[index], habits.first_unknown[index],
+        fmt::format("has a code of a control that is not supported, and {} has most of the others",
+                    dialect(candidates[index]).name));
 }
 
 /// A G code that only some dialects have rules out the others.
@@ -174,7 +174,7 @@ Recognition judge(const Habits& habits) {
         return found(DialectId::fanuc, habits.first_length_offset, "has G43 with H");
     const bool grbl_knows_all = habits.first_unknown.back() == 0;
     if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark || !grbl_knows_all)
-        return {DialectId::linuxcnc, "nothing in it is of one control alone"};
+        return {DialectId::linuxcnc, "nothing in it is specific to one control"};
     return {DialectId::grbl, "it has no tools, no expressions, no % marks and only codes of Grbl"};
 }
 

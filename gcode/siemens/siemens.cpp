@@ -41,16 +41,16 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
     const Word* word = seconds ? seconds : turns;
     if (execution.statement.has_axis_word())
         return core::fail(ErrorCode::syntax,
-                          "G4 needs a block of its own: the axis words of this one would not be "
-                          "gone to",
+                          "G4 must be in a block by itself: the axes in this block would not move",
                           entry->word->span);
     if (!word)
         return core::fail(ErrorCode::missing_value,
-                          "G4 has no time: it needs F in seconds, or S in turns of the spindle",
+                          "G4 has no time: it needs F in seconds, or S in spindle revolutions",
                           entry->word->span);
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a time is not negative", written(*word)), word->span);
+                          fmt::format("{}: a time must not be negative", written(*word)),
+                          word->span);
     execution.column = entry->word->span.column;
     if (seconds) {
         execution.emit(Dwell{word->value});
@@ -59,7 +59,7 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
     } else {
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("{}: turns of a spindle that has no speed take no time", written(*word)),
+            fmt::format("{}: a dwell in spindle revolutions needs a spindle speed", written(*word)),
             word->span);
     }
     return {};
@@ -76,9 +76,8 @@ core::Result<void> note_keywords(Execution& execution) {
             break;
         case transformation:
             execution.state.siemens.write().follows_tool = true;
-            say_so("taken as it is written: rotary axes are followed in the program's "
-                   "coordinates, and what the machine does to keep the tip in place is not known "
-                   "here");
+            say_so("not modelled: rotary axes are followed in program coordinates, without the "
+                   "machine's moves that keep the tip in place");
             break;
         case transformation_off:
             if (execution.state.siemens->follows_tool)
@@ -103,7 +102,7 @@ core::Result<void> note_limits(Execution& execution) {
     if (!entry || (entry->code->tenths != tenths(25) && entry->code->tenths != tenths(26)))
         return {};
     execution.warn(entry->word->span,
-                   fmt::format("{}: limits that a program sets are not held against it here",
+                   fmt::format("{}: working-area limits set by the program are not checked",
                                written(*entry->word)),
                    Severity::note);
     return {};
@@ -196,8 +195,8 @@ core::Result<void> switch_language(Execution& execution) {
         if (entry.code->letter != 'G' || entry.code->tenths != tenths(291)) continue;
         if (execution.modal().offsets.has_frame)
             return core::fail(ErrorCode::unsupported,
-                              "G291 inside of TRANS, ROT, SCALE or MIRROR is not supported yet: "
-                              "write TRANS alone before it",
+                              "G291 while TRANS, ROT, SCALE or MIRROR is active is not supported "
+                              "yet: cancel them with TRANS first",
                               entry.word->span);
         execution.state.siemens.write().is_iso = true;
     }
@@ -254,8 +253,8 @@ core::Result<void> leave_iso(Execution& execution) {
         if (entry.code->letter != 'G' || entry.code->tenths != tenths(290)) continue;
         if (!execution.state.siemens->is_iso)
             return core::fail(ErrorCode::unsupported,
-                              "G290: the program was said to be of the ISO language as a whole; "
-                              "name the dialect siemens, in which G291 begins that language",
+                              "G290: with the dialect siemens-iso the whole program is in the ISO "
+                              "language; select the dialect siemens, in which G291 switches to ISO",
                               entry.word->span);
         execution.state.siemens.write().is_iso = false;
     }
@@ -304,8 +303,8 @@ int number_of_name(Execution& execution, const SiemensArgument& name) {
     names.emplace_back(name.text);
     number = static_cast<int>(names.size());
     execution.warn(name.span,
-                   fmt::format("T=\"{}\" is tool {} here: names are counted as they come, and the "
-                               "set-up has numbers",
+                   fmt::format("T=\"{}\" is tool {} here: tool names are numbered in order of "
+                               "appearance, as the set-up has numbers",
                                name.text, number),
                    Severity::note);
     return number;
@@ -323,13 +322,14 @@ void use_length(Execution& execution, core::SourceSpan where) {
         number = OffsetNumber(tool);
         const auto length = length_under(*execution.state.tables, tool);
         if (!length)
-            execution.warn(where, fmt::format("D{}: nothing is known about the length of tool {}, "
-                                              "taken as 0",
-                                              edge, tool));
+            execution.warn(where,
+                           fmt::format("D{}: the length of tool {} is unknown and assumed to be 0",
+                                       edge, tool));
         else if (edge != 1)
-            execution.warn(where, fmt::format("D{}: of tool {} one edge is known here, whose "
-                                              "length is taken",
-                                              edge, tool));
+            execution.warn(
+                where, fmt::format(
+                           "D{}: only one cutting edge of tool {} is known, and its length is used",
+                           edge, tool));
         offsets.tool[axes_of(modal.plane).normal] = length.value_or(0.0);
     }
     if (offsets == modal.offsets && modal.length_number == number) return;
@@ -375,7 +375,7 @@ core::Result<void> use_siemens_tool(Execution& execution) {
     execution.column = entry->word->span.column;
     if (!execution.modal().selected_tool)
         return core::fail(ErrorCode::missing_value,
-                          "M6 has no tool to change to: no T word came before it",
+                          "M6 has no tool to change to: no T word has been programmed yet",
                           entry->word->span);
     if (!execution.state.siemens->changes_with_m6)
         execution.state.siemens.write().changes_with_m6 = true;
@@ -396,8 +396,8 @@ core::Result<void> use_siemens_edge(Execution& execution) {
                         && modal.selected_tool && !modal.tool;
     if (with_t) {
         execution.warn(word->span,
-                       "no M6 came before this D: the tool is taken as changed by T alone, as the "
-                       "control's machine data may say",
+                       "no M6 before this D: the tool is assumed to be changed by T alone, which "
+                       "depends on the machine data of the control",
                        Severity::note);
         execution.state.siemens.write().changes_with_t = true;
         change(execution, word->span, false);
@@ -419,8 +419,8 @@ core::Result<void> set_siemens_radius(Execution& execution) {
     if (!entry || execution.modal().compensation == Side::none) return {};
     if (execution.state.siemens->edge == 0)
         execution.warn(entry->word->span,
-                       fmt::format("{}: D0 is on, so the control has no radius to compensate; that "
-                                   "of the tool is taken",
+                       fmt::format("{}: D0 is active, so the control has no radius to compensate; "
+                                   "the tool radius is used",
                                    written(*entry->word)));
     const core::Mat3& linear = execution.state.siemens->frame.linear;
     const auto first = static_cast<int>(axes_of(execution.modal().plane).first);

@@ -63,10 +63,10 @@ core::Result<double> pitch_of(const SiemensKeywordUse& use, const Values& values
     if (size == 0.0) return 0.0;
     for (const SiemensThread& thread : threads)
         if (std::abs(size) == thread.size) return std::copysign(thread.pitch, size);
-    return refuse_use(use,
-                      fmt::format("M{:.12g} is no metric thread from M3 to M48: give the pitch as "
-                                  "PIT",
-                                  std::abs(size)));
+    return refuse_use(
+        use,
+        fmt::format("M{:.12g} is not a metric coarse thread from M3 to M48: give the pitch as PIT",
+                    std::abs(size)));
 }
 
 /// Index of the first parameter that the older controls do not have: GMODE, DMODE and AMODE.
@@ -92,18 +92,18 @@ core::Result<void> check_modes(const Execution& execution, const SiemensKeywordU
     const size_t first = first_mode_of(number);
     const int by_shank = number == 81 ? values.digit(first, 0) : values.digit(first, 1);
     if (by_shank != 0)
-        return refuse_use(use,
-                          fmt::format("its value {} asks for a depth by the diameter or by the "
-                                      "shank of the drill, which is not supported yet: give the "
-                                      "depth of the tip",
-                                      first + 1),
-                          ErrorCode::unsupported);
+        return refuse_use(
+            use,
+            fmt::format("parameter {} sets the depth by the diameter or the shank of the drill, "
+                        "which is not supported yet: give the depth of the tip",
+                        first + 1),
+            ErrorCode::unsupported);
     const int plane = values.digit(first + 1, 0);
     const Plane planes[] = {Plane::xy, Plane::zx, Plane::yz};
     if (plane >= 1 && plane <= 3 && planes[plane - 1] != execution.modal().plane)
         return refuse_use(
-            use,
-            fmt::format("it is of the plane G{}, which is not the one that is on", 16 + plane));
+            use, fmt::format("the cycle is for the G{} plane, which is not the active plane",
+                             16 + plane));
     return {};
 }
 
@@ -181,21 +181,18 @@ core::Result<void> read_special(SiemensDrilling& cycle, const SiemensKeywordUse&
 
 core::Result<void> check_levels(const SiemensDrilling& cycle, const SiemensKeywordUse& use) {
     if (!(cycle.retract >= cycle.reference))
-        return refuse_use(use,
-                          fmt::format("the retract plane RTP at {:.4f} mm is below the reference "
-                                      "plane RFP at {:.4f} mm (the control's alarm 61101)",
-                                      cycle.retract, cycle.reference));
+        return refuse_use(use, fmt::format("the retract plane RTP at {:.4f} mm is below the "
+                                           "reference plane RFP at {:.4f} mm (alarm 61101)",
+                                           cycle.retract, cycle.reference));
     if (cycle.bottom > cycle.reference)
-        return refuse_use(use,
-                          fmt::format("the bottom of the hole at {:.4f} mm is above the reference "
-                                      "plane RFP at {:.4f} mm (the control's alarm 61101)",
-                                      cycle.bottom, cycle.reference));
+        return refuse_use(use, fmt::format("the bottom of the hole at {:.4f} mm is above the "
+                                           "reference plane RFP at {:.4f} mm (alarm 61101)",
+                                           cycle.bottom, cycle.reference));
     if (cycle.number == 83
         && (cycle.first_depth >= cycle.reference || cycle.first_depth < cycle.bottom - 1e-9))
-        return refuse_use(use,
-                          fmt::format("its first depth at {:.4f} mm is not between the reference "
-                                      "plane and the bottom (the control's alarm 61107)",
-                                      cycle.first_depth));
+        return refuse_use(use, fmt::format("the first drilling depth at {:.4f} mm is not between "
+                                           "the reference plane and the bottom (alarm 61107)",
+                                           cycle.first_depth));
     return {};
 }
 
@@ -206,10 +203,10 @@ core::Result<SiemensDrilling> drilling_of(Execution& execution, const SiemensKey
     constexpr std::string_view names[] = {"RTP", "RFP"};
     for (size_t i = 0; i < 2; ++i)
         if (!values.has(i))
-            return refuse_use(use, fmt::format("its value {}, {}, is missing", i + 1, names[i]),
+            return refuse_use(use, fmt::format("parameter {} ({}) is missing", i + 1, names[i]),
                               ErrorCode::missing_value);
     if (!values.has(3) && !values.has(4))
-        return refuse_use(use, "it has no depth: DP or DPR is missing", ErrorCode::missing_value);
+        return refuse_use(use, "the depth is missing: give DP or DPR", ErrorCode::missing_value);
     cycle.retract = values.length(0);
     cycle.reference = values.length(1);
     cycle.safety = std::abs(values.length(2));

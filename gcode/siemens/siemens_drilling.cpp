@@ -50,12 +50,13 @@ tl::unexpected<core::Error> refuse_cycle(const Execution& execution, int number,
 core::Result<double> modal_rate(const Execution& execution, int number) {
     const ModalState& modal = execution.modal();
     if (!modal.feed || *modal.feed <= 0.0)
-        return refuse_cycle(execution, number, "no feed rate F came before it");
+        return refuse_cycle(execution, number, "no feed rate: no F has been programmed yet");
     if (modal.feed_mode == FeedMode::inverse_time)
-        return refuse_cycle(execution, number, "a cycle has no time of its own, so not under G93");
+        return refuse_cycle(execution, number,
+                            "a cycle cannot run in inverse-time feed mode (G93)");
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (modal.speed <= 0.0)
-        return refuse_cycle(execution, number, "under G95 the spindle needs a speed S");
+        return refuse_cycle(execution, number, "with G95 the spindle needs a speed S");
     return *modal.feed * modal.speed;
 }
 
@@ -92,7 +93,7 @@ core::Result<void> drill_deep(SiemensHole& hole) {
                                          : std::min(total / 50.0, 7.0);
     const std::vector<double> depths = depths_of(cycle);
     if (depths.back() < total - 1e-6)
-        return refuse_cycle(hole.execution, 83, "it makes too many strokes");
+        return refuse_cycle(hole.execution, 83, "the hole needs too many strokes");
     for (size_t i = 0; i < depths.size(); ++i) {
         const bool last = i + 1 == depths.size();
         const double level = last ? cycle.bottom : cycle.reference - depths[i];
@@ -121,8 +122,7 @@ core::Result<void> tap_hole(SiemensHole& hole) {
     const double out = cycle.speed_out > 0.0 ? cycle.speed_out : in;
     const double pitch = std::abs(cycle.pitch);
     if (pitch > 0.0 && !(in > 0.0))
-        return refuse_cycle(execution, cycle.number,
-                            "the spindle has no speed: S or SST is missing");
+        return refuse_cycle(execution, cycle.number, "the spindle has no speed: program S or SST");
     const bool left =
         rigid ? cycle.pitch < 0.0 : modal.spindle == core::SpindleDirection::counterclockwise;
     modal.speed = in;
@@ -256,14 +256,14 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
     const double count = given[5];
     if (!(count >= 1.0 && count <= most_holes && count == std::floor(count)))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: NUM, its value 6, is the number of holes from 1 to {}, "
-                                      "and it is {:.12g}",
+                          fmt::format("{}: parameter 6 (NUM), the number of holes, must be a whole "
+                                      "number from 1 to {}, but is {:.12g}",
                                       use.keyword->name, most_holes, count),
                           use.span);
     const std::optional<SiemensDrilling> cycle = execution.state.siemens->modal_cycle;
     if (!cycle)
-        execution.warn(use.span, fmt::format("{}: no MCALL of a drilling cycle came before it, so "
-                                             "its places are gone to and nothing is drilled",
+        execution.warn(use.span, fmt::format("{}: no drilling cycle is active (MCALL), so the tool "
+                                             "moves to the positions without drilling",
                                              use.keyword->name));
     const PlaneAxes axes = axes_of(execution.modal().plane);
     for (const HolePlace& place : places_of(execution, row, given, static_cast<int>(count))) {
@@ -275,7 +275,7 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
         if (auto drilled = drill_here(execution, *cycle); !drilled) return drilled;
         if (execution.result.commands.size() > most_commands)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: this block makes more than {} moves",
+                              fmt::format("{}: this block gives more than {} moves",
                                           use.keyword->name, most_commands),
                               use.span);
     }

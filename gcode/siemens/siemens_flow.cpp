@@ -124,16 +124,18 @@ core::Result<void> SiemensFlowing::jump() {
             return {};
         }
         if (jump.way == JumpWay::quietly) return {};
-        const std::string_view where = jump.way == JumpWay::forward    ? "behind this block"
+        const std::string_view where = jump.way == JumpWay::forward    ? "after this block"
                                        : jump.way == JumpWay::backward ? "before this block"
                                                                        : "in this program";
         const SiemensJump either{.target = jump.target};
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("there is no {} {} to go to{}", jump.target, where,
-                                      line_of(either) ? "; it stands on the other side, for which "
-                                                        "GOTO or the other of GOTOF and GOTOB is"
-                                                      : ""),
-                          jump.span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format(
+                "there is no {} {} to jump to{}", jump.target, where,
+                line_of(either)
+                    ? "; it is in the other direction: use GOTO, or the other of GOTOF and GOTOB"
+                    : ""),
+            jump.span);
     }
     return {};
 }
@@ -199,8 +201,8 @@ core::Result<void> SiemensFlowing::repeat_part() {
                                        jumps[0].target));
     if (jumps.size() > 1)
         return core::fail(ErrorCode::unsupported,
-                          "REPEAT with two labels is not supported yet: put it behind the last "
-                          "block that is to be repeated, with the first label alone",
+                          "REPEAT with two labels is not supported yet: put it after the last "
+                          "block to be repeated, with the first label only",
                           step_.block.flow.span);
     const auto rounds = static_cast<int64_t>(std::clamp(count, 0.0, 1e15));
     int64_t& left = repeats.try_emplace(line_, rounds).first->second;
@@ -278,9 +280,10 @@ double held_as(SiemensType type, double value) {
 
 core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument) {
     if (argument.kind == SiemensArgument::Kind::text)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("\"{}\": a number belongs here, not a text", argument.text),
-                          argument.span);
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("\"{}\": a number is needed here, not a string", argument.text),
+            argument.span);
     if (!argument.expression) return argument.plain;
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value value, evaluate(step.block.pool, argument.expression, step.block.line,
@@ -338,13 +341,14 @@ core::Result<Place> place_of_program(const FlowStep& step, const std::string& na
     FEELER_TRY(const auto source, step.library.find_in_any_case(names));
     if (source) return Place{*source, 1};
     const auto& path = step.library.search_path();
-    return core::fail(ErrorCode::syntax,
-                      fmt::format("'{}' is no word of this control, and there is no program {}.SPF "
-                                  "or {}.MPF in {}",
-                                  step.block.siemens.name, name, name,
-                                  path.empty() ? "a search path, for there is none"
-                                               : fmt::format("{}", fmt::join(path, ", "))),
-                      step.block.siemens.name_span);
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format(
+            "'{}' is not a word of this control, and there is no program {}.SPF or {}.MPF in {}",
+            step.block.siemens.name, name, name,
+            path.empty() ? "a search path (none is set)"
+                         : fmt::format("{}", fmt::join(path, ", "))),
+        step.block.siemens.name_span);
 }
 
 /// The PROC of a program: its first block that is not empty.
@@ -370,7 +374,7 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
     const bool is_procedure = head.flow.kind == FlowKind::procedure;
     if (arguments.size() > (is_procedure ? parameters.size() : 0))
         return core::fail(ErrorCode::syntax,
-                          fmt::format("{} takes {} parameters, and {} are given", frame.name,
+                          fmt::format("{} takes {} parameters, but {} are given", frame.name,
                                       is_procedure ? parameters.size() : 0, arguments.size()),
                           step.block.siemens.name_span);
     if (!is_procedure) return {};
@@ -380,8 +384,8 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
         const SiemensDeclaration& parameter = parameters[i];
         if (parameter.by_reference)
             return core::fail(ErrorCode::unsupported,
-                              fmt::format("{} has the parameter VAR {}, which gives a value back: "
-                                          "that is not supported yet; use an R parameter",
+                              fmt::format("{} has the parameter VAR {}, which returns a value: "
+                                          "this is not supported yet; use an R parameter",
                                           frame.name, parameter.name),
                               step.block.siemens.name_span);
         const bool given =
@@ -405,7 +409,7 @@ core::Result<int64_t> rounds_of(const FlowStep& step) {
     if (rounds >= 0.0 && rounds <= 9999.0 && rounds == std::floor(rounds))
         return static_cast<int64_t>(rounds);
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("P{:.12g}: a call is made from 0 to 9999 times", rounds),
+                      fmt::format("P{:.12g}: the number of calls must be from 0 to 9999", rounds),
                       repeats.span);
 }
 
@@ -447,7 +451,7 @@ core::Result<void> declare_variables(const FlowStep& step) {
     for (size_t i = 0; i < values.size(); ++i) {
         const SiemensDeclaration& entry = step.block.siemens.declarations[i];
         if (frame.named.size() >= most_named_parameters)
-            return core::fail(ErrorCode::invalid_value, "there are too many variables", entry.span);
+            return core::fail(ErrorCode::invalid_value, "too many variables", entry.span);
         frame.named[entry.name] = values[i];
         if (entry.type != SiemensType::real) frame.types[entry.name] = entry.type;
     }

@@ -54,7 +54,8 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
             step.linear[index][index] = -1.0;
         } else if (word->value == 0.0) {
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: a scale is not 0", written(*word)), word->span);
+                              fmt::format("{}: a scaling factor must not be 0", written(*word)),
+                              word->span);
         } else {
             step.linear[index][index] = word->value;
         }
@@ -87,15 +88,15 @@ core::Result<void> change_siemens_frame(Execution& execution) {
         if (execution.modal().compensation != Side::none)
             return core::fail(ErrorCode::unsupported,
                               fmt::format("{} between G41 or G42 and G40 is not supported yet: "
-                                          "switch cutter radius compensation off before",
+                                          "cancel cutter radius compensation first",
                                           use.keyword->name),
                               use.span);
         if (execution.statement.of(ModalGroup::motion))
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("{} needs a block of its own: its axis words are no "
-                                          "places",
-                                          use.keyword->name),
-                              use.span);
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("{} must be in a block by itself: its axis words are not positions",
+                            use.keyword->name),
+                use.span);
         execution.column = use.span.column;
         const bool adds = is_additive(action);
         AxisValues others = adds ? execution.modal().offsets.local : AxisValues{};

@@ -8,38 +8,38 @@ namespace {
 using enum SiemensAction;
 
 constexpr std::string_view no_corner =
-    "corners between moves are not supported yet: write them out with G1, G2 and G3";
+    "corners between moves are not supported yet: program them with G1, G2 and G3";
 constexpr std::string_view no_cycle =
-    "this cycle is not supported yet: write its moves out with G0 to G3";
+    "this cycle is not supported yet: program its moves with G0 to G3";
 constexpr std::string_view no_machine =
-    "this transformation needs the rotary axes of a machine, which are not known here";
+    "this transformation depends on the rotary axes of the machine and is not supported";
 constexpr std::string_view no_actions = "synchronised actions are not supported yet";
 constexpr std::string_view no_approach =
-    "smooth approach and retract are not supported yet: write the moves with G1 and G2 or G3";
+    "smooth approach and retract are not supported yet: program the moves with G1 and G2 or G3";
 constexpr std::string_view no_positioning =
-    "positioning axes are not supported yet: write the move with G0 or G1";
+    "positioning axes are not supported yet: program the move with G0 or G1";
 constexpr std::string_view no_measuring = "measuring is not supported yet";
 constexpr std::string_view no_orientation = "tool orientation by angles is not supported yet";
 constexpr std::string_view no_spline = "splines are not supported yet";
 constexpr std::string_view no_splines =
-    "splines and polynomials are not supported yet: write the way with G1, G2 and G3";
+    "splines and polynomials are not supported yet: program the path with G1, G2 and G3";
 constexpr std::string_view no_involutes = "involutes are not supported yet";
 constexpr std::string_view no_frame = "this frame is not supported yet: use TRANS, ROT, SCALE and "
-                                      "MIRROR, or write the places themselves";
+                                      "MIRROR, or program the positions directly";
 constexpr std::string_view no_case = "CASE is not supported yet: use IF and GOTOF";
 constexpr std::string_view no_call =
     "this kind of call is not supported yet: use the name of the program, or CALL \"NAME\"";
 constexpr std::string_view no_interrupts = "interrupts and other channels are not supported";
 constexpr std::string_view no_macros =
-    "macros and redefinitions are not supported yet: write the words out";
+    "macros and redefinitions are not supported yet: program the words themselves";
 constexpr std::string_view no_files = "files and tool management are not supported";
-constexpr std::string_view no_diameters = "diameters of single axes are not supported yet";
+constexpr std::string_view no_diameters =
+    "diameter programming of single axes is not supported yet";
 constexpr std::string_view no_repositioning = "repositioning is not supported";
 constexpr std::string_view no_coupling = "coupled axes are not supported yet";
-constexpr std::string_view no_exchange = "the exchange of axes between channels is not supported";
-constexpr std::string_view no_space_contour =
-    "cutter radius compensation in space is not supported yet";
-constexpr std::string_view no_zones = "protection zones of the program are not supported";
+constexpr std::string_view no_exchange = "axis exchange between channels is not supported";
+constexpr std::string_view no_space_contour = "3D cutter radius compensation is not supported yet";
+constexpr std::string_view no_zones = "protection zones set by the program are not supported";
 
 // Sorted by name. All are in SINUMERIK 840D sl, Programming Manual Job Planning, "Tables".
 constexpr SiemensKeyword keywords[] = {
@@ -50,7 +50,7 @@ constexpr SiemensKeyword keywords[] = {
     {"ADISPOS", noted_address},
     {"AMIRROR", add_mirror},
     {"ANG", refused_address,
-     "contours given by angles are not supported yet: write the ends of the moves"},
+     "contours defined by angles are not supported yet: program the end points of the moves"},
     {"AP", address, "^"},
     {"AR", address, "E"},
     {"AROT", add_turn},
@@ -68,7 +68,7 @@ constexpr SiemensKeyword keywords[] = {
     {"CASE", refusal, no_case},
     {"CDOF", note},
     {"CDOF2", note},
-    {"CDON", warning, "collision detection of the contour by the control is not modelled"},
+    {"CDON", warning, "contour collision detection by the control is not modelled"},
     {"CFC", note},
     {"CFIN", note},
     {"CFTCP", note},
@@ -157,7 +157,7 @@ constexpr SiemensKeyword keywords[] = {
     {"DEFINE", refusal, no_macros},
     {"DELDL", refusal, no_files},
     {"DELETE", refusal, no_files},
-    {"DIAM90", refusal, "diameters under G90 alone are not supported yet: use DIAMON or DIAMOF"},
+    {"DIAM90", refusal, "diameters for G90 only are not supported yet: use DIAMON or DIAMOF"},
     {"DIAMCHAN", refusal, no_diameters},
     {"DIAMCHANA", refusal, no_diameters},
     {"DIAMOF", radii},
@@ -202,7 +202,7 @@ constexpr SiemensKeyword keywords[] = {
     {"FRC", refused_address, no_corner},
     {"FRCM", refused_address, no_corner},
     {"FROM", refusal, no_actions},
-    {"FZ", refused_address, "feeds per tooth are not supported yet: write F in mm/min"},
+    {"FZ", refused_address, "feed per tooth is not supported yet: program F in mm/min"},
     {"GET", refusal, no_exchange},
     {"GETD", refusal, no_exchange},
     {"GETEXET", refusal, no_files},
@@ -241,7 +241,7 @@ constexpr SiemensKeyword keywords[] = {
     {"NPROTDEF", refusal, no_zones},
     {"OF", refusal, no_case},
     {"OFFN", refused_address,
-     "an allowance beside the contour is not supported yet: use a wider D"},
+     "a contour allowance is not supported yet: use a D with a larger radius"},
     {"ORIAXES", note},
     {"ORIC", note},
     {"ORICONCCW", note},
@@ -249,7 +249,8 @@ constexpr SiemensKeyword keywords[] = {
     {"ORIEULER", note},
     {"ORIMKS", note},
     {"ORIPLANE", note},
-    {"ORIRESET", refusal, "an orientation of rotary axes is not supported yet: write their places"},
+    {"ORIRESET", refusal,
+     "orientation of rotary axes is not supported yet: program their positions"},
     {"ORIRPY", note},
     {"ORIRPY2", note},
     {"ORISOF", note},
@@ -280,11 +281,11 @@ constexpr SiemensKeyword keywords[] = {
     {"READ", refusal, no_files},
     {"REDEF", refusal, no_macros},
     {"RELEASE", refusal, no_exchange},
-    {"REPEATB", refusal, "REPEATB is not supported yet: use REPEAT with two labels"},
+    {"REPEATB", refusal, "REPEATB is not supported yet: use REPEAT with one label"},
     {"REPOSA", refusal, no_repositioning},
     {"REPOSH", refusal, no_repositioning},
     {"REPOSL", refusal, no_repositioning},
-    {"RETB", refusal, "a return with a search is not supported yet: use RET"},
+    {"RETB", refusal, "a return with a jump target is not supported yet: use RET"},
     {"RND", refused_address, no_corner},
     {"RNDM", refused_address, no_corner},
     {"ROT", turn},

@@ -31,8 +31,8 @@ core::Result<Point> plane_point(const Execution& execution, const Position& plac
     for (const size_t axis : {axes.first, axes.second})
         if (!place[axis])
             return refuse(execution,
-                          fmt::format("where the tool is along {} is not known: move there first, "
-                                      "or say where the machine starts",
+                          fmt::format("the {} position is unknown: move there first, or set "
+                                      "[program] start in the set-up",
                                       axis_letters[axis]),
                           ErrorCode::missing_value);
     return Point{*place[axes.first], *place[axes.second]};
@@ -52,8 +52,8 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
     const ArcTolerance& allowed = execution.dialect.arc;
     if (radius < 1e-9 || difference > std::max(allowed.absolute_mm, allowed.relative * radius))
         return refuse(execution,
-                      fmt::format("the arc's radius is {:.4f} mm at its start and {:.4f} mm off "
-                                  "that at its end",
+                      fmt::format("the radius of the arc is {:.4f} mm at its start and differs by "
+                                  "{:.4f} mm at its end",
                                   radius, difference),
                       wrong_arc);
     const double angle = arc_angle(start_point, end_point, centre_point, turns);
@@ -87,9 +87,7 @@ core::Result<Position> polar_target(Execution& execution) {
     const Statement& statement = execution.statement;
     const PlaneAxes axes = axes_of(execution.modal().plane);
     if (statement.word(axis_letters[axes.first]) || statement.word(axis_letters[axes.second]))
-        return refuse(execution,
-                      "a place is given with RP= and AP= or with the axes of the plane, "
-                      "not with both",
+        return refuse(execution, "use either RP= and AP= or the axes of the plane, not both",
                       ErrorCode::syntax);
     SiemensState& siemens = execution.state.siemens.write();
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
@@ -111,9 +109,11 @@ core::Result<Position> polar_target(Execution& execution) {
     take(statement.polar_radius, siemens.radius, to_mm(1.0, execution.modal().unit));
     take(statement.polar_angle, siemens.angle_deg, 1.0);
     if (!siemens.radius || !siemens.angle_deg)
-        return refuse(execution, "RP= or AP= is missing, and no place is known to take it from",
-                      ErrorCode::missing_value);
-    if (*siemens.radius < 0.0) return refuse(execution, "RP= is a distance and not negative");
+        return refuse(
+            execution,
+            "RP= or AP= is missing, and it cannot be taken from the position, which is unknown",
+            ErrorCode::missing_value);
+    if (*siemens.radius < 0.0) return refuse(execution, "RP= must not be negative");
     Statement without = statement;
     without.polar_radius = without.polar_angle = nullptr;
     const Execution shared{
@@ -132,7 +132,7 @@ core::Result<void> move_polar(Execution& execution) {
     const auto motion = execution.modal().motion;
     if (motion == tenths(0) || motion == tenths(1)) return go_straight(execution, end);
     if (motion != tenths(2) && motion != tenths(3))
-        return refuse(execution, "RP= and AP= go with G0 to G3", ErrorCode::syntax);
+        return refuse(execution, "RP= and AP= can only be used with G0 to G3", ErrorCode::syntax);
     const Word* word = execution.statement.word('P');
     const int turns = word ? static_cast<int>(std::clamp(word->value, 1.0, 1000.0)) : 1;
     return go_along_arc(execution, end, execution.state.siemens->pole,
@@ -156,8 +156,8 @@ core::Result<void> move_by_point(Execution& execution) {
         if (!word) continue;
         if (axis == axes.normal)
             return refuse(execution,
-                          "arcs out of the plane are not supported yet: leave the third "
-                          "of I1=, J1= and K1= out",
+                          "arcs outside the plane are not supported yet: remove the third of I1=, "
+                          "J1= and K1=",
                           ErrorCode::unsupported);
         const double value = to_mm(word->value, modal.unit);
         const bool absolute = word->addressing == Addressing::modal
@@ -171,8 +171,8 @@ core::Result<void> move_by_point(Execution& execution) {
     const double bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
     const double cross = bx * cy - by * cx;
     if (std::abs(cross) < 1e-9)
-        return refuse(execution, "CIP needs three points that are not on one line: its point "
-                                 "between is given with I1=, J1= and K1=");
+        return refuse(execution, "CIP needs three points that are not on one line: give the "
+                                 "intermediate point with I1=, J1= and K1=");
     const double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
     const Point centre = {a[0] + (cy * b2 - by * c2) / (2.0 * cross),
                           a[1] + (bx * c2 - cx * b2) / (2.0 * cross)};
@@ -184,8 +184,7 @@ core::Result<void> move_tangentially(Execution& execution) {
     FEELER_TRY(const Position end, target_of(execution));
     const Point& direction = execution.modal().direction;
     if (direction == Point{})
-        return refuse(execution, "no motion in the plane came before CT whose direction it could "
-                                 "go on in");
+        return refuse(execution, "CT has no previous move in the plane to continue tangentially");
     FEELER_TRY(const Point from, plane_point(execution, execution.modal().position));
     FEELER_TRY(const Point to, plane_point(execution, end));
     const double way[2] = {to[0] - from[0], to[1] - from[1]};
@@ -195,7 +194,9 @@ core::Result<void> move_tangentially(Execution& execution) {
     const double squared = way[0] * way[0] + way[1] * way[1];
     if (std::abs(aside) <= 1e-9 * std::sqrt(squared)) {
         if (ahead <= 0.0)
-            return refuse(execution, "no arc goes on in that direction and ends there");
+            return refuse(
+                execution,
+                "no arc that continues the previous move tangentially ends at this point");
         FEELER_TRY(const double rate, feed_rate(execution, std::sqrt(squared)));
         execution.feed(end, rate);
         return {};
@@ -212,7 +213,7 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     const Statement& statement = execution.statement;
     const double angle = opening.value / core::degrees_per_radian;
     if (!(opening.value > 0.0 && opening.value < 360.0))
-        return refuse(execution, "AR= is an angle between 0 and 360 degrees");
+        return refuse(execution, "AR= must be between 0 and 360 degrees");
     const double sign = modal.motion == tenths(2) ? -1.0 : 1.0;
     FEELER_TRY(Position end, target_of(execution));
     FEELER_TRY(const Point from, plane_point(execution, modal.position));
@@ -232,7 +233,8 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     FEELER_TRY(const Point to, plane_point(execution, end));
     const double chord[2] = {to[0] - from[0], to[1] - from[1]};
     if (std::hypot(chord[0], chord[1]) < 1e-9)
-        return refuse(execution, "an arc with AR= needs an end that is not its start, or a centre");
+        return refuse(execution,
+                      "an arc with AR= needs an end point different from its start, or a centre");
     const double height = sign / (2.0 * std::tan(angle / 2.0));
     const Point centre = {0.5 * (from[0] + to[0]) - height * chord[1],
                           0.5 * (from[1] + to[1]) + height * chord[0]};
@@ -302,8 +304,8 @@ core::Result<void> check_scaled_arc(const Execution& execution) {
     const double second = glm::length(frame.linear[static_cast<int>(axes.second)]);
     if (std::abs(first - second) < 1e-12) return {};
     return refuse(execution,
-                  "SCALE stretches the axes of the plane unequally, which is no arc any "
-                  "more: scale both alike",
+                  "SCALE uses different factors for the axes of the plane, so the result is not an "
+                  "arc: use the same factor for both",
                   ErrorCode::unsupported);
 }
 
@@ -374,7 +376,7 @@ core::Result<void> set_pole(Execution& execution) {
         // pole.
         if (code == 110 && !modal.position[plane_axes[i]])
             return core::fail(ErrorCode::missing_value,
-                              fmt::format("G110: where the tool is along {} is not known: use G111",
+                              fmt::format("G110: the {} position is unknown: use G111",
                                           axis_letters[plane_axes[i]]),
                               entry.word->span);
         pole[i] = code == 110   ? *modal.position[plane_axes[i]]

@@ -42,8 +42,8 @@ private:
             return {};
         const core::SourceSpan span = block_.flow.span;
         return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}' needs a block of its own: write the other words before "
-                                      "or behind it",
+                          fmt::format("'{}' must be in a block by itself: move the other words to "
+                                      "the block before or after it",
                                       lexer_.line.substr(span.column - 1, span.length)),
                           span);
     }
@@ -55,9 +55,9 @@ private:
         if (begins_name(c)) return lettered();
         if (c == '$')
             return stray(lexer_.at, siemens_name_at(lexer_).size(),
-                         "the control's own variables cannot be written yet");
+                         "writing system variables is not supported yet");
         if (c == '(')
-            return stray(lexer_.at, 1, "brackets have no meaning here; comments begin with ';'");
+            return stray(lexer_.at, 1, "brackets are not allowed here; comments start with ';'");
         if (lexer_.is_at_number()) {
             const size_t begin = lexer_.at;
             if (!lexer_.number()) ++lexer_.at;
@@ -81,7 +81,7 @@ private:
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';
         if (!(block_.is_empty() || after_number) || block_.block_delete)
-            return reader_.refuse("'/' belongs at the start of the block", begin);
+            return reader_.refuse("'/' must be at the start of the block", begin);
         block_.block_delete = number;
         return {};
     }
@@ -89,7 +89,7 @@ private:
     /// `%_N_NAME_MPF`
     core::Result<void> header() {
         if (!block_.is_empty())
-            return reader_.refuse("'%' belongs at the start of a line", lexer_.at);
+            return reader_.refuse("'%' must be at the start of the line", lexer_.at);
         block_.tape_mark = true;
         return {};
     }
@@ -139,7 +139,7 @@ private:
             ++lexer_.at;
             static constexpr SiemensKeyword other_spindle{
                 "a word with the number of a spindle", SiemensAction::warning,
-                "it is not of the first spindle, which is the tool's, and is passed over"};
+                "it is not for spindle 1, which holds the tool, and is ignored"};
             block_.siemens.keywords.push_back({&other_spindle, lexer_.span_from(begin)});
             block_.command.kind = CommandKind::siemens;
             if (auto skipped = reader_.argument(); !skipped)
@@ -147,12 +147,11 @@ private:
             return {};
         }
         const bool vector = (letter >= 'A' && letter <= 'C') && name.size() == 2;
-        return reader_.refuse(
-            fmt::format("'{}=': {}", name,
-                        vector ? "tool orientation by vectors is not supported yet: write the "
-                                 "places of the rotary axes"
-                               : "there is no such axis or address here"),
-            begin, ErrorCode::unsupported);
+        return reader_.refuse(fmt::format("'{}=': {}", name,
+                                          vector ? "tool orientation by vectors is not supported "
+                                                   "yet: program the positions of the rotary axes"
+                                                 : "there is no such axis or address here"),
+                              begin, ErrorCode::unsupported);
     }
 
     /// G74 and G75 take machine axes.
@@ -170,11 +169,12 @@ private:
             return value(letter, begin, true);
         }
         if (!lexer_.is_at_number())
-            return core::fail(ErrorCode::syntax,
-                              fmt::format("'{}' has no number behind it; a computed value needs "
-                                          "'=', as in {}=R1",
-                                          lexer_.line[begin], letter),
-                              lexer_.span(begin, begin + 1));
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format(
+                    "'{}' must be followed by a number; a computed value needs '=', as in {}=R1",
+                    lexer_.line[begin], letter),
+                lexer_.span(begin, begin + 1));
         FEELER_TRY(const Number number, lexer_.number());
         return add({.letter = letter,
                     .value = number.value,
@@ -227,7 +227,7 @@ private:
         if (!repeatable && std::any_of(block_.words.begin(), block_.words.end(), same))
             return core::fail(
                 ErrorCode::syntax,
-                fmt::format("'{}' stands twice in this block",
+                fmt::format("'{}' appears twice in this block",
                             lexer_.line.substr(entry.span.column - 1, entry.span.length)),
                 entry.span);
         block_.words.push_back(entry);
@@ -249,14 +249,14 @@ private:
 
     core::Result<void> assignment(Assignment& entry, size_t begin) {
         if (!reader_.is_at_equals())
-            return reader_.refuse(fmt::format("'{}' stands alone: a parameter is set with '=', or "
-                                              "gives the value of a word, as in X={}",
+            return reader_.refuse(fmt::format("'{}' alone has no effect: set the parameter with "
+                                              "'=', or use it as the value of a word, as in X={}",
                                               lexer_.written_from(begin),
                                               lexer_.written_from(begin)),
                                   begin);
         ++lexer_.at;
         if (lexer_.peek() == '"')
-            return stray(lexer_.at, 1, "texts in variables are not supported yet");
+            return stray(lexer_.at, 1, "string variables are not supported yet");
         Number plain;
         FEELER_TRY(entry.value, parse_sum(lexer_, reader_.dialect.expressions, block_.pool, plain));
         entry.plain = plain.value;
@@ -301,7 +301,7 @@ private:
     core::Result<void> address(char letter, size_t begin) {
         if (!reader_.is_at_equals())
             return reader_.refuse(
-                fmt::format("'{}' needs '=' and a value behind it", lexer_.written_from(begin)),
+                fmt::format("'{}' must be followed by '=' and a value", lexer_.written_from(begin)),
                 begin);
         ++lexer_.at;
         if (auto done = value(letter, begin, false); !done) return done;
@@ -337,7 +337,8 @@ core::Result<void> SiemensLine::skip_value(size_t begin) {
     }
     if (!reader_.is_at_equals())
         return reader_.refuse(
-            fmt::format("'{}' needs '=' and a value behind it", lexer_.written_from(begin)), begin);
+            fmt::format("'{}' must be followed by '=' and a value", lexer_.written_from(begin)),
+            begin);
     ++lexer_.at;
     if (auto value = reader_.argument(); !value) return tl::unexpected(std::move(value).error());
     return {};
@@ -364,7 +365,8 @@ core::Result<void> SiemensLine::use(const SiemensKeyword& keyword, size_t begin)
     }
     const bool calls = keyword.action >= message;
     if (calls && !block_.siemens.arguments.empty())
-        return reader_.refuse(fmt::format("'{}' needs a block of its own", keyword.name), begin);
+        return reader_.refuse(fmt::format("'{}' must be in a block by itself", keyword.name),
+                              begin);
     std::vector<SiemensArgument> passed_over;
     if (reader_.next() == '(') {
         const bool keeps = calls || keyword.action == transformation;

@@ -25,7 +25,7 @@ bool SiemensReader::is_at_equals() {
 core::Result<void> SiemensReader::expect(char wanted, std::string_view behind) {
     if (lexer.accept(wanted)) return {};
     return core::fail(core::ErrorCode::syntax,
-                      fmt::format("a '{}' is missing behind '{}'", wanted, behind),
+                      fmt::format("'{}' is missing after '{}'", wanted, behind),
                       lexer.span(lexer.at, lexer.at + 1));
 }
 
@@ -36,9 +36,9 @@ core::Result<SiemensArgument> SiemensReader::argument() {
     if (c == '"') {
         const size_t end = lexer.line.find('"', begin + 1);
         if (end == std::string_view::npos)
-            return refuse(
-                fmt::format("the text {} has no end: a '\"' is missing", lexer.line.substr(begin)),
-                begin);
+            return refuse(fmt::format("the string {} is not closed: a '\"' is missing",
+                                      lexer.line.substr(begin)),
+                          begin);
         lexer.at = end + 1;
         result.kind = SiemensArgument::Kind::text;
         result.text = lexer.line.substr(begin + 1, end - begin - 1);
@@ -130,7 +130,7 @@ core::Result<void> ExpressionReader::siemens_constant() {
     const bool ends = lexer_.at < lexer_.line.size() && lexer_.line[lexer_.at] == '\'';
     if ((kind != 'H' && kind != 'B') || digits == 0 || digits > 8 || !ends)
         return core::fail(ErrorCode::syntax,
-                          "between two ' belongs H and hexadecimal or B and binary digits, as in "
+                          "quotes must hold H and hexadecimal digits or B and binary digits, as in "
                           "'HFF' or 'B101'",
                           lexer_.span(begin, std::min(lexer_.at + 1, lexer_.line.size())));
     ++lexer_.at;
@@ -153,7 +153,7 @@ core::Result<void> ExpressionReader::siemens_parameter(size_t begin) {
             number = number * 10 + (lexer_.line[lexer_.at++] - '0');
         if (number > highest_r)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("'{}': R parameters go to R{} here",
+                              fmt::format("'{}': the highest R parameter is R{}",
                                           lexer_.written_from(begin), highest_r),
                               lexer_.span_from(begin));
         push(number, begin);
@@ -166,12 +166,12 @@ core::Result<void> ExpressionReader::siemens_function(size_t begin, std::string_
     const auto found = std::find_if(std::begin(siemens_functions), std::end(siemens_functions),
                                     [&](const NamedFunction& some) { return some.name == name; });
     if (found == std::end(siemens_functions))
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("'{}': there is no such function here; known are SIN, COS, "
-                                      "TAN, ASIN, ACOS, ATAN2, SQRT, POT, ABS, ROUND, TRUNC, LN, "
-                                      "EXP, MINVAL and MAXVAL",
-                                      name),
-                          lexer_.span(begin, begin + name.size()));
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("'{}': this function is not supported; supported are SIN, COS, TAN, ASIN, "
+                        "ACOS, ATAN2, SQRT, POT, ABS, ROUND, TRUNC, LN, EXP, MINVAL and MAXVAL",
+                        name),
+            lexer_.span(begin, begin + name.size()));
     if (++depth_ > deepest) return lexer_.unexpected_character();
     if (auto done = expect('('); !done) return done;
     for (int i = 0; i < found->arguments; ++i) {
@@ -233,11 +233,12 @@ core::Result<void> ExpressionReader::siemens_operand() {
     }
     if (lexer_.peek() == '(') return siemens_function(begin, name);
     if (name.size() < 2)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}' is no value: R parameters have a number, variables "
-                                      "begin with two letters",
-                                      name),
-                          lexer_.span_from(begin));
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format(
+                "'{}' is not a value: R parameters have a number, variables start with two letters",
+                name),
+            lexer_.span_from(begin));
     return siemens_name(begin, name);
 }
 

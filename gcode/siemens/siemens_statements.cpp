@@ -89,7 +89,7 @@ private:
         block_.flow.span = reader_.lexer.span_from(begin_);
         if (clean) return {};
         return reader_.refuse(
-            fmt::format("'{}' needs a block of its own", reader_.lexer.written_from(begin_)),
+            fmt::format("'{}' must be in a block by itself", reader_.lexer.written_from(begin_)),
             begin_);
     }
 
@@ -104,15 +104,15 @@ private:
         reader_.next();
         const size_t begin = reader_.lexer.at;
         if (reader_.next() == '"' || reader_.next() == '(')
-            return reader_.refuse("the target of a jump as a text is not supported yet: write the "
-                                  "label itself",
-                                  begin, ErrorCode::unsupported);
+            return reader_.refuse(
+                "a string as jump target is not supported yet: use the label itself", begin,
+                ErrorCode::unsupported);
         reader_.lexer.accept(':');
         std::string name = siemens_name_at(reader_.lexer);
         reader_.lexer.at += name.size();
         if (name.empty() || name.front() == '$')
             return reader_.refuse(
-                fmt::format("'{}' needs a label or a block number behind it", behind), begin_);
+                fmt::format("'{}' must be followed by a label or a block number", behind), begin_);
         if (is_digit(name.front())) name.insert(0, 1, 'N');
         return name;
     }
@@ -130,7 +130,8 @@ private:
 
     core::Result<SiemensArgument> truth(std::string_view behind) {
         if (reader_.next() == '\0')
-            return reader_.refuse(fmt::format("'{}' needs a condition behind it", behind), begin_);
+            return reader_.refuse(fmt::format("'{}' must be followed by a condition", behind),
+                                  begin_);
         return reader_.argument();
     }
 
@@ -149,9 +150,9 @@ private:
     core::Result<void> alone(FlowKind kind) {
         if (auto begun = flow(kind); !begun) return begun;
         if (reader_.next() == '\0') return {};
-        return reader_.refuse(fmt::format("nothing can stand behind '{}' in its block",
-                                          reader_.lexer.written_from(begin_)),
-                              reader_.lexer.at);
+        return reader_.refuse(
+            fmt::format("nothing may follow '{}' in its block", reader_.lexer.written_from(begin_)),
+            reader_.lexer.at);
     }
 
     core::Result<void> condition(FlowKind kind) {
@@ -173,13 +174,14 @@ private:
         const bool is_name = variable.count == 1 && steps.back().operation == Operation::named;
         const bool is_r = variable && steps.back().operation == Operation::numbered;
         if (!is_name && !is_r)
-            return reader_.refuse("'FOR' needs a variable behind it, as in FOR I=1 TO 10", begin_);
+            return reader_.refuse("'FOR' must be followed by a variable, as in FOR I=1 TO 10",
+                                  begin_);
         entry.is_named = is_name;
         if (is_name) entry.name = steps.back().name;
         block_.pool.instructions.pop_back();
         if (is_r) entry.number = {variable.first, variable.count - 1};
         if (!reader_.is_at_equals())
-            return reader_.refuse("'FOR' needs '=' behind its variable, as in FOR I=1 TO 10",
+            return reader_.refuse("'FOR' needs '=' after its variable, as in FOR I=1 TO 10",
                                   begin_);
         ++reader_.lexer.at;
         FEELER_TRY(entry.value,
@@ -236,7 +238,7 @@ private:
                                       begin, ErrorCode::unsupported);
             return some.type;
         }
-        return reader_.refuse(fmt::format("'{}' is no type: REAL, INT or BOOL belongs here", name),
+        return reader_.refuse(fmt::format("'{}' is not a type: use REAL, INT or BOOL", name),
                               begin);
     }
 
@@ -250,12 +252,13 @@ private:
         const bool two_letters =
             entry.name.size() > 1 && !is_digit(entry.name[0]) && !is_digit(entry.name[1]);
         if (!two_letters)
-            return reader_.refuse("a variable's name begins with two letters or '_'", begin);
-        if (siemens_keyword(entry.name) || jump_of(entry.name))
-            return reader_.refuse(fmt::format("'{}' is a word of the language and cannot be a "
-                                              "variable",
-                                              entry.name),
+            return reader_.refuse("the name of a variable must start with two letters or '_'",
                                   begin);
+        if (siemens_keyword(entry.name) || jump_of(entry.name))
+            return reader_.refuse(
+                fmt::format("'{}' is a keyword of the language and cannot be a variable",
+                            entry.name),
+                begin);
         if (reader_.next() == '[')
             return reader_.refuse(fmt::format("'{}[': arrays are not supported yet: use R "
                                               "parameters, R[...]",
@@ -300,7 +303,7 @@ private:
         reader_.next();
         block_.siemens.name = siemens_name_at(reader_.lexer);
         if (block_.siemens.name.empty())
-            return reader_.refuse("'PROC' needs the name of the program behind it", begin_);
+            return reader_.refuse("'PROC' must be followed by the name of the program", begin_);
         reader_.lexer.at += block_.siemens.name.size();
         if (reader_.lexer.accept('('))
             if (auto read = parameters_of_procedure(); !read) return read;
@@ -311,7 +314,7 @@ private:
             constexpr std::string_view known[] = {"SAVE",    "SBLOF",     "SBLON", "DISPLOF",
                                                   "DISPLON", "ACTBLOCNO", "PREPRO"};
             if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-                return reader_.refuse(fmt::format("'{}' has no meaning behind PROC",
+                return reader_.refuse(fmt::format("'{}' is not allowed after PROC",
                                                   reader_.lexer.written_from(begin)),
                                       begin);
             block_.siemens.saves_modes |= name == "SAVE";
@@ -323,8 +326,8 @@ private:
     core::Result<void> call_by_text() {
         FEELER_TRY(const SiemensArgument named, truth("CALL"));
         if (named.kind != SiemensArgument::Kind::text)
-            return reader_.refuse("'CALL' of a program that a variable names is not supported yet: "
-                                  "write its name in quotation marks",
+            return reader_.refuse("'CALL' with a program name from a variable is not supported "
+                                  "yet: write the name in quotation marks",
                                   begin_, ErrorCode::unsupported);
         return read_siemens_call(reader_, std::string(named.text), begin_);
     }
@@ -340,7 +343,7 @@ private:
         if (name.empty() || (keyword && keyword->action == SiemensAction::drill)) return {};
         if (keyword)
             return reader_.refuse(
-                fmt::format("'MCALL {}': only drilling cycles and programs are called modally here",
+                fmt::format("'MCALL {}': only drilling cycles and programs can be called modally",
                             name),
                 begin_, ErrorCode::unsupported);
         reader_.lexer.at += name.size();
@@ -364,10 +367,11 @@ core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, si
     const auto numbers = [](const Word& word) { return word.letter == 'N'; };
     if (!std::all_of(block.words.begin(), block.words.end(), numbers) || !block.assignments.empty()
         || !block.siemens.name.empty() || block.flow.kind != none)
-        return reader.refuse(fmt::format("'{}' is no word of this control; the call of a program "
-                                         "needs a block of its own",
-                                         name),
-                             begin);
+        return reader.refuse(
+            fmt::format(
+                "'{}' is not a word of this control; a program call must be in a block by itself",
+                name),
+            begin);
     block.siemens.name = std::move(name);
     block.siemens.name_span = reader.lexer.span_from(begin);
     if (reader.next() == '(')
@@ -379,10 +383,11 @@ core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, si
         FEELER_TRY(block.siemens.repeats, reader.argument());
     }
     if (reader.next() != '\0')
-        return reader.refuse(fmt::format("'{}' is called here; nothing but P and how often can "
-                                         "stand behind a call",
-                                         block.siemens.name),
-                             begin);
+        return reader.refuse(
+            fmt::format(
+                "'{}' is called here; only P with the number of repetitions may follow a call",
+                block.siemens.name),
+            begin);
     if (block.siemens.is_modal_call) return {};
     block.flow.kind = call_program;
     block.flow.span = block.siemens.name_span;

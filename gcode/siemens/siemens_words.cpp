@@ -43,7 +43,7 @@ void warn_of_unused(Execution& execution) {
         if (is_used(execution, word)) continue;
         const std::string_view written =
             execution.block.text.substr(word.span.column - 1, word.span.length);
-        execution.warn(word.span, fmt::format("{}: nothing in this block uses it", written));
+        execution.warn(word.span, fmt::format("{}: no code in this block uses this word", written));
     }
 }
 
@@ -53,11 +53,12 @@ void note_assumed_siemens_units(Execution& execution) {
     for (const Word& word : execution.block.words) {
         if (siemens_length_letters.find(word.letter) == std::string_view::npos) continue;
         execution.state.said_unit = true;
-        execution.warn(word.span,
-                       fmt::format("units not said (G70, G71, G700 or G710) before {}, taken as "
-                                   "millimetres",
-                                   written(word)),
-                       Severity::note);
+        execution.warn(
+            word.span,
+            fmt::format(
+                "no units (G70, G71, G700 or G710) programmed before {}; millimetres assumed",
+                written(word)),
+            Severity::note);
         return;
     }
 }
@@ -79,7 +80,7 @@ core::Result<void> set_siemens_feed(Execution& execution) {
     if (!word || (action && action->code->tenths == tenths(4))) return {};
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a feed rate is not negative", written(*word)),
+                          fmt::format("{}: a feed rate must not be negative", written(*word)),
                           word->span);
     const LengthUnit unit =
         execution.state.siemens->feeds_in_inches ? LengthUnit::inch : LengthUnit::mm;
@@ -118,15 +119,15 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     // number.
     for (size_t i = 4; i < std::min<size_t>(values.size(), 13); ++i)
         if (values[i].value_or(0.0) != 0.0)
-            return core::fail(ErrorCode::unsupported,
-                              fmt::format("CYCLE800: its value {} is {:.12g}: planes that are "
-                                          "shifted or tilted by it are not supported yet: use "
-                                          "TRANS and ROT",
-                                          i + 1, *values[i]),
-                              use.span);
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("CYCLE800: parameter {} is {:.12g}: shifting or tilting the plane with "
+                            "this cycle is not supported yet: use TRANS and ROT",
+                            i + 1, *values[i]),
+                use.span);
     if (!values.empty() && values[0].value_or(0.0) != 0.0)
-        execution.warn(use.span, "CYCLE800: where the tool is retracted to before the swivel is "
-                                 "not known here; that move is not looked at");
+        execution.warn(use.span, "CYCLE800: the retract position before the swivel is unknown; "
+                                 "that move is not checked");
     return {};
 }
 
@@ -134,9 +135,10 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
 
 core::Result<void> use_siemens_words(Execution& execution) {
     for (const Word* word : execution.statement.unknown_m_codes)
-        execution.warn(word->span, fmt::format("{}: unknown here, so a code of the machine's "
-                                               "builder; it is passed over",
-                                               written(*word)));
+        execution.warn(
+            word->span,
+            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
+                        written(*word)));
     warn_of_unused(execution);
     if (auto done = set_feed_mode(execution); !done) return done;
     set_mode_of_surface_speed(execution);
@@ -162,9 +164,9 @@ core::Result<void> select_siemens_offset(Execution& execution) {
         execution.warn(
             entry->word->span,
             code - 505 + 4 < static_cast<int>(plain_offset_count)
-                ? fmt::format("G{} is the offset that the set-up calls {}", code,
+                ? fmt::format("G{} is the offset called {} in the set-up", code,
                               name_of_offset(offsets.active))
-                : fmt::format("G{}: nothing is known about this offset, taken as zero", code),
+                : fmt::format("G{}: this offset is unknown and assumed to be zero", code),
             code - 505 + 4 < static_cast<int>(plain_offset_count) ? Severity::note
                                                                   : Severity::warning);
     change_offsets(execution, offsets);
@@ -179,13 +181,13 @@ core::Result<void> go_to_fixed_place(Execution& execution) {
     const Position& place = reference ? modal.home : modal.second_home;
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("{} names no axis: it needs words such as X1=0 Y1=0 Z1=0",
+                          fmt::format("{} has no axis word: it needs words such as X1=0 Y1=0 Z1=0",
                                       written(*entry.word)),
                           entry.word->span);
     if (!(place[0] && place[1] && place[2]) && !execution.state.said_home) {
         execution.state.said_home = true;
         execution.warn(entry.word->span,
-                       fmt::format("{}: where the {} is was not said, taken as machine zero",
+                       fmt::format("{}: the {} is not given and assumed to be machine zero",
                                    written(*entry.word),
                                    reference ? "reference point" : "fixed point"));
     }

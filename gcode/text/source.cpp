@@ -122,7 +122,7 @@ core::Result<void> LineWindows::check(const Window& window) const {
         if (window.line(line).size() > longest_line)
             return tl::unexpected(refusal(
                 ErrorCode::syntax,
-                fmt::format("has a line {} of more than {} characters; break it into blocks", line,
+                fmt::format("has more than {1} characters in line {0}; split it into blocks", line,
                             longest_line),
                 line));
     }
@@ -143,12 +143,12 @@ core::Result<void> LineWindows::check(const Window& window) const {
 core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, bool is_last) {
     const Mark behind{offset, window.first_line + window.starts.size()};
     if (behind.first_line > std::numeric_limits<uint32_t>::max())
-        return tl::unexpected(refusal(ErrorCode::syntax, "has more lines than can be counted"));
+        return tl::unexpected(refusal(ErrorCode::syntax, "has too many lines"));
     const bool is_known = window.stretch + 1 < marks_.size() || end_;
     if (!is_known) {
         if (is_last && !has_block_)
             return tl::unexpected(
-                refusal(ErrorCode::syntax, "has no blocks: there is nothing to run in it"));
+                refusal(ErrorCode::syntax, "has no blocks: there is nothing to run"));
         if (is_last)
             end_ = behind;
         else
@@ -160,7 +160,7 @@ core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, 
     if (was_last == is_last && known.offset == behind.offset
         && known.first_line == behind.first_line)
         return {};
-    return tl::unexpected(refusal(ErrorCode::io, "has changed while it was read"));
+    return tl::unexpected(refusal(ErrorCode::io, "changed while it was being read"));
 }
 
 /// Reads a stretch into the window that was not used for longest.
@@ -242,7 +242,7 @@ std::optional<Error> Collector::add_piece(std::string_view piece) {
     program_.text += piece.substr(0, first_end);
     if (line_length_ + first_end > longest_line) {
         const size_t line = starts_of_lines(program_.text).size();
-        return refusal(fmt::format("has a line {} of more than {} characters; break it into blocks",
+        return refusal(fmt::format("has more than {1} characters in line {0}; split it into blocks",
                                    line, longest_line),
                        line);
     }
@@ -266,7 +266,7 @@ core::Result<Program> Collector::finish() && {
     if (looks_binary(controls_, program_.text.size()))
         return tl::unexpected(refusal("is a binary file, not an NC program", 0));
     if (!has_a_block(program_.text))
-        return tl::unexpected(refusal("has no blocks: there is nothing to run in it", 0));
+        return tl::unexpected(refusal("has no blocks: there is nothing to run", 0));
     program_.line_starts = starts_of_lines(program_.text);
     return std::move(program_);
 }
@@ -305,7 +305,8 @@ namespace {
 core::Result<Collector> collected(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
-        return tl::unexpected(cannot_read(path, "it is a directory; name an NC program in it"));
+        return tl::unexpected(
+            cannot_read(path, "it is a directory; give the path of an NC program"));
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream)

@@ -64,9 +64,8 @@ TEST(Arc, ARadiusOfHalfTheChordIsASemicircle) {
     EXPECT_EQ(trace("G2 X10 R5 F100"),
               "arc_feed x=10 y=0 z=0 plane=XY centre=5,0 turns=-1 feed=100\n");
     EXPECT_EQ(error_of("G2 X10 R4.9995 F100"), "");
-    EXPECT_EQ(
-        error_of("G2 X10 R4.99 F100"),
-        "1:8: R4.99: the radius 4.9900 mm does not reach the end, half of the way is 5.0000 mm");
+    EXPECT_EQ(error_of("G2 X10 R4.99 F100"), "1:8: R4.99: the radius 4.9900 mm is too small to "
+                                             "reach the end point: half the distance is 5.0000 mm");
     EXPECT_THAT(error_of("G2 R5 F100 X0"), HasSubstr("1:4: R5: an arc with R cannot end where"));
 }
 
@@ -81,9 +80,9 @@ TEST(Arc, AbsoluteCentresAreProgramCoordinates) {
 
 TEST(Arc, RefusesRadiiThatDifferAndNamesBoth) {
     EXPECT_EQ(error_of("G2 X10 Y1 I5 F100"),
-              "1:1: G2: the arc's radius is 5.0000 mm at its start and 5.0990 mm at its end");
+              "1:1: G2: the radius of the arc is 5.0000 mm at its start and 5.0990 mm at its end");
     EXPECT_EQ(error_of("G0 X1\nG3 F100\nX11 Y1 I5"),
-              "3:1: G3: the arc's radius is 5.0000 mm at its start and 5.0990 mm at its end");
+              "3:1: G3: the radius of the arc is 5.0000 mm at its start and 5.0990 mm at its end");
 }
 
 TEST(Arc, WarnsOfSmallDifferencesWhereTheControlHasAParameter) {
@@ -109,8 +108,8 @@ TEST(Arc, NeedsACentreAndARadius) {
 
 TEST(Arc, RefusesTheOffsetOfAnotherPlane) {
     EXPECT_EQ(error_of("G2 X10 I5 K2 F100", DialectId::linuxcnc),
-              "1:11: K2: G2 has no use for it here");
-    EXPECT_THAT(warnings_of("G2 X10 I5 K2 F100"), HasSubstr("K2: G2 has no use for it here"));
+              "1:11: K2: G2 does not use this word here");
+    EXPECT_THAT(warnings_of("G2 X10 I5 K2 F100"), HasSubstr("K2: G2 does not use this word here"));
     EXPECT_THAT(error_of("G2 X10 I5 R5 F100", DialectId::linuxcnc), HasSubstr("1:8: I5"));
 }
 
@@ -124,7 +123,7 @@ TEST(Arc, FromAnUnknownPlaceIsAnErrorThatSaysSo) {
 }
 
 TEST(Arc, NeedsAFeedRate) {
-    EXPECT_THAT(error_of("G2 X10 I5"), HasSubstr("1:1: G2: this motion has no feed rate"));
+    EXPECT_THAT(error_of("G2 X10 I5"), HasSubstr("1:1: G2: no feed rate"));
 }
 
 } // namespace

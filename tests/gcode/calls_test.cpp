@@ -62,27 +62,27 @@ TEST(Calls, BeginAtABlockOrBelongToTheSameProgram) {
     EXPECT_EQ(rapids("M97 P7 L2\nG0 X9\nM30\nN7 G0 X3\nM99\n", DialectId::haas), "3 3 9 ");
     EXPECT_THAT(rapids("M98 P100 Q6\nM30\n" + sub), HasSubstr("no block N6 in O100"));
     EXPECT_THAT(rapids("M97 P8\nM30\n", DialectId::haas), HasSubstr("no block N8"));
-    EXPECT_THAT(rapids("M97 P8\nM30\n"), HasSubstr("no such code"));
+    EXPECT_THAT(rapids("M97 P8\nM30\n"), HasSubstr("does not have it"));
 }
 
 TEST(Calls, ReturnToABlockOfTheCaller) {
     EXPECT_EQ(rapids("M98 P100 L4\nG0 X8\nN20 G0 X9\nM30\nO100\nG0 X1\nM99 P20\nN20 G0 X2\n"),
               "1 9 ");
     EXPECT_THAT(rapids("M98 P100\nM30\nO100\nM99 P20\nN20 G0 X2\n"),
-                HasSubstr("no block N20 in the program that called"));
+                HasSubstr("no block N20 in the calling program"));
 }
 
 TEST(Calls, M99OfTheMainProgramJumpsOrIsOnePass) {
     EXPECT_EQ(rapids("M99 P10\nG0 X1\nN10 G0 X2\nM30\n"), "2 ");
     EXPECT_THAT(rapids("N10 G0 X2\nG0 X1\nM99 P10\n"), HasSubstr("never ends"));
-    EXPECT_THAT(warnings_of("G21 G0 X1\nM99\nG0 X2\n"), HasSubstr("one pass was looked at"));
+    EXPECT_THAT(warnings_of("G21 G0 X1\nM99\nG0 X2\n"), HasSubstr("one pass was checked"));
     EXPECT_EQ(rapids("G0 X1\nM99\nG0 X2\n"), "1 ");
 }
 
 TEST(Calls, AnInputIsOffUnlessTheProgramWaitsForIt) {
     const std::string jump = "M96 P10 Q5\nG0 X1\nN10 G0 X2\nM30\n";
     EXPECT_EQ(rapids(jump, DialectId::haas), "2 ");
-    EXPECT_THAT(warnings_of(jump, DialectId::haas), HasSubstr("Q5 is taken as off"));
+    EXPECT_THAT(warnings_of(jump, DialectId::haas), HasSubstr("Q5 is assumed to be off"));
     const std::string wait = "N5 M96 P5 Q8\nG0 X1\nM30\n";
     EXPECT_EQ(rapids(wait, DialectId::haas), "1 ");
     EXPECT_THAT(warnings_of(wait, DialectId::haas), HasSubstr("waits for Q8"));
@@ -120,8 +120,9 @@ TEST(Calls, NameWhatIsMissingAndWhatThereIs) {
     EXPECT_THAT(rapids_with(folder, "N101 M98 P101\nM30\nO100\nM99\nO2000\nM99\n"),
                 testing::AllOf(HasSubstr("P101: there is no program O101"),
                                HasSubstr(folder.path().string()), HasSubstr("O100, O2000"),
-                               HasSubstr("N101 is a block of it, which M98 Q101 calls")));
-    EXPECT_EQ(error_of("G21\nM98\nM30"), "2:1: M98 does not say what to call: it needs a P word");
+                               HasSubstr("it has a block N101, which M98 Q101 calls")));
+    EXPECT_EQ(error_of("G21\nM98\nM30"),
+              "2:1: M98 needs a P word, the number of the program to call");
     EXPECT_THAT(rapids("M98 P1.5\nM30"), HasSubstr("whole number"));
 }
 
@@ -133,7 +134,7 @@ TEST(Calls, RecursionHasAnEnd) {
 
 TEST(Calls, ProgramsEndWhereTheNextOneBegins) {
     EXPECT_THAT(rapids("M98 P100\nM30\nO100\nG0 X1\nO200\nG0 X2\nM99\n"),
-                HasSubstr("1 error: the subprogram O100 ends here without M99"));
+                HasSubstr("1 error: subprogram O100 ends here without M99"));
     EXPECT_THAT(rapids("M98 P100\nM30\nO100\nG0 X1\n%\n"), HasSubstr("without M99"));
     EXPECT_THAT(rapids("M98 P100\nM30\nO100\nG0 X1\n"), HasSubstr("without M99"));
     EXPECT_EQ(rapids("G0 X1\nO200\nG0 X2\nM30\n"), "1 ");
@@ -174,7 +175,8 @@ TEST(Calls, AreMadeAsLinuxCncMakesThem) {
                     "G0 X3\nM99\n"),
               "2 3 2 3 1 ");
     EXPECT_THAT(linux("M98 P100\nG0 X1\nM2\nO100\nG0 X2\n"), HasSubstr("2 error: "));
-    EXPECT_THAT(linux("M98 P100\nG0 X#<a>\nM2\nO100\n#<a>=3\nM99\n"), HasSubstr("never set"));
+    EXPECT_THAT(linux("M98 P100\nG0 X#<a>\nM2\nO100\n#<a>=3\nM99\n"),
+                HasSubstr("before it is set"));
 }
 
 TEST(Calls, AreRefusedWhereLinuxCncRefusesThem) {

@@ -79,9 +79,9 @@ TEST(CircularPocket, RefusesRadiiThatDoNotFit) {
     };
     EXPECT_THAT(error("G13 I3. Z-1. F9. D1\n"), HasSubstr("I3: the circle must be larger"));
     EXPECT_THAT(error("G13 Z-1. F9. D1\n"), HasSubstr("the radius I is missing"));
-    EXPECT_THAT(error("G13 I8. K9. Z-1. F9. D1\n"), HasSubstr("K needs Q"));
-    EXPECT_THAT(error("G13 I8. Q2. Z-1. F9. D1\n"), HasSubstr("Q needs K"));
-    EXPECT_THAT(error("G13 I8. K7. Q2. Z-1. F9. D1\n"), HasSubstr("K must be larger"));
+    EXPECT_THAT(error("G13 I8. K9. Z-1. F9. D1\n"), HasSubstr("K also needs Q"));
+    EXPECT_THAT(error("G13 I8. Q2. Z-1. F9. D1\n"), HasSubstr("Q also needs K"));
+    EXPECT_THAT(error("G13 I8. K7. Q2. Z-1. F9. D1\n"), HasSubstr("K must be greater"));
     EXPECT_THAT(error("G13 I8. Z-1. D1\n"), HasSubstr("no F word"));
 }
 

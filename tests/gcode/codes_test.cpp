@@ -35,7 +35,7 @@ TEST(Codes, AnUnknownGCodeIsAnErrorWithItsPlace) {
     EXPECT_EQ(ran.run.error->where.line, 2u);
     EXPECT_EQ(ran.run.error->where.column, 4u);
     EXPECT_EQ(ran.run.error->where.length, 4u);
-    EXPECT_EQ(ran.run.error->message, "G123: there is no such code in the dialect fanuc");
+    EXPECT_EQ(ran.run.error->message, "G123: the dialect fanuc has no such code");
     EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
 }
 
@@ -60,9 +60,10 @@ TEST(Codes, AnMCodeThatJumpsOrCallsIsRefusedInEveryDialect) {
          {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
         for (const std::string_view text : {"M96 P5", "M97 P5", "M98 P5", "M99 P5", "M198 P5"})
             EXPECT_THAT(error_of(text, dialect), HasSubstr("1:")) << text;
-    EXPECT_THAT(error_of("G0 X1 M97 P5", DialectId::fanuc),
-                HasSubstr("1:7: M97: other controls jump or call with it, the dialect fanuc has "
-                          "no such code; take it out or name the program's dialect"));
+    EXPECT_THAT(
+        error_of("G0 X1 M97 P5", DialectId::fanuc),
+        HasSubstr("1:7: M97: on other controls this code jumps or calls, but the dialect fanuc "
+                  "does not have it; remove it, or select the dialect of the program"));
     EXPECT_THAT(error_of("M198 P5"), HasSubstr("1:6: P5: there is no program O5"));
     EXPECT_THAT(error_of("M99", DialectId::grbl), HasSubstr("1:1: M99: other controls jump"));
 }
@@ -75,11 +76,11 @@ TEST(Codes, AnMCodeThatChangesTheStateIsRefused) {
 
 TEST(Codes, TwoOfOneModalGroupAreAnError) {
     EXPECT_EQ(error_of("G17\nG90 G0 G1 X1"),
-              "2:8: G0 and G1 are of one modal group: a block takes one of them");
+              "2:8: G0 and G1 are in the same modal group: a block may have only one of them");
     EXPECT_EQ(error_of("M3 M5"),
-              "1:4: M3 and M5 are of one modal group: a block takes one of them");
+              "1:4: M3 and M5 are in the same modal group: a block may have only one of them");
     EXPECT_EQ(error_of("G54 G55"),
-              "1:5: G54 and G55 are of one modal group: a block takes one of them");
+              "1:5: G54 and G55 are in the same modal group: a block may have only one of them");
     EXPECT_THAT(error_of("G17 G17", DialectId::linuxcnc), HasSubstr("1:5: "));
     EXPECT_EQ(error_of("G98 G98", DialectId::fanuc), "");
 }
@@ -105,11 +106,12 @@ TEST(Codes, CancellationsAreAccepted) {
 }
 
 TEST(Codes, AWordThatNothingUsesIsAnErrorOrAWarning) {
-    EXPECT_EQ(error_of("G0 X0 K2", DialectId::linuxcnc), "1:7: K2: nothing in this block uses it");
+    EXPECT_EQ(error_of("G0 X0 K2", DialectId::linuxcnc),
+              "1:7: K2: no code in this block uses this word");
     EXPECT_EQ(error_of("G0 X0 K2", DialectId::fanuc), "");
     EXPECT_THAT(error_of("G0 X1e3", DialectId::fanuc), HasSubstr("1:6: E3: nothing"));
-    EXPECT_THAT(error_of("G0 X1e3", DialectId::fanuc), HasSubstr("1E3 is written out"));
-    EXPECT_THAT(warnings_of("G0 X0 K2"), HasSubstr("K2: nothing in this block uses it"));
+    EXPECT_THAT(error_of("G0 X1e3", DialectId::fanuc), HasSubstr("write an exponent such as 1E3"));
+    EXPECT_THAT(warnings_of("G0 X0 K2"), HasSubstr("K2: no code in this block uses this word"));
 }
 
 TEST(Codes, NineAxesAreFollowed) {

@@ -54,7 +54,7 @@ TEST(Corners, RoundBetweenTwoArcsTouchingBoth) {
     EXPECT_EQ(path_of("G2 X20. I10. F100 ,R2.\nG3 X30. Y10. J10.\nM30\n"),
               "19830,1837(10000,0,-1) 22245,255(21796,2204,1) 30000,10000(20000,10000,1) ");
     EXPECT_THAT(error_of("G2 X20. I10. F100 ,R2.\nG2 X40. I10.\nM30\n"), // back again
-                HasSubstr("nothing of this size"));
+                HasSubstr("no corner of this size"));
 }
 
 TEST(Corners, ChamferAnArcByTheWayAsTheCrowFlies) {
@@ -99,7 +99,7 @@ TEST(Corners, TakeAWholeMove) {
 
 TEST(Corners, ThatDoNotFitAreRefusedWithTheirWord) {
     EXPECT_EQ(error_of("G1 X20. F100\nG1 Y4. ,R5.\nX0\nM30\n"),
-              "2:8: ,R5: the corner is too large for the motions before and behind it; the control "
+              "2:8: ,R5: the corner is too large for the motions before and after it; the control "
               "stops with an alarm (PS0055 on Fanuc)");
 }
 
@@ -108,12 +108,13 @@ TEST(Corners, NeedAMotionInThePlaneBehindThem) {
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\n"), HasSubstr("the program ends"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nM8\nY20.\n"), HasSubstr("only a dwell"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nZ5.\n"), HasSubstr("leaves the plane"));
-    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG0 Y5.\n"), HasSubstr("without feed"));
-    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG18 Z5.\n"), HasSubstr("the plane"));
+    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG0 Y5.\n"), HasSubstr("a rapid follows"));
+    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG18 Z5.\n"), HasSubstr("change first"));
 }
 
 TEST(Corners, BelongToFeedsOnly) {
-    EXPECT_THAT(error_of("G0 X20. ,R5.\nG1 Y20. F100\n"), HasSubstr("a corner is written in"));
+    EXPECT_THAT(error_of("G0 X20. ,R5.\nG1 Y20. F100\n"),
+                HasSubstr("a corner must be programmed in"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5. ,C2.\nY20.\n"), HasSubstr("one corner"));
 }
 

@@ -20,7 +20,7 @@ struct Expected {
 };
 
 const std::vector<Expected> errors = {
-    {"fanuc-like/MaestroFusio__CONTOUR_ABS.NC", 15, "would fit if the centre's words",
+    {"fanuc-like/MaestroFusio__CONTOUR_ABS.NC", 15, "would fit if the centre words",
      "I and J are coordinates of the centre; Fanuc takes distances and stops (PS0020)"},
     {"fanuc-like/MaestroFusio__TEST2.NC", 12, "at its start and",
      "I and J were meant as coordinates here as well, and do not even fit as these"},
@@ -32,13 +32,13 @@ const std::vector<Expected> errors = {
      "samples for a highlighter, with broken lines on purpose; not a program"},
     {"grbl-hobby/Michael-F-Br___program_3.gcode", 3,
      "G71: ", "Mach3's G71, which is G21 there; no control read here has it"},
-    {"grbl-hobby/Michael-F-Br__program_1.gcode", 9, "has no feed rate",
+    {"grbl-hobby/Michael-F-Br__program_1.gcode", 9, "no feed rate",
      "O1000 makes it Fanuc's, where a feed without F is an alarm (PS0011)"},
     {"grbl-hobby/cncjs__Circle_Diamond_Square_Calibration.gcode", 624, "29.0000 mm",
      "the radii differ by 1.4 mm: Grbl stops above 0.5 mm (error 33)"},
     {"grbl-hobby/cncjs__part.gcode", 2,
      "E0: ", "a program for a 3D printer: Grbl stops at the extruder's E (error 20)"},
-    {"grbl-hobby/dillonhuff__camaster_sample.tap", 1, "'[' has no meaning",
+    {"grbl-hobby/dillonhuff__camaster_sample.tap", 1, "'[' is not allowed",
      "WinCNC writes comments in square brackets; no control read here does"},
     {"grbl-hobby/fragmuffin__Cross2.tap", 8, "G71: ", "Mach3's G71, as above"},
     {"grbl-hobby/fragmuffin__Horse.tap", 16, "1.4841 mm",

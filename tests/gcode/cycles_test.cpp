@@ -155,14 +155,14 @@ TEST(Cycle, NamesTheWordItMisses) {
     EXPECT_EQ(error_of("G81 X1 R3 F100"), "1:1: G81 needs a Z word");
     EXPECT_EQ(error_of("G81 X1 Z-2 F100"), "1:1: G81 needs an R word");
     EXPECT_EQ(error_of("G83 X1 Z-2 R3 F100"), "1:1: G83 needs a Q word");
-    EXPECT_EQ(error_of("G83 X1 Z-2 R3 Q0 F100"), "1:15: Q0: a peck goes deeper than 0");
-    EXPECT_THAT(error_of("G81 X1 Z-2 R3"), HasSubstr("1:1: G81: this motion has no feed rate"));
+    EXPECT_EQ(error_of("G83 X1 Z-2 R3 Q0 F100"), "1:15: Q0: the peck depth must be greater than 0");
+    EXPECT_THAT(error_of("G81 X1 Z-2 R3"), HasSubstr("1:1: G81: no feed rate"));
     EXPECT_THAT(error_of("G81 X1 Z-2 R-3 F100"), HasSubstr("R is at -3.0000 mm, below"));
 }
 
 TEST(Cycle, RefusesToMakeEndlessMoves) {
-    EXPECT_THAT(error_of("G83 X1 Z-200 R3 Q0.0001 F100"), HasSubstr("Q makes more than"));
-    EXPECT_THAT(error_of("G91 G83 X1 Z-20 R0 Q0.01 F100 L10000"), HasSubstr("makes more than"));
+    EXPECT_THAT(error_of("G83 X1 Z-200 R3 Q0.0001 F100"), HasSubstr("this Q gives more than"));
+    EXPECT_THAT(error_of("G91 G83 X1 Z-20 R0 Q0.01 F100 L10000"), HasSubstr("gives more than"));
     EXPECT_THAT(error_of("G81 X1 Z-2 R3 F100 L100000"), HasSubstr("L takes a whole number"));
 }
 

@@ -82,7 +82,7 @@ TEST(FanucContour, KeepsTheNumberOfTheRadius) {
     EXPECT_EQ(path_of("G1 G41 D1 X10. F9\nX20.\nG40 Y9.\nG41 Y20.\nY30.\nG40 X0\nM30\n"),
               "10000,2000 20000,2000 20000,9000 18000,20000 18000,30000 0,30000 ");
     EXPECT_EQ(path_of("G1 G41 D0 X10. F9\nX20.\nM30\n"), "10000,0 20000,0 ");
-    EXPECT_THAT(warnings_of("G1 G41 X10. F9\nX20.\nM30\n"), HasSubstr("no D word came before it"));
+    EXPECT_THAT(warnings_of("G1 G41 X10. F9\nX20.\nM30\n"), HasSubstr("no D word programmed yet"));
 }
 
 TEST(FanucContour, ANegativeRadiusIsTheOtherSide) {

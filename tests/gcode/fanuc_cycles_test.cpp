@@ -63,7 +63,7 @@ TEST(FanucCycle, G76LeavesTheWallBeforeItComesOut) {
               " cw r1,20 r1,3 f1,-8 d off r1.5,-8 r1.5,3 r1,3 cw");
     EXPECT_EQ(steps("S500 M3\nG98 G76 X1 Z-8 R3 I-0.5 J0 F50", DialectId::haas),
               " cw r1,20 r1,3 f1,-8 off r0.5,-8 r0.5,20 r1,20 cw");
-    EXPECT_THAT(warnings_of("G0 Z5\nG76 X1 Z-8 R3 Q0.5 F50"), HasSubstr("taken as +X"));
+    EXPECT_THAT(warnings_of("G0 Z5\nG76 X1 Z-8 R3 Q0.5 F50"), HasSubstr("+X is assumed"));
 }
 
 TEST(FanucCycle, G87BoresFromTheBack) {
@@ -72,7 +72,7 @@ TEST(FanucCycle, G87BoresFromTheBack) {
     EXPECT_EQ(steps("S500 M3\nG98 G87 X1 Z-10 R-30 Q0.5 P1000 F50"), path);
     EXPECT_EQ(steps("S500 M3\nG98 G77 X1 Z-10 R-30 Q0.5 P1000 F50", DialectId::haas), path);
     EXPECT_THAT(steps("G98 G87 X1 Z-10 R3 Q0.5 F50"), HasSubstr("works upwards"));
-    EXPECT_THAT(steps("G99 G87 X1 Z-10 R-30 Q0.5 F50"), HasSubstr("write G98"));
+    EXPECT_THAT(steps("G99 G87 X1 Z-10 R-30 Q0.5 F50"), HasSubstr("use G98"));
 }
 
 TEST(FanucCycle, G88StopsForARetractByHand) {
@@ -112,7 +112,8 @@ TEST(FanucCycle, ShiftsInThePlaneThatIsActive) {
 
 TEST(FanucCycle, TheSignOfQIsPassedOver) {
     EXPECT_EQ(steps("G99 G83 X1 Z-8 R3 Q-8 F50"), steps("G99 G83 X1 Z-8 R3 Q8 F50"));
-    EXPECT_THAT(steps("G99 G83 X1 Z-8 R3 Q0 F50"), HasSubstr("a peck goes deeper than 0"));
+    EXPECT_THAT(steps("G99 G83 X1 Z-8 R3 Q0 F50"),
+                HasSubstr("the peck depth must be greater than 0"));
 }
 
 TEST(FanucCycle, ScalingLeavesPecksAsTheyAre) {
@@ -147,12 +148,12 @@ TEST(HolePattern, G71DrillsAnArcAndG72ALine) {
 }
 
 TEST(HolePattern, PocketsAndEngravingAreRefusedWithACure) {
-    EXPECT_THAT(error_of("G150 P1 Z-1", DialectId::haas), HasSubstr("write the passes out"));
-    EXPECT_THAT(error_of("G47 P0 X1 Y1", DialectId::haas), HasSubstr("write the letters out"));
+    EXPECT_THAT(error_of("G150 P1 Z-1", DialectId::haas), HasSubstr("program the passes"));
+    EXPECT_THAT(error_of("G47 P0 X1 Y1", DialectId::haas), HasSubstr("program the letters"));
 }
 
 TEST(HolePattern, NeedsACycleAndItsWords) {
-    EXPECT_THAT(holes("G70 I5 L4"), HasSubstr("write one such as G81"));
+    EXPECT_THAT(holes("G70 I5 L4"), HasSubstr("program one, such as G81"));
     EXPECT_THAT(holes("G81 Z-1 R1 F9 L0\nG70 I5"), HasSubstr("needs an L word"));
     EXPECT_THAT(holes("G81 Z-1 R1 F9 L0\nG71 I5 L3"), HasSubstr("needs a K word"));
 }

@@ -51,7 +51,8 @@ TEST(Flow, SubsHaveArgumentsLocalsAndAValue) {
                      "o<fact> call [#1-1]\no<fact> return [#<_value> * #1]\no1 endif\n"
                      "o<fact> endsub\n#1=77\no<fact> call [5]\nG0 X#<_value>\nG0 X#1\nM2"),
               "120 77 ");
-    EXPECT_EQ(rapids("o1 sub\n#<a>=5\no1 endsub\no1 call\nG0 X#<a>"), "error: #<a> was never set");
+    EXPECT_EQ(rapids("o1 sub\n#<a>=5\no1 endsub\no1 call\nG0 X#<a>"),
+              "error: #<a> is used before it is set");
     // A number worked out names a subprogram, too.
     EXPECT_EQ(rapids("o7 sub\nG0 X#1\no7 endsub\n#5=3\no[#5+4] call [8]\nM2"), "8 ");
 }

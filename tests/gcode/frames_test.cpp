@@ -75,7 +75,7 @@ TEST(Frames, G68WithoutACentreTurnsWhereTheToolIs) {
     nowhere.start = {};
     const Ran ran = run_text("G68 R90", nowhere);
     ASSERT_TRUE(ran.run.error);
-    EXPECT_THAT(ran.run.error->message, HasSubstr("write the word"));
+    EXPECT_THAT(ran.run.error->message, HasSubstr("add the word"));
 }
 
 TEST(Frames, IncrementalMovesAfterG68StartWhereTheToolIs) {
@@ -120,8 +120,8 @@ TEST(Frames, AnArcScaledUnequallyIsRefused) {
 
 TEST(Frames, AScaleWithoutPointIsDoubtedWhenTiny) {
     EXPECT_THAT(warnings_of("G21 G51 X0 Y0 Z0 P2\nM30"), HasSubstr("the scale is 0.002"));
-    EXPECT_THAT(error_of("G51 X0 Y0"), HasSubstr("write P, or I, J and K"));
-    EXPECT_THAT(error_of("G51 P0"), HasSubstr("a scale is not 0"));
+    EXPECT_THAT(error_of("G51 X0 Y0"), HasSubstr("add P, or I, J and K"));
+    EXPECT_THAT(error_of("G51 P0"), HasSubstr("a scaling factor must not be 0"));
 }
 
 TEST(Frames, G511ReflectsAndTurnsArcsTheOtherWay) {
@@ -150,7 +150,7 @@ TEST(Frames, G53AndG28GoToPlacesOfTheMachine) {
 }
 
 TEST(Frames, G92IsRefusedWhereCoordinatesAreTurned) {
-    EXPECT_THAT(error_of("G68 X0 Y0 R30\nG92 X5"), HasSubstr("cancel that first"));
+    EXPECT_THAT(error_of("G68 X0 Y0 R30\nG92 X5"), HasSubstr("is on: cancel it"));
     EXPECT_EQ(error_of("G68 X0 Y0 R30\nG69\nG92 X5"), "");
 }
 
@@ -160,7 +160,7 @@ TEST(Frames, ScalingLeavesTheRadiusOfTheCutter) {
     expect_same_path(entry + "G51 X0 Y0 Z0 P2.\nG41 D5 G1 X5 Y5 F9\nX10 Y5\nG40 X20 Y20\nG50",
                      entry + "G41 D5 G1 X10 Y10 F9\nX20 Y10\nG40 X40 Y40", DialectId::haas);
     EXPECT_THAT(error_of(entry + "G41 D5 G1 X5 Y5 F9\nG68 X0 Y0 R9"),
-                HasSubstr("switch cutter radius compensation off before"));
+                HasSubstr("cancel cutter radius compensation first"));
 }
 
 TEST(Frames, CyclesDrillTurnedHoles) {

@@ -116,15 +116,14 @@ TEST(Interpreter, GivesTheSameAgainFromACopiedState) {
 
 TEST(Interpreter, NeedsAMotionCodeForAxisWords) {
     EXPECT_EQ(error_of("G54\nX10", DialectId::linuxcnc),
-              "2:1: X10: no motion code is active; say G0, G1, G2 or G3");
+              "2:1: X10: no motion code is active; program G0, G1, G2 or G3");
     EXPECT_THAT(error_of("G0 X1\nG80 X2", DialectId::linuxcnc), HasSubstr("2:5: X2"));
 }
 
 TEST(Interpreter, NeedsAFeedRateForFeeds) {
-    EXPECT_EQ(error_of("G0 X1\nG1 X2"),
-              "2:1: G1: this motion has no feed rate, no F word came before it");
-    EXPECT_EQ(error_of("G1 X2 F0"), "1:1: G1: this motion has the feed rate F0");
-    EXPECT_EQ(error_of("F-1"), "1:1: F-1: a feed rate is not negative");
+    EXPECT_EQ(error_of("G0 X1\nG1 X2"), "2:1: G1: no feed rate: no F word has been programmed yet");
+    EXPECT_EQ(error_of("G1 X2 F0"), "1:1: G1: the feed rate is F0");
+    EXPECT_EQ(error_of("F-1"), "1:1: F-1: a feed rate must not be negative");
 }
 
 TEST(Interpreter, WarnsOfAnEndWithoutM2) {
@@ -151,12 +150,13 @@ TEST(Interpreter, StopsAreCommands) {
 
 TEST(Interpreter, SaysOnceThatUnitsWereAssumed) {
     const std::string warnings = warnings_of("G17\nG0 X1\nX2\nM30\n");
-    EXPECT_THAT(warnings, HasSubstr("units not said (G20 or G21) before X1, taken as millimetres"));
+    EXPECT_THAT(warnings,
+                HasSubstr("no units (G20 or G21) programmed before X1; millimetres assumed"));
     EXPECT_THAT(warnings, Not(HasSubstr("before X2")));
-    EXPECT_THAT(warnings_of("G0 X1\n", DialectId::linuxcnc), HasSubstr("taken as millimetres"));
+    EXPECT_THAT(warnings_of("G0 X1\n", DialectId::linuxcnc), HasSubstr("millimetres assumed"));
     Environment inches = known_environment(DialectId::linuxcnc);
     inches.machine_unit = LengthUnit::inch;
-    EXPECT_THAT(warnings_of(run_text("G0 X1\n", inches).run), HasSubstr("taken as inches"));
+    EXPECT_THAT(warnings_of(run_text("G0 X1\n", inches).run), HasSubstr("inches assumed"));
     EXPECT_EQ(warnings_of("G21 G0 X1\nM30\n"), "");
 }
 

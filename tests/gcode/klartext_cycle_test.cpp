@@ -120,11 +120,11 @@ TEST(KlartextCycle, PatternsCallTheCycleAtEveryPlace) {
 TEST(KlartextCycle, RefusesWhatWouldGoWrong) {
     EXPECT_THAT(klartext_error("CYCL CALL\n"), HasSubstr("there is no cycle to call"));
     EXPECT_THAT(klartext_error("CYCL DEF 200 A Q200=2 Q201=5 Q206=100\nCYCL CALL\n"),
-                HasSubstr("depths are negative"));
+                HasSubstr("program a negative depth"));
     EXPECT_THAT(klartext_error("CYCL DEF 251 POCKET Q215=0\n"),
                 HasSubstr("'CYCL DEF 251': this cycle is not supported"));
     EXPECT_THAT(klartext_error("CYCL DEF 221 ROWS Q242=2 Q243=2\n"),
-                HasSubstr("no cycle from 200"));
+                HasSubstr("a cycle from 200 on"));
 }
 
 } // namespace

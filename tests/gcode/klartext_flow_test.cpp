@@ -87,7 +87,7 @@ TEST(KlartextFlow, JumpsWhenAConditionHolds) {
 
 TEST(KlartextFlow, FindsProgramsThatNeverEnd) {
     EXPECT_THAT(klartext_error("LBL 1\nFN 9: IF +0 EQU +0 GOTO LBL 1\n"), HasSubstr("never ends"));
-    EXPECT_THAT(klartext_error("LBL 1\nCALL LBL 1\nLBL 0\n"), HasSubstr("calls go deeper"));
+    EXPECT_THAT(klartext_error("LBL 1\nCALL LBL 1\nLBL 0\n"), HasSubstr("calls are nested deeper"));
     EXPECT_THAT(klartext_error("CALL LBL 7\n"), HasSubstr("2:1: there is no LBL 7"));
     EXPECT_THAT(klartext_error("CALL LBL 1\nSTOP\nLBL 1\n"), HasSubstr("LBL 0 is missing"));
     EXPECT_THAT(klartext_error("CALL PGM TNC:\\A.H\n"), HasSubstr("no file A.H"));

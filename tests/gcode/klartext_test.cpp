@@ -67,7 +67,7 @@ TEST(KlartextMotion, NamesWhatItCannotRead) {
     EXPECT_THAT(klartext_error("HELLO X+10\n"), HasSubstr("2:1: 'HELLO' begins no statement"));
     EXPECT_THAT(klartext_error("L X FMAX\n"), HasSubstr("2:3: 'X ' needs a number"));
     EXPECT_THAT(klartext_error("L X+1 X+2 FMAX\n"), HasSubstr("2:7: 'X+2' stands twice"));
-    EXPECT_THAT(klartext_error("L X+10\n"), HasSubstr("no feed F came before"));
+    EXPECT_THAT(klartext_error("L X+10\n"), HasSubstr("no F has been programmed yet"));
     EXPECT_THAT(klartext_error("L X+10 FMAX M140 MB MAX\n"), HasSubstr("M140"));
 }
 
@@ -109,7 +109,7 @@ TEST(KlartextArc, TangentArcGoesOnInTheDirectionBeforeIt) {
               "straight_feed x=10 y=0 z=0 feed=100\n"
               "arc_feed x=20 y=10 z=0 plane=XY centre=10,10 turns=1 feed=100\n"
               "arc_feed x=10 y=20 z=0 plane=XY centre=10,10 turns=1 feed=100\n");
-    EXPECT_THAT(klartext_error("CT X+20 Y+10 F100\n"), HasSubstr("no motion in the plane"));
+    EXPECT_THAT(klartext_error("CT X+20 Y+10 F100\n"), HasSubstr("no previous move in the plane"));
 }
 
 TEST(KlartextArc, PolarPlacesTurnAboutThePole) {

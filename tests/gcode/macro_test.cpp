@@ -48,8 +48,8 @@ TEST(Macro, ArgumentsHaveFanucsPlaces) {
     std::string most;
     for (int i = 0; i < 10; ++i) most += fmt::format("I{} J{} K{} ", i, i, i);
     EXPECT_THAT(arguments_of_call(most), HasSubstr("31=9 32=9 33=9"));
-    EXPECT_THAT(arguments_of_call(most + "I1"), HasSubstr("ten times at most"));
-    EXPECT_THAT(arguments_of_call("G1"), HasSubstr("cannot be an argument"));
+    EXPECT_THAT(arguments_of_call(most + "I1"), HasSubstr("at most ten sets"));
+    EXPECT_THAT(arguments_of_call("G1"), HasSubstr("cannot be a macro argument"));
     EXPECT_EQ(arguments_of_call("A#0 B#99"), "");
 }
 
@@ -68,7 +68,7 @@ TEST(Macro, RoundsBeginWithTheSameArguments) {
 
 TEST(Macro, WordsBeforeTheCallAreCarriedOut) {
     EXPECT_EQ(rapids("G91 G0 X1 G65 P1 X5\nM30\nO1\nG0 X#24\nM99\n"), "1 6 ");
-    EXPECT_THAT(rapids("G65 A1\nM30"), HasSubstr("it needs a P word"));
+    EXPECT_THAT(rapids("G65 A1\nM30"), HasSubstr("must be followed by a P word"));
     EXPECT_THAT(rapids("G65 P77\nM30"), HasSubstr("no program O77"));
 }
 

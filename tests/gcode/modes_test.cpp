@@ -40,7 +40,8 @@ TEST(Distance, IncrementsAddToWhereTheToolIs) {
 TEST(FeedMode, InverseTimeGivesTheRateOfThePath) {
     // 5 mm in 1/10 of a minute.
     EXPECT_EQ(trace("G93 G1 X3 Y4 F10"), "straight_feed x=3 y=4 z=0 feed=50\n");
-    EXPECT_EQ(error_of("G93 G1 X3 F10\nX4"), "2:1: X4: under G93 every feed needs its own F word");
+    EXPECT_EQ(error_of("G93 G1 X3 F10\nX4"),
+              "2:1: X4: with G93 each feed move needs its own F word");
     // Half a circle of radius 10 in a minute.
     EXPECT_THAT(trace("G93 G3 X20 I10 F1"), HasSubstr("feed=31.415927"));
 }
@@ -89,7 +90,8 @@ TEST(Tools, AreSelectedByTAndChangedByM6) {
     EXPECT_EQ(trace("T3\nM6\nT4 M6\nT0 M6"), "select_tool tool=3\nchange_tool tool=3\n"
                                              "select_tool tool=4\nchange_tool tool=4\n"
                                              "select_tool tool=0\nchange_tool tool=0\n");
-    EXPECT_EQ(error_of("M6"), "1:1: M6 has no tool to change to: no T word came before it");
+    EXPECT_EQ(error_of("M6"),
+              "1:1: M6 has no tool to change to: no T word has been programmed yet");
     EXPECT_THAT(error_of("T1.5 M6"), HasSubstr("1:1: T1.5: T takes a whole number"));
     EXPECT_THAT(error_of("T-1 M6"), HasSubstr("1:1: T-1"));
 }

@@ -68,12 +68,12 @@ TEST(Spline, IsAFeedAndLeavesTheMotionModeAlone) {
 
 TEST(Spline, IsRefusedWithAPlaceWhereItsWordsAreWrong) {
     EXPECT_EQ(error("G21 F100\nG5 X10 Y1 P1 Q1 Z3\nM2\n"),
-              "2:17: Z3: a spline moves X and Y only: move Z in a block of its own");
+              "2:17: Z3: a spline moves X and Y only: move Z in a separate block");
     EXPECT_EQ(error("G21 F100 G18\nG5.1 X10 Y1 I1 J1\nM2\n"),
-              "2:1: G5.1 is a curve of the XY plane: say G17 before");
+              "2:1: G5.1 works in the XY plane only: program G17 first");
     EXPECT_EQ(error("G21 F100\nG5 X10 Y1 I1 P1 Q1\nM2\n").substr(0, 5), "2:1: ");
     EXPECT_EQ(error("G21 F100\nG5.3\nM2\n"),
-              "2:1: G5.3 ends a curve, and none was begun with G5.2");
+              "2:1: G5.3 ends a curve, but none was started with G5.2");
     EXPECT_EQ(error("G21\nG5.2 X1 Y2 P1\nM2\n").substr(0, 5), "2:1: ");
 }
 
@@ -104,13 +104,13 @@ TEST(Threading, CutsPassesWithThePitchOfTheWords) {
 
 TEST(Threading, NeedsItsWordsInEachBlock) {
     EXPECT_EQ(error(thread + "G76 P1 Z-5 I-1 J.2 K.5\nX30\nM2\n"),
-              "4:1: G76 needs the thread's pitch P");
+              "4:1: G76 needs a P word, the pitch of the thread");
     EXPECT_EQ(error(thread + "G76 P1 I-1 J.2 K.5\nM2\n"),
               "3:1: G76 has no axis word: it needs Z, the end of the thread");
     EXPECT_EQ(error(thread + "M5\nG76 P1 Z-5 I-1 J.2 K.5\nM2\n").substr(0, 20),
               "4:1: G76 threads wit");
     EXPECT_EQ(error(thread + "G76 P1 Z-5 A4 I-1 J.2 K.5\nM2\n"),
-              "3:12: A4: G76 moves no rotary axes: move A in a block before it");
+              "3:12: A4: G76 does not move rotary axes: move A in an earlier block");
 }
 
 const std::string shaft =
@@ -155,17 +155,16 @@ TEST(Turning, KeepsTheValuesThatTheSubprogramSets) {
 }
 
 TEST(Turning, SaysWhatIsWrongWithThePlaceOfIt) {
-    EXPECT_EQ(
-        error(shaft + "G71 X18 Z4\nM2\n"),
-        "9:1: G71: Q is missing, the number of the subprogram with the contour; where it means "
-        "millimetres, write G21");
+    EXPECT_EQ(error(shaft + "G71 X18 Z4\nM2\n"),
+              "9:1: G71: no Q word: it must give the number of the subprogram with the contour; if "
+              "it means millimetres, use G21");
     EXPECT_EQ(error(shaft + "G17 G71 Q100 X18 Z4\nM2\n"),
-              "9:5: G71: turning cycles work in the ZX plane: say G18 before");
+              "9:5: G71: turning cycles work in the ZX plane: program G18 first");
     EXPECT_EQ(error(shaft + "G71 Q200 X18 Z4\nM2\n").substr(0, 4), "9:5:");
     EXPECT_EQ(error(shaft + "G71 Q100 X18 Z4 I-1\nM2\n").substr(0, 4), "9:1:");
     EXPECT_EQ(error("G21 F100 G18\no1 sub\nG0 X10 Z2\nG1 Z-10 A1 C1\nX20\no1 endsub\n"
                     "G70 Q1 X22 Z4\nM2\n"),
-              "4:1: a corner has a fillet (A) or a chamfer (C), not both");
+              "4:1: a corner can have a fillet (A) or a chamfer (C), not both");
 }
 
 TEST(Turning, LeavesTheStateAsItWasOnAnError) {

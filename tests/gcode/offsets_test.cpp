@@ -64,8 +64,8 @@ TEST(Offsets, G10WritesThem) {
     EXPECT_EQ(in_shop("G91 G10 L2 P1 X5"), "set_offset offset=G54 x=-345 y=-200 z=-420\n");
     EXPECT_EQ(in_shop("G21 G91 G10 L2 P0 X5", DialectId::linuxcnc),
               "set_offset offset=G54 x=5 y=-200 z=-420\n");
-    EXPECT_EQ(error_of("G10 P1 X1"), "1:1: G10 does not say what to write: it needs L2 or L20");
-    EXPECT_EQ(error_of("G10 L2 X1"), "1:1: G10 does not say which work offset: it needs a P word");
+    EXPECT_EQ(error_of("G10 P1 X1"), "1:1: G10 needs L2 or L20");
+    EXPECT_EQ(error_of("G10 L2 X1"), "1:1: G10 needs a P word, the number of the work offset");
     EXPECT_THAT(error_of("G10 L2 P10 X1"), HasSubstr("1:8: P10"));
     EXPECT_THAT(error_of("G10 L12 P1 R5", DialectId::linuxcnc), HasSubstr("1:5: L12"));
     EXPECT_THAT(error_of("G10 L2 P1 R5"), HasSubstr("1:11: R5"));
@@ -163,10 +163,10 @@ TEST(LengthOffset, ALoneHChangesTheOneThatIsOn) {
                     HasSubstr("use_tool_length_offset number=0 length=0\n"));
         EXPECT_EQ(warnings_of("G43 H0\nH0\nM30", dialect), "");
         EXPECT_THAT(warnings_of("G43 H0\nG49\nH1\nM30", dialect),
-                    HasSubstr("H1: nothing in this block uses it"));
+                    HasSubstr("H1: no code in this block uses this word"));
     }
     EXPECT_EQ(error_of("G43 H0\nH0", DialectId::linuxcnc),
-              "2:1: H0: nothing in this block uses it");
+              "2:1: H0: no code in this block uses this word");
 }
 
 TEST(LengthOffset, OfAnUnknownNumberIsAWarning) {
@@ -200,7 +200,7 @@ TEST(Homing, KnowsTheSecondPlaceOnly) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
         for (const std::string_view text : {"G91 G30 P3 Z0", "G91 G30 P4 Z0"})
             EXPECT_THAT(error_of(text, dialect),
-                        HasSubstr("G30 knows the second reference position only"));
+                        HasSubstr("G30 supports the second reference position only"));
         EXPECT_EQ(in_shop("G30 P2 Z450", dialect), in_shop("G30 Z450", dialect));
         EXPECT_EQ(warnings_of("G21 G91 G30 P2 Z0\nM30", dialect), "");
     }
@@ -216,7 +216,7 @@ TEST(Homing, WinsOverTheMotionCodeOfItsBlock) {
                                                          "straight_traverse x=350 y=200 z=420\n"
                                                          "straight_traverse x=1 y=200 z=420\n");
     EXPECT_EQ(error_of("G0 G28 Z0", DialectId::linuxcnc),
-              "1:1: G28 and G0 both want the axis words of this block: write two blocks");
+              "1:1: G28 and G0 both use the axis words of this block: split it into two blocks");
 }
 
 TEST(Homing, IsOneBlockWithSeveralMotions) {
@@ -226,7 +226,7 @@ TEST(Homing, IsOneBlockWithSeveralMotions) {
 TEST(Homing, SaysOnceThatHomeWasAssumed) {
     const std::string warnings = warnings_of(
         run_text("G21 G91 G28 Z0\nG28 X0\nM30\n", Environment{.dialect = DialectId::fanuc}).run);
-    EXPECT_EQ(warnings, "G28: where home is was not said, taken as machine zero\n");
+    EXPECT_EQ(warnings, "G28: the home position is not given and assumed to be machine zero\n");
     EXPECT_EQ(warnings_of("G21 G91 G28 Z0\nM30\n"), "");
 }
 

@@ -67,19 +67,19 @@ TEST(Parser, ReadsBlockDeleteWithItsSwitch) {
     EXPECT_EQ(parsed(" /3 G0").block_delete, 3);
     EXPECT_EQ(parsed("N10 /9 G0").block_delete, 9);
     EXPECT_EQ(parsed("G0 /2 X1").kept_words, 1u);
-    EXPECT_EQ(refused("G0 / X1", DialectId::linuxcnc), "4: '/' belongs at the start of the block");
+    EXPECT_EQ(refused("G0 / X1", DialectId::linuxcnc), "4: '/' must be at the start of the block");
 }
 
 TEST(Parser, TakesATapeMarkAndIgnoresTheRestOfItsLine) {
     EXPECT_TRUE(parsed("%").tape_mark);
     EXPECT_TRUE(parsed("%1234_NAME").tape_mark);
-    EXPECT_EQ(refused("G0 %"), "4: '%' belongs at the start of a line");
+    EXPECT_EQ(refused("G0 %"), "4: '%' must be at the start of the line");
 }
 
 TEST(Parser, NamesALetterWithoutNumber) {
-    EXPECT_EQ(refused("G0 X Y1"), "4: 'X' has no number behind it");
-    EXPECT_EQ(refused("G0 X."), "4: 'X' has no number behind it");
-    EXPECT_EQ(refused("G0 X-"), "4: 'X' has no number behind it");
+    EXPECT_EQ(refused("G0 X Y1"), "4: 'X' must be followed by a number");
+    EXPECT_EQ(refused("G0 X."), "4: 'X' must be followed by a number");
+    EXPECT_EQ(refused("G0 X-"), "4: 'X' must be followed by a number");
 }
 
 TEST(Parser, NamesANumberWithoutLetter) {
@@ -90,19 +90,20 @@ TEST(Parser, NamesANumberWithoutLetter) {
 }
 
 TEST(Parser, NamesARepeatedWord) {
-    EXPECT_EQ(refused("G0 X1 Y2 X3"), "10: 'X3': a block takes one X word, this is the second");
+    EXPECT_EQ(refused("G0 X1 Y2 X3"),
+              "10: 'X3': a block may have only one X word; this is the second");
     EXPECT_EQ(parsed("G0 G17 M3 M8").words.size(), 4u);
 }
 
 TEST(Parser, NamesAnOpenComment) {
     EXPECT_THAT(refused("G0 X1 (to the end"),
                 AllOf(HasSubstr("7: "), HasSubstr("(to the end"), HasSubstr("not closed")));
-    EXPECT_EQ(refused("G0 )"), "4: ')' has no meaning here");
+    EXPECT_EQ(refused("G0 )"), "4: ')' is not allowed here");
 }
 
 TEST(Parser, NamesAnUnknownCharacter) {
-    EXPECT_EQ(refused("G0 X1 !"), "7: '!' has no meaning here");
-    EXPECT_EQ(refused("G0 \xC3\xA9"), "4: the byte 0xC3 has no meaning outside of a comment");
+    EXPECT_EQ(refused("G0 X1 !"), "7: '!' is not allowed here");
+    EXPECT_EQ(refused("G0 \xC3\xA9"), "4: the byte 0xC3 is not allowed outside comments");
 }
 
 TEST(Parser, RefusesKeywordsOfOtherControls) {

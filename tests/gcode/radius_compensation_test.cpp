@@ -150,7 +150,7 @@ TEST(RadiusCompensation, EndingWithoutAMoveGivesNone) {
 }
 
 TEST(RadiusCompensation, RefusesAnEntryNoLongerThanTheRadius) {
-    EXPECT_THAT(left(2.0).line(2.0, 0.0).error.value().message, HasSubstr("start from farther"));
+    EXPECT_THAT(left(2.0).line(2.0, 0.0).error.value().message, HasSubstr("start farther"));
     EXPECT_THAT(left(2.0).line(0.0, 0.0).error.value().message, HasSubstr("goes 0 mm"));
     EXPECT_FALSE(left(2.0).line(2.001, 0.0).error);
 }

@@ -35,20 +35,18 @@ TEST(Rs274Cycle, TapsWithAReversedSpindleAndWithoutOverrides) {
 }
 
 TEST(Rs274Cycle, RefusesToTapWithASpindleThatStandsOrTurnsTheOtherWay) {
-    EXPECT_EQ(
-        error_of(cycle("G84 X1 Z-3 R2", "S500"), DialectId::linuxcnc),
-        "3:5: G84 works with a turning spindle, and it stands still: start it with M3 before");
-    EXPECT_EQ(
-        error_of(cycle("G74 X1 Z-3 R2"), DialectId::linuxcnc),
-        "3:5: G74 cuts a left-hand thread, and the spindle turns the other way: start it with "
-        "M4 before");
+    EXPECT_EQ(error_of(cycle("G84 X1 Z-3 R2", "S500"), DialectId::linuxcnc),
+              "3:5: G84: the spindle is stopped: start it with M3 first");
+    EXPECT_EQ(error_of(cycle("G74 X1 Z-3 R2"), DialectId::linuxcnc),
+              "3:5: G74 cuts a left-hand thread, but the spindle turns the other way: start it "
+              "with M4 first");
 }
 
 TEST(Rs274Cycle, KeepsTheDwellOfTheCycleBeforeForATap) {
     EXPECT_NE(moves("G82 X1 Z-3 R2 P0.7\nG80\nG84 X4 Z-3 R2").find("dwell seconds=0.7", 200),
               std::string::npos);
     EXPECT_EQ(error_of(cycle("G82 X1 Z-3 R2 P1\nG89 X2 Z-3 R2"), DialectId::linuxcnc),
-              "4:1: G89 needs a P word, the seconds it waits at the bottom");
+              "4:1: G89 needs a P word, the dwell at the bottom in seconds");
 }
 
 TEST(Rs274Cycle, BoresBackUpToKAndComesOutOffTheMiddle) {
@@ -59,8 +57,7 @@ TEST(Rs274Cycle, BoresBackUpToKAndComesOutOffTheMiddle) {
     EXPECT_EQ(count_of(text, "x=1.5 y=2.25"), 4u) << text;
     EXPECT_EQ(
         error_of(cycle("G87 X1 Z-3 R2 I1 J1"), DialectId::linuxcnc),
-        "3:5: G87 has no K: it needs I, J and K, how far the tool leaves the middle and where "
-        "the boring ends");
+        "3:5: G87 has no K: it needs I and J, the shift off centre, and K, where the boring ends");
 }
 
 TEST(Rs274Cycle, LeavesTheToolInTheHoleAfterG88) {
@@ -69,7 +66,7 @@ TEST(Rs274Cycle, LeavesTheToolInTheHoleAfterG88) {
     EXPECT_EQ(text.find("straight_traverse", text.find("program_stop")),
               text.find("straight_traverse x=9 y=2 z=10"))
         << text;
-    EXPECT_NE(warnings_of(cycle("G88 X1 Z-3 R2 P1"), DialectId::linuxcnc).find("draws it out"),
+    EXPECT_NE(warnings_of(cycle("G88 X1 Z-3 R2 P1"), DialectId::linuxcnc).find("retracts it"),
               std::string::npos);
 }
 
@@ -91,16 +88,16 @@ TEST(Rs274Cycle, WarnsOfTapsThatLeaveTheirHoleInOtherPlanes) {
 
 TEST(Rs274Cycle, RefusesAxesOfNoUseAndCutterCompensation) {
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2 A5"), DialectId::linuxcnc),
-              "3:19: A5: a cycle moves X, Y and Z only: move A in a block before it");
+              "3:19: A5: a cycle moves only X, Y and Z: move A in an earlier block");
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2\nG81"), DialectId::linuxcnc).substr(0, 24),
               "4:1: G81 has no axis wor");
     const std::string compensated =
         "G21 F100\nG0 X50 Y50 Z10\nG41.1 D3\nG1 X10 Y10\nX0\nG81 X1 Z-3 R2\n";
-    EXPECT_EQ(error_of(compensated, DialectId::linuxcnc),
-              "6:1: G81 is not possible between G41 and G40: switch cutter radius compensation "
-              "off before");
+    EXPECT_EQ(
+        error_of(compensated, DialectId::linuxcnc),
+        "6:1: G81 is not allowed between G41 and G40: cancel cutter radius compensation first");
     EXPECT_EQ(error_of(cycle("G81 X1 Z-3 R2 K2"), DialectId::linuxcnc),
-              "3:19: K2: nothing in this block uses it");
+              "3:19: K2: no code in this block uses this word");
 }
 
 } // namespace

@@ -35,7 +35,7 @@ TEST(SavedModes, BringBackFeedAndSpeedWithFewDigits) {
     const char* program = "F100.377 S50.6 M3\nM70\nF3 S9\nM72\nG1 X1";
     EXPECT_THAT(traced(program), HasSubstr("speed=51\n"));
     EXPECT_THAT(traced(program), EndsWith("feed=100.4\n"));
-    EXPECT_THAT(warned(program), HasSubstr("comes back as F100.4, rounded from F100.377"));
+    EXPECT_THAT(warned(program), HasSubstr("restored as F100.4, rounded from F100.377"));
     EXPECT_THAT(refused("G21 F100\nM70\nG93\nM72\nG1 X1"), HasSubstr("no feed rate"));
 }
 
@@ -60,7 +60,7 @@ TEST(LinuxcncState, TakesAMotionCodeAloneAsAMoveToWhereItStands) {
     EXPECT_THAT(traced("G0 X1\nG43.1 Z2\nG0"), EndsWith("straight_traverse x=1 y=0 z=-2\n"));
     EXPECT_THAT(refused("G21 G1"), HasSubstr("no feed rate"));
     EXPECT_THAT(refused("G21 F1\nM9 G2"), HasSubstr("G2 has no centre"));
-    EXPECT_THAT(refused("G0 G28"), HasSubstr("both want the axis words"));
+    EXPECT_THAT(refused("G0 G28"), HasSubstr("both use the axis words"));
     EXPECT_EQ(error_of("G0 G90", DialectId::fanuc), "");
 }
 
@@ -72,26 +72,26 @@ TEST(LinuxcncState, ReadsWorkOffsetsSetAsParametersWhenTheyAreSelectedAnew) {
 TEST(LinuxcncState, MiscountsItsPlaceWhenG10TurnsUnderG92) {
     const char* program = "G92 Y-21.159\nG10 L2 P1 X-7 R13\nG0 X4";
     EXPECT_THAT(traced(program), HasSubstr("x=4 y=-22.191354 z=0"));
-    EXPECT_THAT(warned(program), HasSubstr("wrong about where it stands"));
+    EXPECT_THAT(warned(program), HasSubstr("loses its position"));
 }
 
 TEST(LinuxcncState, RefusesWhatTheControlRefuses) {
     EXPECT_THAT(refused("G21 M19 R400"), HasSubstr("from 0 to 360"));
     EXPECT_THAT(refused("G21 S1\nG96"), HasSubstr("in the same block"));
-    EXPECT_THAT(refused("G21\nG92"), HasSubstr("does not say of which axis"));
-    EXPECT_THAT(refused("G21\nG10 L20 P1 X1 R5"), HasSubstr("L2 does"));
+    EXPECT_THAT(refused("G21\nG92"), HasSubstr("needs an axis word"));
+    EXPECT_THAT(refused("G21\nG10 L20 P1 X1 R5"), HasSubstr("use L2"));
     EXPECT_THAT(refused("o1 repeat [2]\no1 break\no1 endrepeat"), HasSubstr("'break' in a"));
     EXPECT_THAT(refused("o1 if [1]\no1 elseif [1/0]\no1 endif"), HasSubstr("division by zero"));
     EXPECT_THAT(refused("o1 sub\no2 sub\no2 endsub\no1 endsub"), HasSubstr("inside of 1"));
     EXPECT_THAT(refused("o1 sub\no1 endsub\no1 sub\no1 endsub"), HasSubstr("two subprograms 1"));
     EXPECT_THAT(refused("o1.5 if [1]\no1.5 endif"), HasSubstr("whole"));
-    EXPECT_THAT(refused("o1 if [0]\no2 foo\no1 endif"), HasSubstr("no keyword"));
-    EXPECT_THAT(refused("o1 endif"), HasSubstr("there is no 'if' of 1"));
+    EXPECT_THAT(refused("o1 if [0]\no2 foo\no1 endif"), HasSubstr("not a keyword"));
+    EXPECT_THAT(refused("o1 endif"), HasSubstr("'if' of 1 is missing before this line"));
 }
 
 TEST(LinuxcncState, PassesOverWhatStandsBehindAnOWordThatIsSkipped) {
     EXPECT_THAT(traced("o1 if [0]\nG0 X1\no1 endif L0\nG0 X2"), EndsWith(" x=2 y=0 z=0\n"));
-    EXPECT_THAT(refused("o1 if [1]\no1 endif L0"), HasSubstr("no keyword"));
+    EXPECT_THAT(refused("o1 if [1]\no1 endif L0"), HasSubstr("not a keyword"));
 }
 
 } // namespace

@@ -116,7 +116,8 @@ TEST(ShopMacro, G29PassesThePlacesOfEveryG28) {
 TEST(ShopProgram, BeginsWithG0WhereNoMotionCodeCame) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas, DialectId::grbl}) {
         EXPECT_EQ(trace("G21\nG54 X10. Y5.\nG91 X1.", dialect).find("error"), std::string::npos);
-        EXPECT_THAT(warnings_of("G21\nG54 X10. Y5.", dialect), HasSubstr("taken as G0"));
+        EXPECT_THAT(warnings_of("G21\nG54 X10. Y5.", dialect),
+                    HasSubstr("G0, the power-on default"));
     }
     EXPECT_THAT(error_of("G54 X10", DialectId::linuxcnc), HasSubstr("no motion code"));
 }
@@ -138,7 +139,7 @@ TEST(ShopProgram, InKlartextMayMixWholeAndBrokenLengths) {
     const std::string head = "0 BEGIN PGM A MM\n1 L X-5 Y-5 Z+0 R0 FMAX\n2 L X+27.5 R0 FMAX\n";
     EXPECT_EQ(warnings_of(head + "3 END PGM A MM\n", DialectId::heidenhain), "");
     EXPECT_THAT(error_of(head + "3 CC Y-4 Z-4\n", DialectId::heidenhain),
-                HasSubstr("out of the working plane"));
+                HasSubstr("outside the working plane"));
 }
 
 TEST(ShopProgram, LeavesOutWhatStandsBehindASlash) {

@@ -45,8 +45,8 @@ TEST(SiemensCycle, DrillsFromTheSafetyDistanceToTheDepth) {
 TEST(SiemensCycle, RefusesLevelsThatCannotBe) {
     EXPECT_THAT(motions("CYCLE81(-1,0,2,-5)"), HasSubstr("RTP at -1.0000 mm is below"));
     EXPECT_THAT(motions("CYCLE81(10,0,2,5)"), HasSubstr("above the reference plane"));
-    EXPECT_THAT(motions("CYCLE81(10,0,2)"), HasSubstr("DP or DPR is missing"));
-    EXPECT_THAT(motions("CYCLE81(,0,2,-5)"), HasSubstr("RTP, is missing"));
+    EXPECT_THAT(motions("CYCLE81(10,0,2)"), HasSubstr("give DP or DPR"));
+    EXPECT_THAT(motions("CYCLE81(,0,2,-5)"), HasSubstr("(RTP) is missing"));
     EXPECT_THAT(motions("CYCLE83(10,0,1,-20,,-25)"), HasSubstr("61107"));
     EXPECT_THAT(motions("CYCLE95(1)"), HasSubstr("'CYCLE95': this cycle is not supported yet"));
     EXPECT_THAT(siemens_error("CYCLE81(10,0,2,-5)\n"), HasSubstr("1:1: CYCLE81: no feed rate"));
@@ -127,7 +127,7 @@ TEST(SiemensCycle, PatternsHaveTheirHoles) {
               "15.000,10.000 10.000,15.000 5.000,10.000 10.000,5.000 ");
     EXPECT_EQ(holes("MCALL CYCLE81(10,0,2,-5)\nHOLES2(0,0,10,90,-90,2)\nMCALL\n"),
               "0.000,10.000 10.000,0.000 ");
-    EXPECT_THAT(holes("HOLES2(0,0,10,90,-90,0)\n"), HasSubstr("NUM, its value 6"));
+    EXPECT_THAT(holes("HOLES2(0,0,10,90,-90,0)\n"), HasSubstr("parameter 6 (NUM)"));
 }
 
 } // namespace

@@ -33,10 +33,10 @@ TEST(SiemensJump, LooksForwardsOrBackwards) {
 
 TEST(SiemensJump, NamesATargetThatIsNotThere) {
     EXPECT_THAT(siemens_error("G0 X1\nGOTOF GONE\n"),
-                HasSubstr("2:1: there is no GONE behind this block to go to"));
-    EXPECT_THAT(siemens_error("GONE: G0 X1\nGOTOF GONE\n"), HasSubstr("stands on the other side"));
+                HasSubstr("2:1: there is no GONE after this block to jump to"));
+    EXPECT_THAT(siemens_error("GONE: G0 X1\nGOTOF GONE\n"), HasSubstr("in the other direction"));
     EXPECT_THAT(siemens_error("GOTOF\n"), HasSubstr("1:1: 'GOTOF' needs a label"));
-    EXPECT_THAT(siemens_error("G0 X1 GOTOF GONE\n"), HasSubstr("needs a block of its own"));
+    EXPECT_THAT(siemens_error("G0 X1 GOTOF GONE\n"), HasSubstr("must be in a block by itself"));
 }
 
 TEST(SiemensStructure, TakesOneBranch) {
@@ -88,8 +88,9 @@ TEST(SiemensCall, PassesValuesAndRepeats) {
 
 TEST(SiemensCall, RefusesWhatDoesNotFit) {
     EXPECT_THAT(siemens_error("SUB_B(1,2)\n%_N_SUB_B_SPF\nPROC SUB_B(REAL ONE)\nM17\n"),
-                HasSubstr("1:1: SUB_B takes 1 parameters, and 2 are given"));
-    EXPECT_THAT(siemens_error("SUB_C\n%_N_SUB_C_SPF\nSUB_C\nM17\n"), HasSubstr("calls go deeper"));
+                HasSubstr("1:1: SUB_B takes 1 parameters, but 2 are given"));
+    EXPECT_THAT(siemens_error("SUB_C\n%_N_SUB_C_SPF\nSUB_C\nM17\n"),
+                HasSubstr("calls are nested deeper"));
     EXPECT_THAT(siemens_error("SUB_D(1)\n%_N_SUB_D_SPF\nPROC SUB_D(VAR REAL ONE)\nM17\n"),
                 HasSubstr("VAR one"));
 }

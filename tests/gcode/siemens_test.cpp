@@ -44,14 +44,14 @@ TEST(SiemensWords, NamesWhatItCannotRead) {
     EXPECT_THAT(siemens_error("FOO X10\n"), HasSubstr("1:1: 'FOO' is called here"));
     EXPECT_THAT(siemens_error("FOO\n"), HasSubstr("1:1: 'FOO' is no word of this control, and "
                                                   "there is no program FOO.SPF"));
-    EXPECT_THAT(siemens_error("G0 X\n"), HasSubstr("1:4: 'X' has no number behind it"));
+    EXPECT_THAT(siemens_error("G0 X\n"), HasSubstr("1:4: 'X' must be followed by a number"));
     EXPECT_THAT(siemens_error("G0 X1 X2\n"), HasSubstr("1:7: 'X2' stands twice"));
     EXPECT_THAT(siemens_error("G777 X1\n"), HasSubstr("1:1: G777: there is no such code"));
     EXPECT_THAT(siemens_error("G1 X1 F1 RND=5\n"), HasSubstr("1:10: 'RND': corners"));
     EXPECT_THAT(siemens_error("G1 X=FOO F1\n"), HasSubstr("1:6: 'foo': there is no variable"));
     EXPECT_THAT(siemens_error("G1 X=FOO(1)\n"), HasSubstr("1:6: 'FOO': there is no such function"));
     EXPECT_THAT(siemens_error("FOO=1\n"), HasSubstr("'foo': there is no variable"));
-    EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments begin with ';'"));
+    EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments start with ';'"));
     EXPECT_THAT(siemens_error("G1 A3=1 F1\n"), HasSubstr("1:4: 'A3=': tool orientation"));
     EXPECT_THAT(siemens_error("G0 X10 R5\n"), HasSubstr("1:8: 'R5' stands alone"));
     EXPECT_THAT(siemens_error("G1 X1 F1 E5\n"), HasSubstr("1:10: 'E'"));
@@ -72,14 +72,14 @@ TEST(SiemensWords, PassOverNothingInSilence) {
     const auto warned = [](const std::string& text) {
         return warnings_of("G710\nG0 X0\n" + text + "\nM30\n", DialectId::siemens);
     };
-    EXPECT_THAT(warned("X1 I5"), HasSubstr("I5: nothing in this block uses it"));
-    EXPECT_THAT(warned("X1 CR=5"), HasSubstr("CR=5: nothing in this block uses it"));
+    EXPECT_THAT(warned("X1 I5"), HasSubstr("I5: no code in this block uses this word"));
+    EXPECT_THAT(warned("X1 CR=5"), HasSubstr("CR=5: no code in this block uses this word"));
     EXPECT_THAT(warned("X1 RPL=5"), HasSubstr("RPL=5: nothing"));
     EXPECT_THAT(warned("X1 I1=5"), HasSubstr("I1=5: nothing"));
-    EXPECT_THAT(warned("M2=3 S2=100"), HasSubstr("not of the first spindle"));
-    EXPECT_THAT(siemens_error("G4 F1 X10\n"), HasSubstr("1:1: G4 needs a block of its own"));
+    EXPECT_THAT(warned("M2=3 S2=100"), HasSubstr("not for spindle 1"));
+    EXPECT_THAT(siemens_error("G4 F1 X10\n"), HasSubstr("1:1: G4 must be in a block by itself"));
     EXPECT_THAT(siemens_error("GOTOF OUT G0 X10\nOUT:\n"),
-                HasSubstr("1:1: 'GOTOF OUT' needs a block of its own"));
+                HasSubstr("1:1: 'GOTOF OUT' must be in a block by itself"));
 }
 
 TEST(SiemensExpression, FollowsTheControlsPriorities) {
@@ -182,7 +182,7 @@ TEST(SiemensOffset, NumbersGoFromG54ToG599) {
     const Ran ran = run_text("G505\nG0 X0\n", environment);
     EXPECT_EQ(machine_from_program(ran.run.state.modal.offsets, ran.run.state.modal.position)[0],
               7.0);
-    EXPECT_THAT(warnings_of("G599\n", DialectId::siemens), HasSubstr("nothing is known"));
+    EXPECT_THAT(warnings_of("G599\n", DialectId::siemens), HasSubstr("unknown and assumed"));
 }
 
 TEST(SiemensTool, LengthComesWithTheChangeAndD0TakesItAway) {
@@ -221,7 +221,8 @@ TEST(SiemensFrame, ShiftsTurnsAndMirrorsInTheOrderOfTheProgram) {
 }
 
 TEST(SiemensFrame, RefusesArcsThatAreNoneAndTiltedPlanes) {
-    EXPECT_THAT(siemens_error("SCALE X2\nG1 X5 F100\nG2 X10 I2.5\n"), HasSubstr("SCALE stretches"));
+    EXPECT_THAT(siemens_error("SCALE X2\nG1 X5 F100\nG2 X10 I2.5\n"),
+                HasSubstr("SCALE uses different factors"));
     EXPECT_THAT(siemens_error("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1)\n"),
                 HasSubstr("1:1: CYCLE800: its value 8 is 30"));
     EXPECT_EQ(siemens_error("CYCLE800()\n"), "");

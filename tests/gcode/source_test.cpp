@@ -97,7 +97,7 @@ TEST(Source, RefusesALineLongerThanTheLimitAndNamesIt) {
     ASSERT_FALSE(program);
     EXPECT_EQ(program.error().where.line, 2u);
     EXPECT_THAT(program.error().message, AllOf(HasSubstr("long.nc"), HasSubstr("line 2"),
-                                               HasSubstr("65536"), HasSubstr("break it")));
+                                               HasSubstr("65536"), HasSubstr("split it")));
 }
 
 TEST(Source, RefusesAHugeFileOfOneLineAfterReadingLittleOfIt) {

@@ -32,7 +32,7 @@ TEST(SystemVariables, PlacesAreThoseOfTheBlockBefore) {
     EXPECT_EQ(result_of(start + "#100=#5043", DialectId::haas), "5");
     EXPECT_EQ(result_of(start + "#100=#5083"), "80.5");
     EXPECT_EQ(result_of("X25.4\nG20\n#100=#5001"), "1");
-    EXPECT_THAT(result_of("#5001=3"), HasSubstr("the control's own and cannot be set"));
+    EXPECT_THAT(result_of("#5001=3"), HasSubstr("read-only and cannot be set"));
     Environment unknown = known_environment(DialectId::fanuc);
     unknown.start = {};
     EXPECT_EQ(run_text("#100=#5001", unknown).run.state.parameters->numbered(100), Value{});
@@ -107,14 +107,14 @@ TEST(SystemVariables, ModesAndWordsAreThoseOfTheBlockBefore) {
 
 TEST(SystemVariables, AlarmsEndTheRunWithTheirMessage) {
     EXPECT_EQ(error_of("G21\nIF [#1 EQ #0] THEN #3000=12 (NO TOOL)\nM30"),
-              "2:20: the program raises alarm 3012 here: NO TOOL; the control goes no further");
+              "2:20: the program raises alarm 3012 here: NO TOOL; the control stops");
     EXPECT_THAT(error_of("#3000=1 (X)", DialectId::haas), HasSubstr("alarm 1001 here: X"));
     EXPECT_EQ(trace("#3006=1 (TURN THE PART)\nM30"), "message text=TURN THE PART\nprogram_stop\n");
 }
 
 TEST(SystemVariables, TheClockStandsStillAndTimersGoOn) {
     EXPECT_EQ(result_of("#100=#3011"), "2.02001e+07");
-    EXPECT_THAT(warnings_of("#100=#3012\n#101=#3011"), HasSubstr("there is no clock here"));
+    EXPECT_THAT(warnings_of("#100=#3012\n#101=#3011"), HasSubstr("clock and timers are simulated"));
     EXPECT_EQ(result_of("#3001=0\nWHILE [#3001 LT 60000] DO 1\nEND 1\n#100=1"), "1");
     EXPECT_EQ(result_of("#3003=1\n#100=#3003+#3004"), "1");
 }
@@ -143,7 +143,7 @@ TEST(FanucFlow, JumpsGoForwardFirst) {
     const std::string text = "#100=0\nGOTO 2\nN1 #100=#100+10\nGOTO 3\nN2 GOTO 1\n#100=90\n"
                              "N1 #100=#100+1\nN3 M30\n";
     EXPECT_EQ(result_of(text), "1");
-    EXPECT_THAT(warnings_of(text), HasSubstr("N1 stands in lines 3 and 7"));
+    EXPECT_THAT(warnings_of(text), HasSubstr("N1 is in lines 3 and 7"));
     EXPECT_EQ(result_of("#1=2\nGOTO [#1*10+1]\n#100=5\nN21 #100=6"), "6");
     EXPECT_EQ(result_of("#1=21\nGOTO#1\n#100=5\nN21 #100=6"), "6");
     EXPECT_THAT(result_of("GOTO 5\nM30\nO9\nN5 M99"), HasSubstr("no block N5"));
@@ -161,7 +161,7 @@ TEST(FanucFlow, JumpsAndLoopsStandAlone) {
     for (const std::string line :
          {"G0 X5 GOTO 5", "GOTO 5 X7", "#1=2 GOTO 5", "IF [1 EQ 1] GOTO 5 X7", "END 1 X5",
           "GOTO 5 GOTO 5", "IF [1 EQ 1] THEN WHILE [1] DO 1"})
-        EXPECT_THAT(result_of("#100=1\n" + line + "\nN5 M30"), HasSubstr("block of its own"))
+        EXPECT_THAT(result_of("#100=1\n" + line + "\nN5 M30"), HasSubstr("in a block by itself"))
             << line;
     EXPECT_EQ(result_of("#100=1\nN3 GOTO 5 (AWAY)\n#100=2\nN5 M30"), "1");
 }

@@ -47,7 +47,7 @@ TEST(TiltedPlane, RollPitchYawTurnAboutTheWorkAxesInTheirOrder) {
     expect_machine_at("G68.2 P1 Q123 X0 Y0 Z0 I90 J0 K90\nG0 X1 Y2 Z3", 3, 1, 2, true);
     // Z first: (1, 2, 3) to (-2, 1, 3), then about X: (-2, -3, 1).
     expect_machine_at("G68.2 P1 Q321 X0 Y0 Z0 I90 J0 K90\nG0 X1 Y2 Z3", -2, -3, 1, true);
-    EXPECT_THAT(error_of("G68.2 P1 Q122 I1"), HasSubstr("each once"));
+    EXPECT_THAT(error_of("G68.2 P1 Q122 I1"), HasSubstr("once each"));
 }
 
 TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
@@ -57,20 +57,20 @@ TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
 
 TEST(TiltedPlane, IsLeftWithG69) {
     expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG69\nG0 X1 Y2 Z3", 1, 2, 3, false);
-    EXPECT_THAT(error_of("G53.1"), HasSubstr("write G68.2 before it"));
-    EXPECT_THAT(error_of("G68.2 P2 Q0 X0 Y0 Z0"), HasSubstr("give Euler angles"));
+    EXPECT_THAT(error_of("G53.1"), HasSubstr("program G68.2 first"));
+    EXPECT_THAT(error_of("G68.2 P2 Q0 X0 Y0 Z0"), HasSubstr("use Euler angles"));
 }
 
 TEST(ToolCentre, G434IsG43WithANote) {
     EXPECT_EQ(trace("G43.4 H3"), "use_tool_length_offset number=3 length=0 follows_tip\n");
     EXPECT_EQ(trace("G43 H3"), "use_tool_length_offset number=3 length=0\n");
-    EXPECT_THAT(warnings_of("G43.4 H3"), HasSubstr("taken as G43"));
+    EXPECT_THAT(warnings_of("G43.4 H3"), HasSubstr("treated as G43"));
 }
 
 TEST(ToolCentre, G435PointsTheToolByVectorsUntilAnotherLengthCode) {
     EXPECT_TRUE(lowered("G43.5 H3\nG1 X1 I0 J0.6 K0.8 F9").moved_tilted);
     EXPECT_FALSE(lowered("G43.5 H3\nG49\nG1 X1 F9").moved_tilted);
-    EXPECT_THAT(warnings_of("G21 G43.5 H3\nG1 X1 I0 J0.6 K0.8 F9"), Not(HasSubstr("nothing in")));
+    EXPECT_THAT(warnings_of("G21 G43.5 H3\nG1 X1 I0 J0.6 K0.8 F9"), Not(HasSubstr("no code in")));
 }
 
 TEST(LookAhead, ItsCodesChangeNoMotion) {
