@@ -51,7 +51,7 @@ TEST(Arc, WithARadiusTakesTheShortOrTheLongWay) {
               "arc_feed x=10 y=10 z=0 plane=XY centre=0,10 turns=-1 feed=100\n");
     EXPECT_EQ(trace("G3 X10 Y10 R-10 F100"),
               "arc_feed x=10 y=10 z=0 plane=XY centre=10,0 turns=1 feed=100\n");
-    // In the ZX plane the first axis is Z: counter-clockwise seen from +Y leads from Z to X.
+    // In the ZX plane the first axis is Z: counterclockwise as seen from +Y is from Z to X.
     EXPECT_EQ(trace("G18 G3 X10 Z10 R10 F100"),
               "select_plane plane=ZX\n"
               "arc_feed x=10 y=0 z=10 plane=ZX centre=0,10 turns=1 feed=100\n");
@@ -92,7 +92,8 @@ TEST(Arc, WarnsOfSmallDifferencesWhereTheControlHasAParameter) {
 }
 
 TEST(Arc, LinuxcncAllowsAThousandthOfTheRadius) {
-    // abs_err > tolerance and rel_err > 0.001 is the error; 100 times the tolerance always is.
+    // LinuxCNC refuses abs_err > tolerance with rel_err > 0.001, and always 100 times the
+    // tolerance.
     EXPECT_EQ(error_of("G21 G2 X10.028 I5 F100", DialectId::linuxcnc), "");
     EXPECT_THAT(error_of("G21 G2 X10.029 I5 F100", DialectId::linuxcnc), HasSubstr("1:5: G2"));
     EXPECT_EQ(error_of("G21 G2 X1000.4 I500 F100", DialectId::linuxcnc), "");

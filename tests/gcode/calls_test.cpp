@@ -18,7 +18,7 @@ std::string rapids_of(const Ran& ran) {
     return ran.run.error ? found + "error: " + ran.run.error->message : found;
 }
 
-/// The X of every rapid of a program, in order.
+/// The X of each rapid of a program, in order.
 std::string rapids(std::string_view text, DialectId dialect = DialectId::fanuc) {
     return rapids_of(run_text("G21\n" + std::string(text), dialect));
 }
@@ -39,7 +39,7 @@ TEST(Calls, SubprogramsRunAsOftenAsTheirCallSays) {
     EXPECT_EQ(rapids("M98 P30100\nG0 X9\nM30\n" + sub), "1 2 3 9 ");
     EXPECT_THAT(rapids("M98 P30100\nG0 X9\nM30\n" + sub, DialectId::haas),
                 HasSubstr("no program O30100"));
-    // A program of that very number is meant before three rounds of another.
+    // A program with exactly that number takes precedence over three repetitions of another.
     EXPECT_EQ(rapids("M98 P30100\nG0 X9\nM30\nO30100\nG0 X7\nM99\n" + sub), "7 9 ");
 }
 
@@ -155,7 +155,7 @@ TEST(Calls, BlocksKnowTheLinesThatCalledThem) {
 }
 
 TEST(Calls, AFailedBlockLeavesTheLevelsAsTheyWere) {
-    // The call itself succeeds, and is then seen to be one of a loop without end.
+    // The call itself succeeds and is then recognised as part of an endless loop.
     const Ran ran = run_text("G21\nN10 M98 P1\nM30\nO1\nM99 P10\n");
     ASSERT_TRUE(ran.run.error);
     EXPECT_THAT(ran.run.error->message, HasSubstr("never ends"));
@@ -163,7 +163,7 @@ TEST(Calls, AFailedBlockLeavesTheLevelsAsTheyWere) {
     EXPECT_EQ(ran.run.state.frames.size(), 2u);
 }
 
-// Truth: rs274 2.9.
+// Expected values: rs274 2.9.
 TEST(Calls, AreMadeAsLinuxCncMakesThem) {
     const auto linux = [](std::string_view text) { return rapids(text, DialectId::linuxcnc); };
     EXPECT_EQ(linux("G0 X1\nM98 P100 L2\nG0 X9\nM2\nO100\nG91\nG0 X1\nG90\nM99\n"), "1 2 3 9 ");

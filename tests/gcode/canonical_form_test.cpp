@@ -17,11 +17,11 @@ namespace {
 
 constexpr uint32_t seeds = 12;
 
-/// The lines of two programs that mean the same may be others.
+/// Two equivalent programs may have different lines.
 PlainRun without_lines(PlainRun run) {
     for (PlainCommand& command : run.commands) {
         command.line = 1;
-        // The reference names three axes of a tapping move, so these are what is compared.
+        // The reference gives three axes of a tapping move, so only these are compared.
         if (command.kind == "rigid_tap") command.values.assign(&command.end[0], &command.end[3]);
     }
     if (run.refused) run.refused = 1;
@@ -36,7 +36,7 @@ std::string differences_of(const PlainRun& first, const PlainRun& second,
 
 class Features : public testing::TestWithParam<ProgramFeature> {
 protected:
-    /// Programs of this feature that are carried out to their end.
+    /// Programs of this feature that run to their end.
     std::vector<std::string> programs() const {
         std::vector<std::string> found;
         for (uint32_t seed = 1; seed <= seeds; ++seed) {
@@ -47,7 +47,7 @@ protected:
     }
 };
 
-/// Text outside of comments, each character as `change` wants it.
+/// The text with each character outside comments replaced by `change`.
 template <typename Change>
 std::string changed_text(const std::string& program, Change change) {
     std::string text;
@@ -109,7 +109,7 @@ TEST_P(Features, DoNotCareAboutCommentsAndBlockNumbers) {
         const PlainRun run = run_feeler(program);
         EXPECT_EQ(differences_of(run, run_feeler(numbered), numbered), "") << numbered;
         if (program.find(';') != std::string::npos || program.find('(') != std::string::npos)
-            continue; // only the last comment of a line is heard
+            continue; // only the last comment of a line is evaluated
         EXPECT_EQ(differences_of(run, run_feeler(commented), commented), "") << commented;
     }
 }

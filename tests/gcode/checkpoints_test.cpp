@@ -11,7 +11,7 @@
 namespace gcode {
 namespace {
 
-/// A run that was followed to its end, with every state it went through.
+/// A complete run with all its states.
 struct Followed {
     Program program;
     Environment environment;

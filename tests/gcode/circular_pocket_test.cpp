@@ -16,7 +16,7 @@ std::string commands(const std::string& block) {
     return trace(set_radius + block, DialectId::haas);
 }
 
-/// The largest distance of the tool's centre from a place on the way, ends and arcs.
+/// The largest distance of the tool centre from a point along the path, ends and arcs.
 double farthest_from(const Run& run, double x, double y) {
     double farthest = 0.0;
     for (const BlockResult& block : run.blocks)

@@ -118,7 +118,7 @@ TEST(Codes, NineAxesAreFollowed) {
     EXPECT_EQ(trace("G0 X1 B90 U2\nG91 B-30 C1 W5"),
               "straight_traverse x=1 y=0 z=0 b=90 u=2\n"
               "straight_traverse x=1 y=0 z=0 b=60 c=1 u=2 w=5\n");
-    // Degrees are degrees in inches, too.
+    // Rotary axes are in degrees with G20 too.
     EXPECT_EQ(trace("G20 G0 X1 A90 V1"), "straight_traverse x=25.4 y=0 z=0 a=90 v=25.4\n");
 }
 

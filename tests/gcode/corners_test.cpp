@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The ends of the feeds of a program, with the centres of arcs.
+/// The end points of the feed moves of a program, with the centres of arcs.
 std::string path_of(std::string_view text) {
     const Ran ran = run_text(text);
     std::string path;
@@ -43,14 +43,14 @@ TEST(Corners, AreChamferedByTheDistanceFromTheCorner) {
 }
 
 TEST(Corners, RoundBetweenALineAndAnArcTouchingBoth) {
-    // 2 beside the line and 12 from the arc's centre: (18, 10 - sqrt(140)).
+    // 2 beside the line and 12 from the centre of the arc: (18, 10 - sqrt(140)).
     EXPECT_EQ(path_of("G0 X20. Y-20.\nG1 Y0 F100 ,R2.\nG2 X10. Y10. J10.\nM30\n"),
               "20000,-1832 18333,140(18000,-1832,1) 10000,10000(20000,10000,-1) ");
 }
 
 TEST(Corners, RoundBetweenTwoArcsTouchingBoth) {
-    // Down round (10, 0), then to the left turn round (20, 10): 12 from the first centre, 8 from
-    // the second.
+    // Clockwise about (10, 0), then counterclockwise about (20, 10): 12 from the first centre, 8
+    // from the second.
     EXPECT_EQ(path_of("G2 X20. I10. F100 ,R2.\nG3 X30. Y10. J10.\nM30\n"),
               "19830,1837(10000,0,-1) 22245,255(21796,2204,1) 30000,10000(20000,10000,1) ");
     EXPECT_THAT(error_of("G2 X20. I10. F100 ,R2.\nG2 X40. I10.\nM30\n"), // back again

@@ -11,7 +11,7 @@ namespace {
 
 const std::filesystem::path shared_programs = source_dir / "../shared/programs";
 
-/// A shared program that ends in an error, where and with what, and why that is right.
+/// A shared program that ends with an error: where, with which message, and why that is correct.
 struct Expected {
     std::string file;
     uint32_t line;

@@ -12,7 +12,7 @@ namespace {
 
 const std::filesystem::path shared_programs = source_dir / "../shared/programs";
 
-/// The shared programs of a kind; none, and a skip or a failure, where they are absent.
+/// The shared programs of a kind; without them the test is skipped or fails.
 std::vector<std::filesystem::path> programs_of(const std::string& kind) {
     std::vector<std::filesystem::path> paths;
     std::error_code absent;
@@ -47,16 +47,16 @@ TEST_P(Corpus, RunsOrSaysWhereAndWhyNot) {
         EXPECT_GT(error.where.line, 0u) << path << ": " << error.message;
         EXPECT_GT(error.where.column, 0u) << path << ": " << error.message;
         EXPECT_EQ(error.file, path.string());
-        // The message names the word, or what stands where one should.
+        // The message quotes the word or the character at the position of the error.
         const std::string_view line = program->line(error.where.line);
         const char at = line.at(error.where.column - 1);
-        if (std::iscntrl(static_cast<unsigned char>(at))) continue; // named by its number
+        if (std::iscntrl(static_cast<unsigned char>(at))) continue; // quoted as a number
         EXPECT_NE(error.message.find_first_of({at, static_cast<char>(std::toupper(at))}),
                   std::string::npos)
             << path << ": " << error.message;
     }
     // Of heidenhain, one calls a program that is stored under another name, one is that program,
-    // which stops itself without its parameters, and one divides by a way that is made by hand.
+    // which stops without its parameters, and one divides by a distance that is jogged by hand.
     RecordProperty("finished", static_cast<int>(finished));
     const std::map<std::string, size_t> least = {{"fanuc-like", 16},
                                                  {"linuxcnc", 10},

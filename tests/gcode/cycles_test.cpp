@@ -81,7 +81,7 @@ TEST(Cycle, G82DwellsAtTheBottom) {
 }
 
 TEST(Cycle, G83PecksOutOfTheHole) {
-    // LinuxCNC leaves 0.254 mm before the bottom of the peck.
+    // LinuxCNC stops 0.254 mm above the bottom of the last peck.
     EXPECT_EQ(levels("F100\nG99 G83 X1 Z-3 R3 Q2.5", DialectId::linuxcnc),
               " r200 r30 f5 r30 r8 f-20 r30 r-17 f-30 r30");
 }
@@ -101,7 +101,7 @@ TEST(Cycle, G86StopsTheSpindleOnItsWayOut) {
 }
 
 TEST(Cycle, RepeatsUnderG91StepByStep) {
-    // As rs274: G91 G81 X10 Z-3 R-2 L3 from Z10.
+    // As in rs274: G91 G81 X10 Z-3 R-2 L3 from Z10.
     EXPECT_EQ(trace("G21 G0 Z10\nF100\nG91 G81 X10 Z-3 R-2 L3", DialectId::linuxcnc),
               "straight_traverse x=0 y=0 z=10\n"
               "set_path_mode mode=exact_path tolerance=0 naive_tolerance=0\n"

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The value an expression gives to #100.
+/// The value that an expression assigns to #100.
 double value_of_text(const std::string& text, DialectId dialect = DialectId::linuxcnc) {
     const Ran ran = run_text("#100=" + text + "\n", dialect);
     EXPECT_FALSE(ran.run.error) << text << ": " << (ran.run.error ? ran.run.error->message : "");

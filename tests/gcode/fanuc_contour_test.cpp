@@ -13,7 +13,7 @@ using testing::Not;
 
 const std::string radius_2 = "G10 L12 P1 R2.\n";
 
-/// The ends of the moves in the plane, in micrometres.
+/// The end points of the moves in the plane, in micrometres.
 std::string path_of(const std::string& text) {
     const Ran ran = run_text(radius_2 + text);
     std::string path;
@@ -33,7 +33,7 @@ std::string path_of(const std::string& text) {
 }
 
 TEST(FanucContour, BeginsBesideTheStartOfTheMoveBehindTheEntry) {
-    // Up from (10, 0) with the tool on the left: (8, 0), whichever way the entry comes.
+    // Up from (10, 0) with the tool on the left: (8, 0), whatever the direction of the entry.
     EXPECT_EQ(path_of("G1 G41 D1 X10. F9\nY20.\nG40 X0\nM30\n"), "8000,0 8000,20000 0,20000 ");
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nY20.\nG40 X0\nM30\n"), "12000,0 12000,20000 0,20000 ");
 }
@@ -53,13 +53,14 @@ TEST(FanucContour, DoesNotBeginWithAnArc) {
 }
 
 TEST(FanucContour, GoesOnToWhereTheOffsetLinesMeetAtAnOutsideCorner) {
-    // A right angle: the lines beside both sides meet 2 beyond either.
+    // A right angle: the offset lines meet 2 beyond each side.
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nX20.\nY20.\nG40 X0\nM30\n"),
               "10000,-2000 22000,-2000 22000,20000 0,20000 ");
 }
 
 TEST(FanucContour, PassesASharpCornerByTwoStraightPieces) {
-    // Back by 135 degrees: on by 2, across, and 2 before the foot of the move away.
+    // Reversal by 135 degrees: 2 further on, straight across, and 2 before the start of the next
+    // move.
     const double d = std::sqrt(2.0);
     const auto um = [](double value) { return std::to_string(std::lround(value * 1000)); };
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nX20.\nX10. Y10.\nG40 X0\nM30\n"),
@@ -68,7 +69,7 @@ TEST(FanucContour, PassesASharpCornerByTwoStraightPieces) {
 }
 
 TEST(FanucContour, StaysOnTheTangentsRoundACornerOfArcs) {
-    // The line along Y = 0 meets the arc that leaves it upwards, to the left about (10, 0).
+    // The line along Y = 0 meets the arc, which leaves it upwards and turns left about (10, 0).
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nX20.\nG3 X0 I-10.\nG1 Y-5.\nG40 X-20.\nM30\n"),
               "10000,-2000 22000,-2000 22000,0 -2000,0arc -2000,-5000 -20000,-5000 ");
 }
@@ -136,7 +137,7 @@ TEST(ScaledArcs, WithRTakeTheLargerScale) {
     const Ran ran =
         run_text("G0 X0 Y100.\nG51 X0 Y0 Z0 I2000 J1000\nG2 X100. Y0 R100. F500\nM30\n");
     ASSERT_FALSE(ran.run.error) << ran.run.error->message;
-    // The centre is 200 from both ends, below the chord: found from the two circles.
+    // The centre is 200 from both ends, below the chord: the intersection of two circles.
     const double half = 0.5 * std::hypot(200.0, 100.0), height = std::sqrt(40000.0 - half * half);
     const double x = 100.0 - height * 100.0 / (2.0 * half),
                  y = 50.0 - height * 200.0 / (2.0 * half);

@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a program does after its first block: r rapid, f feed, each with X and Z; d dwell; the
+/// The actions of a program after its first block: r rapid, f feed, each with X and Z; d dwell; the
 /// spindle cw, ccw, off; stop.
 std::string steps(const std::string& text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text("G21 G0 Z20\n" + text, dialect);
@@ -117,12 +117,12 @@ TEST(FanucCycle, TheSignOfQIsPassedOver) {
 }
 
 TEST(FanucCycle, ScalingLeavesPecksAsTheyAre) {
-    // R and Z are scaled by 2, Q and the 1 mm that G83 draws back by nothing.
+    // R and Z are scaled by 2; Q and the retract of 1 mm of G83 are not.
     EXPECT_EQ(steps("G51 X0 Y0 Z0 P2000\nG99 G83 X1 Z-4 R1 Q6 F50"),
               " r1,10 r1,1 f1,-2 r1,1 r1,-1.5 f1,-4 r1,1");
 }
 
-/// Where a Haas program drills: the places along X and Y of its feeds.
+/// The holes of a Haas program: X and Y of its feed moves.
 std::string holes(const std::string& text) {
     const Ran ran = run_text("G21 G0 X10 Y20 Z20\n" + text, DialectId::haas);
     if (ran.run.error) return ran.run.error->message;

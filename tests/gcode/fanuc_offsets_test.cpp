@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Where the machine is at the end of a program.
+/// The position of the machine at the end of a program.
 Position machine_after(std::string_view text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text(text, dialect);
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");

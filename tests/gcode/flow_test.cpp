@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The X of every rapid of a program, in order.
+/// The X of each rapid of a program, in order.
 std::string rapids(std::string_view text, DialectId dialect = DialectId::linuxcnc) {
     const Ran ran = run_text("G21\n" + std::string(text), dialect);
     std::string found;
@@ -53,7 +53,7 @@ TEST(Flow, SubsHaveArgumentsLocalsAndAValue) {
               "120 77 ");
     EXPECT_EQ(rapids("o1 sub\n#<a>=5\no1 endsub\no1 call\nG0 X#<a>"),
               "error: #<a> is used before it is set");
-    // A number worked out names a subprogram, too.
+    // A calculated number may name a subprogram too.
     EXPECT_EQ(rapids("o7 sub\nG0 X#1\no7 endsub\n#5=3\no[#5+4] call [8]\nM2"), "8 ");
 }
 

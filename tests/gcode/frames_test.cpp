@@ -27,7 +27,7 @@ std::vector<Motion> motions_of(std::string_view text, DialectId dialect = Dialec
     return motions;
 }
 
-/// That two programs move the machine alike.
+/// Expects that two programs move the machine along the same path.
 void expect_same_path(std::string_view text, std::string_view written_out,
                       DialectId dialect = DialectId::fanuc) {
     SCOPED_TRACE(text);
@@ -53,7 +53,7 @@ void expect_same_path(std::string_view text, std::string_view written_out,
 }
 
 TEST(Frames, G68TurnsLinesAndArcsAboutItsCentre) {
-    // By hand: (x, y) goes to (10 - y, x - 10).
+    // Calculated by hand: (x, y) becomes (10 - y, x - 10).
     expect_same_path("G54 G0 X0 Y0 Z5\nG68 X10 Y0 R90\nG1 X20 Y0 F100\nG2 X30 Y10 I0 J10\n"
                      "G3 X30 Y10 I5\nG69\nG1 X0 Y0",
                      "G54 G0 X0 Y0 Z5\nG1 X10 Y10 F100\nG2 X0 Y20 I-10 J0\nG3 X0 Y20 J5\n"
@@ -61,7 +61,7 @@ TEST(Frames, G68TurnsLinesAndArcsAboutItsCentre) {
 }
 
 TEST(Frames, G68TurnsInEveryPlane) {
-    // Counter-clockwise seen from the normal: Z towards X, Y towards Z.
+    // Counterclockwise as seen from the normal: Z towards X, Y towards Z.
     expect_same_path("G18 G68 X0 Z0 R90\nG1 X0 Z10 F9\nG1 X-4 Z2", "G18 G1 X10 Z0 F9\nX2 Z4");
     expect_same_path("G19 G68 Y0 Z0 R90\nG1 Y10 Z0 F9\nG2 Y5 Z-5 K-5",
                      "G19 G1 Y0 Z10 F9\nG2 Y5 Z5 J5");
@@ -91,14 +91,14 @@ TEST(Frames, G68UnderG91AddsToTheAngleAndSaysSo) {
 }
 
 TEST(Frames, TheFirstMoveAfterG68WithOneAxisKeepsTheOtherCoordinate) {
-    // The example of parameter 11600#5 as delivered: X10 stays X10, then all is turned.
+    // The example of parameter 11600#5 as delivered: X10 stays X10, then everything is rotated.
     expect_same_path("G0 X10 Y0\nG68 X0 Y0 R90\nG1 Y4 F9\nX3", "G0 X10 Y0\nG1 X-4 Y10 F9\nX-4 Y3");
     EXPECT_THAT(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3\nM30"), HasSubstr("does not name Y"));
     EXPECT_EQ(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3 Y1\nX7\nG69\nM30"), "");
 }
 
 TEST(Frames, G51ScalesFromItsCentre) {
-    // x goes to 2x - 10, y to 2y - 20, z to 2z; the length offset does not.
+    // x becomes 2x - 10, y 2y - 20, z 2z; the length offset is not scaled.
     expect_same_path("G54 G43 H1 G0 X0 Y0 Z5\nG51 X10 Y20 Z0 P2000\nG0 X12 Y21 Z3\n"
                      "G3 X12 Y25 J2 F50\nG50\nG1 Z9",
                      "G54 G43 H1 G0 X0 Y0 Z5\nG0 X14 Y22 Z6\nG3 X14 Y30 J4 F50\nG1 Z9");
@@ -133,7 +133,7 @@ TEST(Frames, G511ReflectsAndTurnsArcsTheOtherWay) {
 }
 
 TEST(Frames, AMirrorImageOfOneAxisReversesG68) {
-    // The turned shape is reflected as a whole: (10, 0) turned by 30 degrees, then x negated.
+    // The rotated shape is mirrored as a whole: (10, 0) rotated by 30 degrees, then x negated.
     const double x = 10 * std::cos(std::acos(-1.0) / 6);
     expect_same_path("G51.1 X0\nG68 X0 Y0 R30\nG1 X10 Y0 F9", fmt::format("G1 X{:.12f} Y5 F9", -x));
 }
@@ -155,7 +155,7 @@ TEST(Frames, G92IsRefusedWhereCoordinatesAreTurned) {
 }
 
 TEST(Frames, ScalingLeavesTheRadiusOfTheCutter) {
-    // Beside a line that is scaled by 2, the tool stays 3 mm away.
+    // The tool stays 3 mm away from a line that is scaled by 2.
     const std::string entry = "G10 L12 P5 R3\nG0 X0 Y0\n";
     expect_same_path(entry + "G51 X0 Y0 Z0 P2.\nG41 D5 G1 X5 Y5 F9\nX10 Y5\nG40 X20 Y20\nG50",
                      entry + "G41 D5 G1 X10 Y10 F9\nX20 Y10\nG40 X40 Y40", DialectId::haas);
@@ -169,7 +169,7 @@ TEST(Frames, CyclesDrillTurnedHoles) {
 }
 
 TEST(Frames, G16ReadsRadiusAndAngle) {
-    // The example of the manual: holes on a circle, absolute angles and incremental ones.
+    // The example of the manual: holes on a circle, with absolute and incremental angles.
     const std::string holes = "G1 X0 Y100 F9\nX-100 Y0\nX0 Y-100";
     expect_same_path("G17 G90 G16\nG1 X100 Y90 F9\nY180\nY270\nG15", holes);
     expect_same_path("G17 G90 G16\nG1 X100 Y90 F9\nG91 Y90\nY90\nG15", holes);

@@ -15,7 +15,7 @@ std::string text_of(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// What a program of assets/programs does, as a golden file holds it.
+/// The trace of a program of assets/programs in the format of golden files.
 std::string trace_of_asset(const std::string& name) {
     const auto program = read_program((source_dir / "assets/programs" / name).string());
     if (!program) return program.error().message;
@@ -24,7 +24,7 @@ std::string trace_of_asset(const std::string& name) {
     return to_text(run(*program, environment));
 }
 
-/// On a difference the new trace is left in the test's directory, to be looked at and copied.
+/// On a difference the new trace is left in the test's folder, to be checked and copied.
 void expect_golden(const std::string& asset, const std::string& name) {
     const std::string actual = trace_of_asset(asset);
     const std::filesystem::path golden = source_dir / "tests/golden/gcode" / name / "expected.txt";

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Interpreter, CarriesWordsOutInTheOrderOfTheStandard) {
-    // NISTIR 6556, table 8: S, T, M6, M3, M8, G17, G43, G54, G0; however the words are written.
+    // NISTIR 6556, table 8: S, T, M6, M3, M8, G17, G43, G54, G0, whatever the order of the words.
     EXPECT_EQ(trace("G0 X1 G54 G43 H0 G17 M8 M3 M6 T2 S100"),
               "select_tool tool=2\n"
               "change_tool tool=2\n"

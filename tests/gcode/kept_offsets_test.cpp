@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// With G54 at 100, 0, turned by 30 degrees, and G55 at 10, 20, -3, and what else is kept.
+/// With G54 at 100, 0, rotated by 30 degrees, G55 at 10, 20, -3, and other stored values.
 std::string traced_with(std::map<int, double> kept, std::string_view text,
                         DialectId dialect = DialectId::linuxcnc) {
     Environment environment = known_environment(dialect);
@@ -27,7 +27,7 @@ std::string refused(std::string_view text) {
     return error_of("G21\n" + std::string(text), DialectId::linuxcnc);
 }
 
-// What is expected here was probed with LinuxCNC's interpreter.
+// Expected values were tested with LinuxCNC's interpreter.
 
 TEST(StoredOffsets, AreInEffectAtTheStart) {
     EXPECT_EQ(traced_with({{5220, 2.0}}, "G53 G0 X0 Y0 Z0"), "straight_traverse x=-10 y=-20 z=3\n");

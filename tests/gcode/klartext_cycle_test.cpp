@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Kind and place of every motion, dwell and spindle command: r for rapid, f for feed.
+/// Kind and position of each motion, dwell and spindle command: r for rapid, f for feed.
 std::string cycle(std::string_view lines) {
     const Ran ran = run_text(klartext_program(lines), DialectId::heidenhain);
     std::string text;

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// X of every rapid of the lines.
+/// X of each rapid of the lines.
 std::string way(std::string_view lines) {
     const Ran ran = run_text(klartext_program(lines), DialectId::heidenhain);
     std::string text;
@@ -23,7 +23,7 @@ std::string way(std::string_view lines) {
     return ran.run.error ? text + ran.run.error->message : text;
 }
 
-/// What a formula gives, in thousandths.
+/// The value of a formula, in thousandths.
 std::string value_of_formula(const std::string& formula) {
     return way("Q1 = 30\nQ2 = -2,5\n" + formula + "\nL X+Q5 FMAX\n");
 }
@@ -71,7 +71,7 @@ TEST(KlartextFlow, SubprogramsEndAtLabelZero) {
 TEST(KlartextFlow, RepeatsAPartOfTheProgram) {
     EXPECT_EQ(way("LBL 1\nL IX+1 FMAX\nCALL LBL 1 REP 2/2\nL X+50 FMAX\n"),
               "1000 2000 3000 50000 ");
-    // Inside another repetition it counts anew.
+    // Inside another repetition it starts again.
     EXPECT_EQ(way("LBL 1\nLBL 2\nL IX+1 FMAX\nCALL LBL 2 REP 1\nCALL LBL 1 REP1/1\n"),
               "1000 2000 3000 4000 ");
 }
@@ -131,8 +131,8 @@ TEST_F(KlartextFiles, CallsProgramsOfTheSearchPath) {
               "straight_traverse x=7 y=0 z=0\nstraight_traverse x=1 y=0 z=0\n");
 }
 
-/// The facing program whose file is called Plan.h: its spirals run over labels, tangent arcs and
-/// roundings between motions that jumps join.
+/// The facing program whose file is called Plan.h: its spirals run through labels, tangential arcs,
+/// and roundings between motions that are joined by jumps.
 TEST_F(KlartextFiles, RunsTheSharedFacingCycle) {
     const auto shared = source_dir / "../shared/programs/heidenhain";
     if (!std::filesystem::exists(shared)) GTEST_SKIP() << shared << " is missing";

@@ -7,7 +7,7 @@
 
 namespace gcode {
 
-/// The lines as a program in mm that begins on line 1; the lines begin on line 2.
+/// The lines as a program in mm whose first line is BEGIN PGM; the given lines start on line 2.
 inline std::string klartext_program(std::string_view lines) {
     return "BEGIN PGM TEST MM\n" + std::string(lines) + "END PGM TEST MM\n";
 }

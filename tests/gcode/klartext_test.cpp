@@ -92,8 +92,8 @@ TEST(KlartextArc, RefusesWhatIsNoCircle) {
 }
 
 TEST(KlartextArc, SignOfTheRadiusChoosesTheShorterOrLongerArc) {
-    // From (0,0) to (10,10) with radius 10: centres (0,10) and (10,0). Counter-clockwise the
-    // shorter one turns about (0,10).
+    // From (0,0) to (10,10) with radius 10: centres (0,10) and (10,0). The shorter counterclockwise
+    // arc is about (0,10).
     EXPECT_EQ(klartext("L X+0 Y+0 F100\nCR X+10 Y+10 R+10 DR+\n"),
               "straight_feed x=0 y=0 z=0 feed=100\n"
               "arc_feed x=10 y=10 z=0 plane=XY centre=0,10 turns=1 feed=100\n");
@@ -159,7 +159,7 @@ TEST(KlartextFrame, DatumShiftMovesTheProgram) {
 }
 
 TEST(KlartextFrame, TurnsAndMirrorsInTheOrderOfTheProgram) {
-    // Shifted to (10,0), then turned by 90 degrees: program (1,0) is machine (10,1).
+    // Shifted to (10,0), then rotated by 90 degrees: program (1,0) is machine (10,1).
     const std::string shifted = "CYCL DEF 7.0\nCYCL DEF 7.1 X+10\n";
     const std::string turned = "CYCL DEF 10.0\nCYCL DEF 10.1 ROT+90\n";
     const std::string read = "L X+1 Y+0 FMAX\nFN 18: SYSREAD Q1 = ID240 NR1 IDX1\n"
@@ -167,7 +167,7 @@ TEST(KlartextFrame, TurnsAndMirrorsInTheOrderOfTheProgram) {
                              "ROT+0\nCYCL DEF 7.0\nCYCL DEF 7.1 X+0\nCYCL DEF 8.0\nCYCL DEF "
                              "8.1\nL X+Q1 Y+Q2 FMAX\n";
     EXPECT_THAT(klartext(shifted + turned + read), HasSubstr("straight_traverse x=10 y=1 z=0\n"));
-    // The other way round the shift is along the turned axis: (0, 10 + 1).
+    // In the other order the shift is along the rotated axis: (0, 10 + 1).
     EXPECT_THAT(klartext(turned + shifted + read), HasSubstr("straight_traverse x=0 y=11 z=0\n"));
     EXPECT_THAT(klartext("CYCL DEF 8.0\nCYCL DEF 8.1 X\n" + shifted + read),
                 HasSubstr("straight_traverse x=-11 y=0 z=0\n"));

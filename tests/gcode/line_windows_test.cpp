@@ -48,7 +48,7 @@ TEST(LineWindows, GiveTheLinesOfTheWholeTextInAnyOrder) {
     }
 }
 
-/// A program whose windows are a few lines.
+/// A program with windows of a few lines.
 core::Result<Program> opened(const ScopedFolder& folder, const std::string& text) {
     return open_program(folder.write("p.ngc", text), 64);
 }
@@ -101,7 +101,7 @@ TEST(OpenProgram, NoticesThatTheFileHasChanged) {
     EXPECT_THAT(again.error().message, HasSubstr("changed while"));
 }
 
-/// The commands of a run, block by block, with the text each comes from.
+/// The commands of a run, block by block, each with its program text.
 std::string traced(const Program& program, DialectId id) {
     Environment environment;
     environment.dialect = id;

@@ -30,7 +30,7 @@ TEST(Linuxcnc, DiametersAreHalved) {
 TEST(Linuxcnc, ThreadsKeepPaceWithTheSpindle) {
     EXPECT_THAT(traced("M3 S100\nG33 Z-5 K1.5"),
                 HasSubstr("thread_feed x=0 y=0 z=-5 pitch=1.5 back_again=0\n"));
-    // A rigid tap ends where it began.
+    // A rigid tap ends where it started.
     EXPECT_THAT(traced("M3 S100\nG33.1 Z-5 K1.5\nG0 X1"),
                 HasSubstr("pitch=1.5 back_again=1\nstraight_traverse x=1 y=0 z=0\n"));
     EXPECT_THAT(refused("G33.1 Z-1 K1"), HasSubstr("G33.1: the spindle is stopped"));
@@ -82,7 +82,7 @@ TEST(Linuxcnc, MessagesAreWrittenOut) {
 TEST(Linuxcnc, ToolTableEntriesAreWritten) {
     EXPECT_THAT(traced("G10 L1 P5 Z50 R2\nG43 H5"),
                 HasSubstr("use_tool_length_offset number=5 length=50\n"));
-    // Here, at Z 10 of the machine, the tool's tip shall read 3.
+    // Here, at machine Z 10, the tip must read 3.
     EXPECT_THAT(traced("G0 Z10\nG10 L10 P6 Z3\nG43 H6\nG0 X#5422"),
                 HasSubstr("number=6 length=7\nstraight_traverse x=3 y=0 z=3\n"));
     EXPECT_THAT(traced("G10 L2 P9 Z4\nG0 Z10\nG10 L11 P6 Z1\nG43 H6"),
@@ -106,7 +106,7 @@ TEST(Linuxcnc, ParametersShowTheStateOfTheControl) {
 }
 
 TEST(Linuxcnc, ContoursMoveAsideByTheCuttersRadius) {
-    // Entry beside the first point, round an outside corner, and back on the way out.
+    // Entry beside the first point, around an outside corner, and back at the exit.
     EXPECT_EQ(traced("F100\nG0 X-10 Y-10\nG41.1 D4 G1 X0 Y0\nY20\nX20\nG40\nG0 X30"),
               "straight_traverse x=-10 y=-10 z=0\n"
               "straight_feed x=-2 y=0.828427 z=0 feed=100\n" // 2 beside both lines
@@ -132,7 +132,7 @@ TEST(Linuxcnc, TurnedWorkOffsetsTurnTheMachine) {
     const Position machine = machine_from_program(modal.offsets, modal.position);
     EXPECT_NEAR(*machine[0], 10.0, 1e-12);
     EXPECT_NEAR(*machine[1], 5.0, 1e-12);
-    // L20 names the present place whatever the turn.
+    // L20 sets the current position whatever the rotation.
     const Ran named =
         run_text("G21 G10 L2 P1 X10 R90\nG0 X5 Y0\nG10 L20 P1 X1 Y2", DialectId::linuxcnc);
     EXPECT_NEAR(*named.run.state.modal.position[0], 1.0, 1e-12);

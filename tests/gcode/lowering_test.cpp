@@ -29,7 +29,7 @@ std::vector<Motion> motions_of(std::string_view text, const Environment& environ
     return motions;
 }
 
-/// The set-up of the example beside the design: G54 and a tool of 95 mm.
+/// The set-up of the worked example: G54 and a tool of 95 mm.
 Environment example() {
     Environment environment;
     environment.dialect = DialectId::fanuc;
@@ -41,7 +41,7 @@ Environment example() {
 
 using Linear = std::array<std::optional<double>, 3>;
 
-/// X, Y and Z; all other axes must stand at 0.
+/// X, Y and Z; all other axes must be 0.
 Linear linear(const AxisPosition& position) {
     for (size_t axis = 3; axis < core::axis_count; ++axis) EXPECT_EQ(position[axis], 0.0);
     return {position[0], position[1], position[2]};
@@ -131,7 +131,7 @@ TEST(Lowering, TurnsTheRightWayInEveryPlane) {
     }
 }
 
-/// Where an arc ends if one turns its start about the centre.
+/// The end of an arc, calculated by rotating its start about the centre.
 core::Vec3 turned_start(const Motion& motion) {
     const core::ArcPath& arc = *motion.arc;
     const int first = (arc.normal + 1) % 3;

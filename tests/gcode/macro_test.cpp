@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The X of every rapid of a program, in order.
+/// The X of each rapid of a program, in order.
 std::string rapids(std::string_view text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text("G21\n" + std::string(text), dialect);
     std::string found;
@@ -22,7 +22,7 @@ std::string rapids(std::string_view text, DialectId dialect = DialectId::fanuc) 
     return ran.run.error ? found + "error: " + ran.run.error->message : found;
 }
 
-/// The common variables #101 to #133 take the arguments of a call.
+/// Copies the arguments of a call to the common variables #101 to #133.
 std::string arguments_of_call(std::string_view words) {
     std::string text = "G65 P1 " + std::string(words) + "\nM30\nO1\n";
     for (int i = 1; i <= 33; ++i) text += fmt::format("#{}=#{}\n", 100 + i, i);
@@ -55,7 +55,7 @@ TEST(Macro, ArgumentsHaveFanucsPlaces) {
 
 TEST(Macro, CallsHaveVariablesOfTheirOwn) {
     EXPECT_EQ(rapids("#1=7\nG65 P1 A3\nG0 X#1\nM30\nO1\nG0 X#1\n#1=5\n#2=6\nM99\n"), "3 7 ");
-    // M98 inside goes on with those of the macro.
+    // M98 within a macro keeps the local variables of the macro.
     EXPECT_EQ(rapids("G65 P1 A3\nM30\nO1\nM98 P2\nG0 X#1\nM99\nO2\nG0 X#1\n#1=4\nM99\n"), "3 4 ");
     EXPECT_EQ(rapids("G65 P1 A3\nM30\nO1\nIF [#2 EQ #0] GOTO 5\nG0 X1\nN5 G0 X2\nM99\n"), "2 ");
     EXPECT_EQ(rapids("G65 P1 A1\nM30\nO1\nG65 P2 A[#1+1]\nG0 X#1\nM99\nO2\nG0 X#1\nM99\n"), "2 1 ");

@@ -17,7 +17,7 @@ TEST(Units, InchesBecomeMillimetresOnce) {
 
 TEST(Units, FeedAndUnitsInOneBlockGoByTheDialect) {
     EXPECT_EQ(trace("G20\nG21 G1 X1 F10", DialectId::fanuc), "straight_feed x=1 y=0 z=0 feed=10\n");
-    // RS274/NGC: F is taken before the units change.
+    // RS274/NGC: F takes effect before the units change.
     EXPECT_EQ(trace("G20\nG21 G1 X1 F10", DialectId::linuxcnc),
               "straight_feed x=1 y=0 z=0 feed=254\n");
 }

@@ -116,7 +116,7 @@ TEST(Threading, NeedsItsWordsInEachBlock) {
 const std::string shaft =
     "G21 F100 G18\no100 sub\nG0 X10 Z2\nG1 X10 Z-10\nX16 Z-16\nG0 X18\no100 endsub\nG0 X20 Z10\n";
 
-/// What the program says behind the subprogram and the first rapid.
+/// The trace after the subprogram and the first rapid.
 std::string turned(std::string_view block) {
     const std::string text = trace(shaft + std::string(block) + "\nM2\n", linuxcnc);
     const std::string first = "straight_traverse x=20 y=0 z=10\n";
@@ -125,7 +125,7 @@ std::string turned(std::string_view block) {
 }
 
 TEST(Turning, FollowsTheContourOfASubprogram) {
-    // Printed by rs274.
+    // As printed by rs274.
     EXPECT_EQ(turned("G70 Q100 X18 Z4"), "straight_traverse x=18 y=0 z=4\n"
                                          "straight_traverse x=18 y=0 z=4\n"
                                          "straight_traverse x=10 y=0 z=2\n"

@@ -25,7 +25,7 @@ std::string in_shop(std::string_view text, DialectId dialect = DialectId::fanuc)
     return commands_of(ran.run);
 }
 
-/// Where the machine stands at the end, which no change of offsets may move.
+/// The machine position at the end, which a change of offsets must not alter.
 Position machine_at_end(std::string_view text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text(text, shop(dialect));
     EXPECT_FALSE(ran.run.error);
@@ -114,7 +114,7 @@ TEST(Offsets, APMakesG54AnotherOffset) {
 TEST(Offsets, G53MovesInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_EQ(in_shop("G43 H1\nG53 G0 Z-10"), "use_tool_length_offset number=1 length=95\n"
                                               "straight_traverse x=350 y=200 z=315\n");
-    // Under G91 as well, except that Fanuc controls pass it over there and LinuxCNC stops.
+    // Also with G91, except that Fanuc controls ignore it there and LinuxCNC stops.
     EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", DialectId::haas),
               "straight_traverse x=0 y=200 z=420\n");
     for (const DialectId dialect : {DialectId::linuxcnc, DialectId::fanuc})

@@ -38,7 +38,7 @@ TEST(Parser, ReadsWordsWithTheirPlaces) {
 }
 
 TEST(Parser, AllowsBlanksInsideNumbers) {
-    // As LinuxCNC: G0 X 1 2 . 5 Y+.5 Z5.
+    // As in LinuxCNC: G0 X 1 2 . 5 Y+.5 Z5.
     const Block block = parsed("G0 X 1 2 . 5 Y+.5\tZ5.");
     ASSERT_EQ(block.words.size(), 4u);
     EXPECT_EQ(block.words[1].value, 12.5);

@@ -10,7 +10,7 @@
 namespace gcode {
 namespace {
 
-/// A line that looks like words, mostly: blanks and points where they belong and where they do not.
+/// A line that usually consists of words, with blanks and points in right and wrong positions.
 std::string random_line(std::mt19937& random) {
     constexpr std::string_view letters = "GXYZIJKFNMSTOPQRgxyz";
     constexpr std::string_view numbers[] = {"1",
@@ -53,7 +53,7 @@ TEST(PlainWords, AreThoseOfTheGeneralParser) {
         Block plain, general;
         if (!read_plain_words(line, 7, dialect(id), plain)) continue;
         ++taken;
-        // A comment is no plain word, so this line goes the other way.
+        // A comment is not a plain word, so this line takes the general path.
         const auto parsed = parse_line(line + "()", 7, dialect(id), general);
         ASSERT_TRUE(parsed) << line << ": " << parsed.error().message;
         ASSERT_EQ(plain.words, general.words) << line;

@@ -11,7 +11,7 @@
 
 namespace gcode {
 
-/// Machine X0 Y0 Z0 at the first block, and every place and length the tests refer to.
+/// Machine X0 Y0 Z0 at the first block, and all positions and lengths that the tests refer to.
 inline Environment known_environment(DialectId dialect) {
     Environment environment;
     environment.dialect = dialect;
@@ -21,7 +21,7 @@ inline Environment known_environment(DialectId dialect) {
     return environment;
 }
 
-/// A run whose program lives as long as it does.
+/// A run together with its program.
 struct Ran {
     Program program;
     Run run;
@@ -43,7 +43,8 @@ inline Ran run_text(std::string_view text, DialectId dialect = DialectId::fanuc)
     return run_text(text, known_environment(dialect));
 }
 
-/// The commands, one a line, without line numbers, warnings and the command that ends a program.
+/// The commands, one on each line, without line numbers, warnings and the command that ends a
+/// program.
 inline std::string commands_of(const Run& run) {
     std::string text;
     for (const BlockResult& block : run.blocks)
@@ -67,7 +68,7 @@ inline std::string error_of(std::string_view text, DialectId dialect = DialectId
            + error.message;
 }
 
-/// All warnings and notes, one a line.
+/// All warnings and notes, one on each line.
 inline std::string warnings_of(const Run& run) {
     std::string text;
     for (const BlockResult& block : run.blocks)

@@ -97,7 +97,7 @@ TEST(Property, InchAndMillimetreTwinsAgree) {
     EXPECT_GT(rapids, 200u);
 }
 
-/// The same words with other case, blanks and comments, and block numbers before them.
+/// The same words with different case, blanks, comments and block numbers.
 std::string disguised(const std::string& text, Generator& generator) {
     std::string result;
     bool start = true;

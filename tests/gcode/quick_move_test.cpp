@@ -18,7 +18,7 @@ std::string random_words(std::mt19937& random, std::string_view letters) {
     return words;
 }
 
-/// A line of a program that is mostly straight moves; now and then it changes a mode.
+/// A line of a program that consists mainly of straight moves and sometimes changes a mode.
 std::string random_line(std::mt19937& random) {
     constexpr std::string_view modes[] = {
         "G90", "G91",           "G20",         "G21",    "G17",      "G2 X1 Y0 I5 J0 F60",
@@ -59,7 +59,7 @@ TEST(QuickMove, DoesWhatTheStepsOfABlockDo) {
         for (int line = 0; line < 40; ++line) {
             const std::string words = random_line(random);
             quick += words + "\n";
-            slow += words + "()\n"; // a comment is none of the words that are read in one go
+            slow += words + "()\n"; // a comment prevents the fast path
         }
         ASSERT_EQ(outcome_of(quick, dialect), outcome_of(slow, dialect)) << quick;
     }
@@ -76,7 +76,7 @@ TEST(QuickMove, LeavesWhatIsMoreThanAStraightMove) {
     const InterpreterState before = state;
     BlockResult result;
     for (const Word word : {Word{'I', 1.0}, Word{'S', 1.0}, Word{'G', 2.0}, Word{'X', 1.0}}) {
-        Block block; // a feed without F, or a word that is none of a straight move
+        Block block; // a feed without F, or a word that does not belong to a straight move
         block.words = {word};
         EXPECT_FALSE(take_quick_move(block, state, result)) << word.letter;
         EXPECT_TRUE(state == before && result.commands.empty());

@@ -16,7 +16,7 @@ namespace {
 const std::filesystem::path canon =
     std::filesystem::path(FEELER_SOURCE_DIR) / "../shared/oracle/canon.py";
 
-/// The contour as LinuxCNC reads it, and what becomes of it here.
+/// A contour as a LinuxCNC program, and its result here.
 struct Sample {
     std::string program;
     CompensatedMoves moves{};
@@ -34,7 +34,7 @@ struct Draw {
 
 double rounded(double value) { return std::round(value * 1e9) * 1e-9; }
 
-/// The next move from a place; now and then tangent, coming back, or a full circle.
+/// The next move from a point; sometimes tangential, reversing, or a full circle.
 ContourMove next_move(Draw& draw, FlatPoint from, double& heading, bool first) {
     const double kind = draw.between(0.0, 1.0);
     if (kind > 0.3) heading += draw.between(-std::numbers::pi, std::numbers::pi);
@@ -88,7 +88,7 @@ Sample draw_sample(Draw& draw) {
     return sample;
 }
 
-/// What canon.py prints for a program; `status` is 0 if it ran to its end.
+/// The output of canon.py for a program; `status` is 0 if it ran to its end.
 std::vector<std::string> reference_lines(const std::string& program, int& status) {
     const test_support::ScopedFolder folder;
     const std::filesystem::path path = folder.path() / "contours.ngc";

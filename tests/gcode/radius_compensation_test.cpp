@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Compensation with moves numbered from 1, and all that came out of it.
+/// Compensation with moves numbered from 1, and its complete output.
 struct Contour {
     RadiusCompensation compensation;
     CompensatedMoves moves{};
@@ -110,7 +110,8 @@ TEST(RadiusCompensation, MovesOfOtherAxesHappenWhereTheWaitingMoveEnds) {
 }
 
 TEST(RadiusCompensation, MovesTheEndOfAnArcOntoTheOffsetOfTheLineAfterIt) {
-    // The quarter about (10, 10) with 2 inside has the radius 8; the line leaves upwards.
+    // The quarter circle about (10, 10), offset 2 inwards, has the radius 8; the line leaves
+    // upwards.
     const Contour contour =
         left(2.0).line(10.0, 0.0).arc({20.0, 10.0}, {10.0, 10.0}, 1).line(20.0, 20.0).end();
     ASSERT_EQ(contour.moves.size(), 3u);
@@ -120,8 +121,8 @@ TEST(RadiusCompensation, MovesTheEndOfAnArcOntoTheOffsetOfTheLineAfterIt) {
 }
 
 TEST(RadiusCompensation, EndsALineWhereItMeetsTheOffsetOfAnArc) {
-    // The tool passes outside of the circle of radius 5 about (25, 0), which the line runs into:
-    // at v = 2, 7 from the centre.
+    // The tool passes outside the circle of radius 5 about (25, 0), which the line runs into: at v
+    // = 2, 7 from the centre.
     const Contour contour =
         left(2.0).line(10.0, 0.0).line(20.0, 0.0).arc({30.0, 0.0}, {25.0, 0.0}, -1).end();
     ASSERT_EQ(contour.moves.size(), 3u);
@@ -171,14 +172,14 @@ TEST(RadiusCompensation, RefusesAMoveTooShortForItsInsideCorners) {
 }
 
 TEST(RadiusCompensation, RefusesAnInsideCornerThatTheToolCannotReach) {
-    // Beside the line the tool keeps 3 from the arc's centre, inside the arc 1.
+    // Beside the line the tool stays 3 from the centre of the arc, inside the arc 1.
     const Contour contour =
         left(3.0).line(10.0, 0.0).line(20.0, 0.0).arc({12.0, 0.0}, {16.0, 0.0}, 1);
     EXPECT_THAT(contour.error.value().message, HasSubstr("the inside corner at the start"));
 }
 
 TEST(RadiusCompensation, TellsOfAMoveTurnedRoundThatTheControlLetsPass) {
-    // After the inside corner at its start the second move is turned round; straight on after it.
+    // The inside corner at its start reverses the second move; straight on after it.
     const Contour contour =
         left(2.0).line(10.0, 0.0).line(20.0, 0.0).line(20.0, 1.0).line(20.0, 1.5);
     ASSERT_FALSE(contour.error);

@@ -15,14 +15,14 @@ namespace {
 
 const std::filesystem::path shared = FEELER_SOURCE_DIR "/../shared/programs/linuxcnc";
 
-/// What the two interpreters are held against each other for.
+/// A feature for which the two interpreters are compared.
 struct Held {
     const char* feature;
     bool generated; // random programs agree
-    bool spoilt;    // nearly valid ones are refused alike
+    bool spoilt;    // both refuse the same nearly valid programs
 };
 
-/// A feature is switched on when it has come, and stays on.
+/// A feature is switched on once it is implemented, and stays on.
 constexpr Held held[] = {
     {"straight", true, false},       {"rotary_axes", true, false},
     {"secondary_axes", true, false}, {"centre_arcs", true, false},
@@ -55,7 +55,7 @@ std::vector<std::string> switched_on(bool Held::*kind) {
     return names;
 }
 
-/// Shared programs that are not yet read as the reference reads them.
+/// Shared programs that do not yet match the reference.
 constexpr const char* awaited[] = {
     "LinuxCNC__lathe_g70_71_demo.ngc",
 };
@@ -64,7 +64,7 @@ bool is_awaited(const std::string& name) {
     return std::find(std::begin(awaited), std::end(awaited), name) != std::end(awaited);
 }
 
-/// How a missing judge is taken.
+/// Skips the test, or fails it in CI, if something is missing.
 bool skips(const std::string& what) {
     if (std::getenv("FEELER_REQUIRE_SHARED")) ADD_FAILURE() << what << " is missing";
     return true;
@@ -77,7 +77,7 @@ std::vector<std::string> generated(const std::string& feature, int count) {
     return programs;
 }
 
-/// What a comparison of all programs comes to.
+/// The totals over all programs.
 struct Tally {
     size_t commands = 0, accepted = 0, refused = 0;
 };

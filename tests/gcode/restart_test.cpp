@@ -41,7 +41,7 @@ TEST(Restart, ListsWhatTheFirstCutNeeds) {
 
 TEST(Restart, ListsTheMotionCodeThatABlockOnTheWayGoesOnWith) {
     EXPECT_THAT(restarted(8)->missing, testing::Contains("G1"));
-    // A control that was just switched on begins with G0.
+    // A control that has just been switched on starts with G0.
     EXPECT_THAT(restarted(6)->missing, testing::Not(testing::Contains("G0")));
     EXPECT_THAT(restarted(9)->missing, testing::Not(testing::Contains(testing::StartsWith("G2"))));
     EXPECT_THAT(restarted(7)->missing, testing::Not(testing::Contains("G1")));

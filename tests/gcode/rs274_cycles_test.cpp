@@ -2,7 +2,7 @@
 
 #include "tests/gcode/programs.h"
 
-// Expected moves are those that LinuxCNC's rs274 prints for the same lines.
+// Expected moves are those printed by LinuxCNC's rs274 for the same lines.
 namespace gcode {
 namespace {
 

@@ -21,7 +21,7 @@ Environment shop(DialectId dialect) {
     return environment;
 }
 
-/// "rule@line" of everything that was said by a rule of its own.
+/// "rule@line" of each finding.
 std::vector<std::string> rules_of(std::string_view text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text(text, shop(dialect));
     EXPECT_FALSE(ran.run.error) << ran.run.error->message;

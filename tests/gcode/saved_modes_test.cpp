@@ -17,7 +17,7 @@ std::string warned(std::string_view text) {
 }
 std::string refused(std::string_view text) { return error_of(text, DialectId::linuxcnc); }
 
-// What is expected here was probed with LinuxCNC's interpreter.
+// Expected values were tested with LinuxCNC's interpreter.
 
 TEST(SavedModes, BringBackSpindleCoolantAndWorkOffset) {
     EXPECT_THAT(traced("S300 M3 M8\nM70\nM5 M9 G55\nM72"),

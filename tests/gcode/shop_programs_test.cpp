@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Programs as shops run them, against what the manuals of Fanuc and Haas say.
+/// Typical shop programs, compared with the manuals of Fanuc and Haas.
 constexpr std::array controls = {DialectId::fanuc, DialectId::haas};
 
 Recognition recognised(std::string_view text) {
@@ -20,7 +20,7 @@ Recognition recognised(std::string_view text) {
     return recognise(*program);
 }
 
-/// The heights that the tool goes to.
+/// The heights to which the tool moves.
 std::string heights(std::string_view text, DialectId dialect) {
     const Ran ran = run_text(text, dialect);
     if (ran.run.error) return ran.run.error->message;
@@ -66,7 +66,7 @@ TEST(ShopCycle, PecksShrinkFromIByJDownToK) {
     EXPECT_EQ(error_of("G0 Z5.\nG83 X0 Z-9. R0 I4. J1. F100", DialectId::haas),
               "2:1: G83 needs a K word");
     EXPECT_EQ(error_of("G0 Z5.\nG83 X0 Z-9. R0 I4. J1. F100"), "2:1: G83 needs a Q word");
-    // The shift of a boring cycle is no peck.
+    // The shift of a boring cycle is not a peck.
     EXPECT_EQ(error_of("G0 Z5.\nG76 X0 Z-9. R0 I1. F100\nG83 X1. Q2.", DialectId::haas), "");
 }
 
@@ -86,7 +86,7 @@ TEST(ShopMacro, FixAndFupGoByTheAmount) {
 }
 
 TEST(ShopMacro, RoundIsToTheSmallestStepBehindAnAddress) {
-    // The manuals' own example: the way there and back is the same only with ROUND.
+    // The example of the manuals: the way there and back are equal only with ROUND.
     const std::string program = "#1=1.2346\n#2=2.3456\nG91 G1 F9. X-[ROUND[#1]]\nX-[ROUND[#2]]\n"
                                 "X[ROUND[#1]+ROUND[#2]]";
     for (const DialectId control : controls) {
@@ -108,7 +108,7 @@ TEST(ShopMacro, AnglesOfFanucHaveNoSign) {
 }
 
 TEST(ShopMacro, G29PassesThePlacesOfEveryG28) {
-    // Fanuc's own example: G28 X40. and G28 Y60. leave (40, 60) between.
+    // Fanuc's example: G28 X40. and G28 Y60. leave the intermediate point (40, 60).
     EXPECT_THAT(trace("G21 G0 X1. Y1. Z1.\nG28 X40.\nG28 Y60.\nG29 X2. Y3."),
                 HasSubstr("straight_traverse x=40 y=60 z=1\nstraight_traverse x=2 y=3 z=1\n"));
 }
@@ -163,7 +163,7 @@ TEST(ShopProgram, IsOfHaasWhereACodeOfItsOwnFollowsTheNumber) {
         EXPECT_EQ(recognised("%\nO00123 (A)\nG21 G0 X1.\n" + std::string(code) + "\n").dialect,
                   DialectId::haas)
             << code;
-    // M97 without P ends interrupts on Fanuc; M98 is of both.
+    // M97 without P ends interrupts on Fanuc; M98 exists on both.
     for (const char* code : {"M97", "M98 P100", "G54.1 P1", "G65 P9810 Z1.", "#1=3\nGOTO 5"})
         EXPECT_EQ(recognised("%\nO00123 (A)\nG21 G0 X1.\n" + std::string(code) + "\n").dialect,
                   DialectId::fanuc)

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 const std::string ready = "S1000 M3\nG0 X10 Y20 Z50\nG1 F100\n";
 
-/// The motions behind those that bring the tool to the hole at X10 Y20, and the dwells.
+/// The motions after those that bring the tool to the hole at X10 Y20, and the dwells.
 std::string motions(const std::string& cycle) {
     const Ran ran = run_text(ready + cycle + "\n", DialectId::siemens);
     if (ran.run.error) return "error: " + ran.run.error->message;
@@ -37,7 +37,7 @@ TEST(SiemensCycle, DrillsFromTheSafetyDistanceToTheDepth) {
     const std::string drilled = "rapid 2\nfeed -5 100\nrapid 10\n";
     EXPECT_EQ(motions("CYCLE81(10,0,2,-5)"), drilled);
     EXPECT_EQ(motions("CYCLE81(10,0,2,,5)"), drilled);
-    EXPECT_EQ(motions("CYCLE81( 10 , 0 , 2 , 0 , 5 )"), drilled); // DPR counts
+    EXPECT_EQ(motions("CYCLE81( 10 , 0 , 2 , 0 , 5 )"), drilled); // DPR takes precedence
     EXPECT_EQ(motions("R5=-5 CYCLE81(10,0,2,R5)"), drilled);
     EXPECT_EQ(motions("CYCLE82(10,0,2,-5,,0.5)"), "rapid 2\nfeed -5 100\ndwell 0.5\nrapid 10\n");
 }
@@ -54,7 +54,7 @@ TEST(SiemensCycle, RefusesLevelsThatCannotBe) {
 }
 
 TEST(SiemensCycle, ClearsChipsOfDeepHoles) {
-    // First 8 deep, then shorter by 3 down to 3; 0.6 mm above the last depth ends the rapid.
+    // First 8 deep, then shorter by 3 down to 3; the rapid ends 0.6 mm above the last depth.
     EXPECT_EQ(motions("CYCLE83(10,0,1,-20,,-8,,3,0,0.2,0.5,1)"), "rapid 1\nfeed -8 50\n"
                                                                  "rapid 1\ndwell 0.2\nrapid -7.4\n"
                                                                  "feed -13 100\n"
@@ -70,14 +70,14 @@ TEST(SiemensCycle, BreaksChipsOfDeepHoles) {
     EXPECT_EQ(motions("CYCLE83(10,0,1,-12,,,5,0,0.1,0,1,0)"),
               "rapid 1\nfeed -5 100\ndwell 0.1\nfeed -4 100\nfeed -10 100\ndwell 0.1\n"
               "feed -9 100\nfeed -12 100\ndwell 0.1\nrapid 10\n");
-    // A factor in place of an amount, and a retract of its own.
+    // A factor instead of an amount, and a programmed retract.
     EXPECT_EQ(motions("CYCLE83(10,0,1,-17.5,,,10,-0.5,0,0,1,0,,,2)"),
               "rapid 1\nfeed -10 100\nfeed -8 100\nfeed -15 100\nfeed -13 100\nfeed -17.5 100\n"
               "rapid 10\n");
 }
 
 TEST(SiemensCycle, TapsWithTheSpindle) {
-    // M8 has a pitch of 1.25 mm: 125 mm/min at 100 turns, 250 at 200.
+    // M8 has a pitch of 1.25 mm: 125 mm/min at 100 rev/min, 250 at 200.
     EXPECT_EQ(motions("CYCLE84(10,0,2,-5,,0,3,8,,,100,200)"),
               "rapid 2\nspindle 1 100\nfeed -5 125\nspindle 2 200\nfeed 2 250\nspindle 1 1000\n"
               "rapid 10\n");
@@ -120,7 +120,7 @@ TEST(SiemensCycle, McallDrillsBehindEveryBlockThatMoves) {
 TEST(SiemensCycle, PatternsHaveTheirHoles) {
     EXPECT_EQ(holes("G0 X0 Y0\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,90,5,20,3)\nMCALL\n"),
               "10.000,5.000 10.000,25.000 10.000,45.000 ");
-    // From the end that is nearer.
+    // From the nearer end.
     EXPECT_EQ(holes("G0 X10 Y50\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,90,5,20,3)\nMCALL\n"),
               "10.000,45.000 10.000,25.000 10.000,5.000 ");
     EXPECT_EQ(holes("MCALL CYCLE81(10,0,2,-5)\nHOLES2(10,10,5,0,0,4)\nMCALL\n"),

@@ -102,7 +102,7 @@ TEST(SiemensCall, VariablesAreOfTheirProgram) {
 
 TEST(SiemensCall, FindsFilesOfTheSearchPathInAnyCase) {
     const test_support::ScopedFolder folder;
-    folder.write("Hole_1.spf", "G0 X5\n"); // whose end returns
+    folder.write("Hole_1.spf", "G0 X5\n"); // returns at its end
     folder.write("whole.MPF", "X6\nM30\n");
     Environment environment = known_environment(DialectId::siemens);
     environment.search_path = {folder.path().string()};
@@ -113,7 +113,7 @@ TEST(SiemensCall, FindsFilesOfTheSearchPathInAnyCase) {
                                     "straight_traverse x=6 y=0 z=0\n"
                                     "straight_traverse x=9 y=0 z=0\n");
     const Ran outside = run_text("CALL \"../Hole_1\"\n", environment);
-    EXPECT_FALSE(outside.run.error); // of a path only the name counts
+    EXPECT_FALSE(outside.run.error); // only the name of a path is used
     EXPECT_TRUE(run_text("CALL \"..\"\n", environment).run.error);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// The facts asserted here are those of SINUMERIK 840D sl / 828D, Programming Manual Fundamentals
+// Source of the expected values: SINUMERIK 840D sl / 828D, Programming Manual Fundamentals
 // (6FC5398-1BP40) and Job Planning (6FC5398-2BP40), under the names of the commands.
 
 TEST(SiemensWords, ReadsWordsWithAndWithoutEquals) {
@@ -166,7 +166,7 @@ TEST(SiemensOffset, SupaIsInMachineCoordinatesAndKeepsTheToolsLength) {
     Environment environment = known_environment(DialectId::siemens);
     environment.work_offsets[0][2] = 100.0;
     environment.tool_lengths[core::ToolNumber(1)] = 50.0;
-    // The tip at 0 of the machine is at -100 of G54; without D the gauge line is there.
+    // The tip at machine 0 is at -100 of G54; without D it is the gauge line.
     const Ran ran = run_text("T1\nM6\nSUPA G0 Z0\nSUPA Z0 D0\nG500 Z1\n", environment);
     EXPECT_THAT(commands_of(ran.run), HasSubstr("straight_traverse x=0 y=0 z=-100\n"
                                                 "use_tool_length_offset length=0\n"

@@ -59,7 +59,7 @@ TEST(Spline, QuadraticIsAParabola) {
 }
 
 TEST(Nurbs, WeightsMakeAQuarterOfACircle) {
-    // The classic: (1 0) (1 1) (0 1) with weights 1, 1/sqrt 2, 1.
+    // The usual quarter circle: (1 0) (1 1) (0 1) with weights 1, 1/sqrt 2, 1.
     const NurbsCurve curve{{{{1, 0}, 1.0}, {{1, 1}, std::sqrt(0.5)}, {{0, 1}, 1.0}}, 3};
     for (int i = 0; i <= 10; ++i) {
         const SplinePoint p = point_at(curve, 0.1 * i);
@@ -68,7 +68,7 @@ TEST(Nurbs, WeightsMakeAQuarterOfACircle) {
 }
 
 TEST(Nurbs, PassesHalfWayBetweenControlPointsAtAKnot) {
-    // Of order 3 with equal weights, a whole parameter is the middle of two inner control points.
+    // At order 3 with equal weights, a whole parameter is the midpoint of two inner control points.
     const auto curve =
         finish_nurbs(gathered({{0.0, 1.0, 1.0, 3}, {2.0, 2.0, 1.0, {}}, {2.0, 0.0, 1.0, {}}}));
     ASSERT_TRUE(curve);
@@ -105,11 +105,11 @@ TEST(Nurbs, RefusalsChangeNothing) {
 }
 
 TEST(Nurbs, RefusesWeightsThatCancel) {
-    // Weights 1 and -1 of a straight line cancel at its middle, the 15th of 30 steps.
+    // Weights 1 and -1 of a straight line cancel out at its midpoint, the 15th of 30 steps.
     EXPECT_FALSE(preview_chords({{{{0, 0}, 1.0}, {{1, 0}, -1.0}}, 2}));
 }
 
-/// A program with splines and the chords we make of it; empty where we refuse.
+/// A program with splines and our chords for it; empty where we refuse.
 struct SplineCase {
     std::string program;
     std::optional<std::vector<SplinePoint>> chords;
@@ -132,7 +132,7 @@ private:
 
     int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(rng_); }
     double number() { return std::uniform_int_distribution<int>(-500, 500)(rng_) / 10.0; }
-    /// A word, and now and then none.
+    /// A word, sometimes missing.
     std::optional<double> word(char letter, double value, int rarity = 12) {
         if (pick(rarity) == 0) return {};
         program_ += fmt::format(" {}{}", letter, value);

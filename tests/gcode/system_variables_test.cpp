@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What #100 holds in the end; what went wrong, or "vacant".
+/// The final value of #100, the error, or "vacant".
 std::string result_of(std::string_view text, DialectId dialect = DialectId::fanuc) {
     Environment environment = known_environment(dialect);
     environment.work_offsets[1][0] = 50.0; // G55 X
@@ -52,7 +52,7 @@ TEST(SystemVariables, OffsetsAreReadAndWritten) {
     EXPECT_EQ(result_of("#2401=8\n#100=#2401", DialectId::haas), "8");
     EXPECT_EQ(result_of("#8550=3\n#100=#8553", DialectId::haas), "80");
     EXPECT_EQ(result_of("#8550=-1E0", DialectId::haas).substr(0, 5), "error");
-    // The length of a tool that has no entry stays when its wear is written.
+    // The length of a tool without a table entry is kept when its wear is written.
     EXPECT_EQ(result_of("#10004=1\n#100=#11004"), "60");
 }
 
@@ -100,7 +100,7 @@ TEST(SystemVariables, ModesAndWordsAreThoseOfTheBlockBefore) {
                   value)
             << number;
     EXPECT_EQ(result_of("X1.5\n#100=#4124", DialectId::haas), "1.5");
-    // The way macros keep the modes of their caller.
+    // The usual way in which macros save the modes of their caller.
     EXPECT_EQ(trace("G21 G90 G0\n#10=#4003\nG91 X1\nG#10 X5\nM30"),
               "straight_traverse x=1 y=0 z=0\nstraight_traverse x=5 y=0 z=0\n");
 }
@@ -134,7 +134,7 @@ TEST(FanucFlow, LoopsNestAndAreLeft) {
                         "N9\nWHILE [#100 LT 7] DO 1\n#100=#100+2\nEND 1"),
               "7");
     EXPECT_THAT(result_of("WHILE [1 EQ 1] DO 4\nEND 4"), HasSubstr("1, 2 or 3"));
-    // The END of another program of the file is not its end.
+    // The END of another program in the file does not end it.
     EXPECT_THAT(result_of("WHILE [#1 EQ 1] DO 1\nM30\nO5\nDO 1\nEND 1\nM99"),
                 HasSubstr("'END' of 1 is missing"));
 }

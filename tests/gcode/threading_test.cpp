@@ -71,8 +71,9 @@ TEST(Threading, DegressionOfTwoCutsEqualAreas) {
     words.j = 0.25;
     words.degression = 2.0;
     const auto moves = moves_of(words);
-    EXPECT_EQ(moves.size(), 16u * 4 + 1);            // 0.25 sqrt(n) reaches 1 with the 16th
-    EXPECT_NEAR(moves[4 * 3 + 1].end.x, 8.5, 1e-12); // the fourth is twice as deep as the first
+    EXPECT_EQ(moves.size(), 16u * 4 + 1); // 0.25 sqrt(n) reaches 1 at the 16th pass
+    EXPECT_NEAR(moves[4 * 3 + 1].end.x, 8.5,
+                1e-12); // the fourth pass is twice as deep as the first
 }
 
 TEST(Threading, SpringPassesRepeatTheFullDepth) {

@@ -36,7 +36,7 @@ void expect_machine_at(std::string_view text, double x, double y, double z, bool
 TEST(TiltedPlane, EulerAnglesTurnAboutZThenNewXThenNewZ) {
     // Tilted by 90 degrees about X: the plane's Y is the work's Z, its Z is the work's -Y.
     expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG0 X1 Y2 Z3", 11, 17, 32, true);
-    // Turned about Z first: the plane's X is the work's Y, its Z is the work's X.
+    // Rotated about Z first: the plane's X is the work's Y, its Z is the work's X.
     expect_machine_at("G68.2 X0 Y0 Z0 I90 J90 K0\nG0 X1 Y2 Z3", 3, 1, 2, true);
     // Then about its own Z: its X is the work's Z, its Y is the work's -Y.
     expect_machine_at("G68.2 X0 Y0 Z0 I90 J90 K90\nG0 X1 Y2 Z3", 3, -2, 1, true);

@@ -16,7 +16,7 @@ struct Tip {
     double x, z; // of a nose of radius 1, from its centre
 };
 
-// LinuxCNC's interpreter makes these ends of the first move.
+// The end points of the first move in LinuxCNC's interpreter.
 constexpr Tip tips[] = {{0, 0, 0}, {1, -1, 1}, {2, -1, -1}, {3, 1, -1}, {4, 1, 1},
                         {5, 0, 1}, {6, -1, 0}, {7, 0, -1},  {8, 1, 0},  {9, 0, 0}};
 
@@ -26,7 +26,7 @@ std::string contour(std::string_view entry) {
                        entry);
 }
 
-/// The ends and centres of a trace's motions along X and Z.
+/// The end points and centres of the motions of a trace along X and Z.
 std::vector<std::array<double, 2>> places(const Run& run) {
     std::vector<std::array<double, 2>> found;
     for (const BlockResult& block : run.blocks)
@@ -46,7 +46,7 @@ void expect_shifted(const Run& run, const Run& mill, const Tip& tip, double radi
     const auto ours = places(run), centres = places(mill);
     ASSERT_EQ(ours.size(), centres.size());
     ASSERT_GT(ours.size(), 5U);
-    for (size_t i = 0; i + 1 < ours.size(); ++i) { // the last one is behind G40
+    for (size_t i = 0; i + 1 < ours.size(); ++i) { // the last one is after G40
         EXPECT_NEAR(ours[i][0], centres[i][0] + radius * tip.x, 1e-9) << tip.orientation;
         EXPECT_NEAR(ours[i][1], centres[i][1] + radius * tip.z, 1e-9) << tip.orientation;
     }

@@ -10,15 +10,15 @@
 namespace gcode {
 namespace {
 
-/// A shaft of radius 10, 10 long, with a cone up to radius 16 behind it.
+/// A shaft of radius 10, 10 long, followed by a cone up to radius 16.
 const TurningContour shaft = {{{10, 0}}, {{10, -10}}, {{16, -16}}, {{18, -16}}};
 
 TurningMove rapid(double x, double z) { return {{x, z}, true}; }
 TurningMove feed(double x, double z) { return {{x, z}, false}; }
 
 TEST(Roughing, CutsLevelsUntilTheContourIsReached) {
-    // From X18 in steps of 4: the levels 18, 14 and 10. The way in is a line from (18, 4) to
-    // (10, 0), the cone has Z = -X; each cut goes back by a retract of 1.
+    // From X18 in steps of 4: the levels 18, 14 and 10. The lead-in is a line from (18, 4) to (10,
+    // 0), the cone has Z = -X; each cut retracts by 1.
     RoughingWords words;
     words.depth = 4.0;
     words.retract = 1.0;
@@ -71,7 +71,7 @@ TEST(Roughing, RefusesADepthOfNothing) {
 TEST(Roughing, RefusesAContourThatTurnsBack) {
     const TurningContour back = {{{10, 0}}, {{10, -10}}, {{14, -5}}, {{18, -16}}};
     EXPECT_FALSE(roughing_moves({18, 4}, back, {}));
-    EXPECT_TRUE(finishing_moves({18, 4}, back, {})); // it runs one way in X
+    EXPECT_TRUE(finishing_moves({18, 4}, back, {})); // it runs in one direction in X
     const TurningContour both = {{{10, 0}}, {{10, -10}}, {{14, -5}}, {{12, -16}}, {{18, -16}}};
     EXPECT_FALSE(finishing_moves({18, 4}, both, {}));
 }
@@ -97,7 +97,7 @@ TEST(Roughing, InchesAreTwinsOfMillimetres) {
 }
 
 TEST(Roughing, EndsWhereTheReferenceDoesNot) {
-    // Steps of a tenth below an arc that comes back: LinuxCNC cuts X17.3 for ever.
+    // Steps of 0.1 below an arc that turns back: LinuxCNC cuts X17.3 forever.
     const auto arc = [](TurningPoint from, TurningPoint to, double radius, bool ccw) {
         return *turning_arc_from_radius(from, to, radius, ccw);
     };
@@ -150,7 +150,7 @@ public:
 private:
     int pick(int low, int high) { return std::uniform_int_distribution<int>(low, high)(rng_); }
 
-    /// The number nearest to a coordinate written with one digit after the point.
+    /// The nearest number with one decimal.
     static double tenths(double value) { return std::round(value * 10.0) / 10.0; }
 
     void line(TurningPoint end) {
@@ -231,7 +231,7 @@ void expect_same_move(const TurningMove& ours, const test_support::ReferenceMoti
     EXPECT_EQ(ours.arc->counterclockwise ? 1 : -1, theirs.values[4]);
 }
 
-/// Whether the reference refused an arc of the cycle, which is for the interpreter to do here too.
+/// Whether the reference refused an arc of the cycle; here that is done by the interpreter.
 bool refused_an_arc(const test_support::ReferenceRun& run) {
     return run.refusal.find("adius") != std::string::npos;
 }
@@ -258,7 +258,7 @@ TEST(TurningCycle, AgreesWithTheReferenceOnRandomContours) {
             ASSERT_EQ(runs[i].refusal.empty(), cases[i].ours.has_value())
                 << runs[i].refusal << (cases[i].ours ? "" : "; " + cases[i].ours.error().message);
         if (!cases[i].ours) continue;
-        // A rapid to the start, and for the cycle another one.
+        // A rapid to the start, and another one for the cycle.
         const size_t lead = 2, count = runs[i].motions.size();
         for (size_t k = lead; k < std::min(count, cases[i].ours->size() + lead); ++k) {
             SCOPED_TRACE(fmt::format("move {}", k));

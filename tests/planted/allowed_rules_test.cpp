@@ -15,7 +15,7 @@ using test_support::SetupWriter;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A rapid along Y97.8 over the stock, past a clamp whose near side is at Y104: 1.2 mm.
+/// A rapid along Y97.8 above the stock, 1.2 mm past a clamp whose near side is at Y104.
 SetupWriter past_a_clamp(const std::string& rules) {
     return SetupWriter()
         .fixture("clamp-1", "box = [[40, 104, -30], [60, 130, 12]]")
@@ -32,7 +32,7 @@ bool says(const Checked& checked, const std::string& what) {
                        [&](const std::string& text) { return text.find(what) != text.npos; });
 }
 
-/// The names alone.
+/// Only the names.
 std::vector<std::string> names_in(const std::string& line) {
     std::vector<std::string> names;
     for (const app::AllowedRule& rule : app::allowed_rules(line)) names.push_back(rule.name);

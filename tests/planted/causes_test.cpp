@@ -18,7 +18,7 @@ std::string rules_in(const Checked& checked) {
     return rules;
 }
 
-/// Three passes into the plate, with what is said of the length at line 5.
+/// Three passes into the plate, with the given length code in line 5.
 std::string passes(const std::string& length, const std::string& between = "") {
     std::string text = "O1000\nG21 G90 G17 G54\nT1 M6\nS6000 M3\nG0 " + length + " Z60.\n"
                        + "G0 X-20. Y30.\nZ-2.\nG1 X120. F800.\nG0 Z60.\n" + between;
@@ -27,7 +27,7 @@ std::string passes(const std::string& length, const std::string& between = "") {
     return text + "M30\n";
 }
 
-// --- a wrong length is one finding ---
+// A wrong length is one finding.
 
 TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     const Checked checked = check(SetupWriter(), passes(""));
@@ -38,12 +38,12 @@ TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     EXPECT_THAT(told.message, HasSubstr("from line 5 to line 17"));
     EXPECT_THAT(told.cure, HasSubstr("G43 H1"));
     EXPECT_EQ(checked.verdict, "collision");
-    EXPECT_EQ(checked.at_line(8).verdict, "collision"); // blocks keep theirs
+    EXPECT_EQ(checked.at_line(8).verdict, "collision"); // blocks keep their verdicts
     EXPECT_EQ(check(SetupWriter(), passes("G43 H1")).errors(), "");
 }
 
 TEST(MissingLength, EndsWhereTheLengthIsCalled) {
-    // The clamp is too near with the right length, too.
+    // The clamp is too close with the right length as well.
     const SetupWriter setup =
         SetupWriter().fixture("clamp-1", "box = [[40, 75, -30], [60, 90, 12]]");
     const Checked checked = check(setup, passes("", "G43 H1 Z60.\n"));
@@ -90,9 +90,9 @@ TEST(LengthOfAnotherTool, IsOneWarningAndOneError) {
     EXPECT_EQ(harmless.of_severity("warning"), "offset-not-tool 5");
 }
 
-// --- an expendable fixture ---
+// Expendable fixtures.
 
-/// A plate on a board that the flutes may cut: its top is the plate's underside.
+/// A plate on a board that the flutes may cut; the board's top is the underside of the plate.
 SetupWriter on_a_board(const std::string& also = "") {
     return SetupWriter()
         .fixture("board", "box = [[-50, -50, -50], [150, 150, -30]]\nexpendable = true\n" + also)
@@ -133,7 +133,7 @@ TEST(ExpendableFixture, ThatWasExchangedIsWhole) {
     EXPECT_THAT(check(on_a_board(exchanged), program(lines)).errors(), HasSubstr("collision"));
 }
 
-// --- what is stated is stated ---
+// Values stated in the set-up.
 
 TEST(WorkOffset, ThatTheSetUpStatesAsZeroIsSet) {
     const std::string zeros = "G54 = { X = 0, Y = 0, Z = 0 }\n";
@@ -146,7 +146,7 @@ TEST(WorkOffset, ThatTheSetUpStatesAsZeroIsSet) {
                 HasSubstr("work-offset-unset"));
 }
 
-// --- a restart ---
+// A restart.
 
 TEST(RestartInTheMiddle, NamesTheMotionCodeThatItsFirstBlockNeeds) {
     const std::string slot =

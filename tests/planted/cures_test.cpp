@@ -13,7 +13,7 @@ namespace {
 using test_support::program;
 using test_support::SetupWriter;
 
-/// The first number in a text, behind the given words.
+/// The first number in a text after the given words.
 double number_behind(const std::string& text, const std::string& words) {
     const size_t at = text.find(words);
     double number = -1.0;
@@ -23,7 +23,7 @@ double number_behind(const std::string& text, const std::string& words) {
     return number;
 }
 
-/// Three passes along one slot; the holder, 20 in radius, hangs over both walls.
+/// Three passes along one slot; the holder, radius 20, overhangs both walls.
 Checked deep_slot(double stick_out) {
     const SetupWriter setup = SetupWriter().lengths("").tool(
         fmt::format("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
@@ -35,7 +35,7 @@ Checked deep_slot(double stick_out) {
 }
 
 TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryAllowance) {
-    // 1 mm must be kept above the walls: 24 deep needs 25, 28 deep needs 29.
+    // Minimum clearance above the walls is 1 mm: depth 24 needs 25, depth 28 needs 29.
     const FindingLine told = deep_slot(24.0).finding("stick-out-short");
     EXPECT_EQ(told.line, 12);
     const double enough = number_behind(told.cure, "A stick-out of ");
@@ -44,7 +44,7 @@ TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryAllowance) {
     EXPECT_NE(deep_slot(enough - 0.2).errors(), "");
 }
 
-/// A slot of 24 in one pass.
+/// A slot 24 deep in one pass.
 Checked slot_at_once(double flutes) {
     const SetupWriter setup = SetupWriter().lengths("").tool(
         fmt::format("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = {}\n"
@@ -62,7 +62,7 @@ TEST(Cure, OfFlutesThatAreTooShortIsTheDepth) {
     EXPECT_NE(slot_at_once(enough - 0.3).errors(), "");
 }
 
-/// Two pockets with a stud of 8 between them.
+/// Two pockets with a stud 8 high between them.
 Checked two_pockets(double retract) {
     const SetupWriter setup = SetupWriter().fixture("stud", "box = [[48, 46, 0], [56, 54, 8]]");
     return check(setup, program({"G0 X20. Y50.", "Z2.", "G1 Z-5. F200.", "X30. F800.",
@@ -74,7 +74,7 @@ TEST(Cure, OfALowRetractClearsWhatStandsBetween) {
     const FindingLine told = two_pockets(4.0).finding("low-retract");
     EXPECT_EQ(told.line, 11);
     const double higher = number_behind(told.cure, "Retract ");
-    EXPECT_NEAR(higher, 6.0, 0.11); // 8 and the 2 that must be kept, less 4
+    EXPECT_NEAR(higher, 6.0, 0.11); // 8 plus the minimum clearance of 2, minus 4
     EXPECT_EQ(two_pockets(4.0 + higher).of_severity("warning"), "");
     EXPECT_EQ(two_pockets(4.0 + higher).errors(), "");
     EXPECT_NE(two_pockets(4.0 + higher - 0.2).errors(), "");
@@ -90,7 +90,7 @@ TEST(LowRetract, IsOneThatPassesOverTheStockByLessThanHalfAMillimetre) {
     EXPECT_EQ(across_the_face("0.6").of_severity("warning"), "");
 }
 
-/// What the air-cut notes of a program are about.
+/// The subjects of the air-cut notes of a program.
 std::string air_cuts(const std::vector<std::string>& lines) {
     const Checked checked = check(SetupWriter(), program(lines));
     std::string found;

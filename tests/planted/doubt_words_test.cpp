@@ -36,7 +36,7 @@ TEST(CureOfDoubt, NamesTheToleranceOfTheStock) {
     EXPECT_EQ(check(SetupWriter().stock(box), program(over)).errors(), "");
 }
 
-// --- a plate that is cut out in one pass ---
+// A plate that is cut out in one pass.
 
 TEST(CutThrough, WithARetractOutOfItIsPlausible) {
     const SetupWriter thin = SetupWriter().stock("box = [[-10, -10, -6], [110, 90, 0]]\n");
@@ -52,7 +52,7 @@ TEST(CutThrough, WithARetractOutOfItIsPlausible) {
     EXPECT_THAT(cut_out("G0 Z-3."), HasSubstr("offset-implausible"));
 }
 
-// --- layout ---
+// Layout.
 
 TEST(Clipped, KeepsCharactersWhole) {
     const std::string text = "\u4e2d\u6587\u4e2d\u6587\u4e2d\u6587"; // 3 bytes each

@@ -10,14 +10,14 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The lines with tool `tool` and the length offset `offset`, called in line 5.
+/// A program with the lines, tool `tool` and length offset `offset`, which is called in line 5.
 std::string with_length(int tool, int offset, const std::string& lines) {
     return "O1\nG21 G17 G90 G40 G80\nT" + std::to_string(tool)
            + " M6\nG54 G0 X-30. Y50. S6000 M3\nG43 H" + std::to_string(offset) + " Z60.\n" + lines
            + "G0 Z60.\nM30\n";
 }
 
-/// H3 counts `length`; tools 1 and 2 are 95 and 120 long.
+/// H3 is `length`; tools 1 and 2 are 95 and 120 long.
 SetupWriter table_with(double length) {
     return SetupWriter()
         .lengths("[[length_offset]]\nnumber = 3\nlength = " + std::to_string(length) + "\n")
@@ -48,7 +48,7 @@ TEST(WrongLength, DoesNotTakeInAClampThatIsInTheWayAnyhow) {
 }
 
 TEST(WrongLength, TakesInAClampThatTheRightOneClears) {
-    // 2 mm must be kept: at Z14.5 it is 2.5 over the top, with H3 1 mm above it.
+    // Minimum clearance 2 mm: at Z14.5 the tool is 2.5 mm above the top, with H3 1 mm.
     const std::string lines = "G0 Z14.5\nX50. Y110.\n";
     const Checked wrong = check(with_clamp(93.5, 12), with_length(1, 3, lines));
     EXPECT_THAT(wrong.errors(), Not(HasSubstr(",")));
@@ -57,7 +57,7 @@ TEST(WrongLength, TakesInAClampThatTheRightOneClears) {
 }
 
 TEST(WrongLength, LeavesAClampThatIsTooNearWithTheRightOne) {
-    // Half a millimetre is missing with the right length, two with the wrong one.
+    // With the right length the clearance is 0.5 mm short, with the wrong one 2 mm.
     const std::string lines = "G0 Z13.5\nX50. Y110.\n";
     const Checked wrong = check(with_clamp(93.5, 12), with_length(1, 3, lines));
     EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than meant")));
@@ -91,14 +91,14 @@ TEST(WrongLength, LeavesADrillThatIsFedSideways) {
 }
 
 TEST(WrongLength, LeavesWhatAMachinePlaceRunsInto) {
-    // G53 counts without a length: the right one changes nothing.
+    // G53 ignores the length offset, so the right one changes nothing.
     const std::string lines = "G0 X50. Y110.\nG53 G0 Z-318.\n";
     const Checked wrong = check(with_clamp(85, 12), with_length(1, 3, lines));
     EXPECT_THAT(wrong.errors(), HasSubstr("collision 7"));
     EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than meant")));
 }
 
-// --- reports of blocks name what the text tells of ---
+// Reports of blocks name the same findings as the text.
 
 TEST(WrongLength, LeavesTheRulesInTheRowsOfBlocks) {
     const test_support::ScopedFolder folder;

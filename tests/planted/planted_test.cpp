@@ -13,7 +13,7 @@ namespace {
 
 const std::filesystem::path folder = std::filesystem::path(FEELER_SOURCE_DIR) / "tests/planted";
 
-/// A row of the table: a program with a mistake, and the one without it.
+/// A row of the table: a program with a mistake and its correct twin.
 struct Planted {
     std::string rule, dialect, program;
     int line = 0; // 0: the program as a whole

@@ -14,7 +14,7 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-// --- rapids within a block of several motions ---
+// Rapids within a block of several motions.
 
 TEST(RapidOnTheWayHome, IsARapidInTheStock) {
     const Checked checked =
@@ -27,7 +27,7 @@ TEST(RapidOnTheWayHome, IsARapidInTheStock) {
 }
 
 TEST(RapidOfACycle, IsARapidInTheStock) {
-    // G98 returns to Z-8, where the cycle was begun in the pocket beside the wall.
+    // G98 returns to Z-8, where the cycle started in the pocket beside the wall.
     const std::vector<std::string> pocket = {"G0 X20. Y50.", "Z2.", "G1 Z-8. F200."};
     std::vector<std::string> lines = pocket;
     lines.insert(lines.end(), {"G98 G81 X80. Y50. Z-12. R-8. F200.", "G80", "G0 Z60."});
@@ -41,7 +41,7 @@ TEST(RapidOfACycle, IsARapidInTheStock) {
 }
 
 TEST(FeedOfACycle, IsNoRapid) {
-    // The holder comes down on the stock while the cycle feeds.
+    // The holder reaches the stock while the cycle feeds.
     const Checked checked = check(
         SetupWriter(), program({"G0 X50. Y50.", "Z2.", "G81 Z-60. R2. F200.", "G80", "G0 Z60."}));
     EXPECT_THAT(checked.errors(), HasSubstr("holder-into-wall 8"));
@@ -59,7 +59,7 @@ TEST(RapidOfACycle, PastAClampIsNamedAsARapid) {
     EXPECT_THAT(told.message, HasSubstr("On a rapid of this cycle, the flutes pass clamp-1"));
 }
 
-// --- tool changes ---
+// Tool changes.
 
 SetupWriter long_second_tool(const std::string& rules = "") {
     return SetupWriter()
@@ -68,7 +68,7 @@ SetupWriter long_second_tool(const std::string& rules = "") {
         .also(rules);
 }
 
-/// Tool 1, 95 long, stands so high over the stock when tool 2 comes, which is 40 longer.
+/// Height of tool 1, 95 long, above the stock when tool 2, which is 40 longer, is loaded.
 Checked changed_at(const std::string& z, const std::string& rules = "") {
     return check(long_second_tool(rules),
                  program({"G0 X50. Y50.", "Z" + z, "T2 M6", "G53 G0 Z0."}));
@@ -92,7 +92,7 @@ TEST(UnsafeToolChange, IsToldWhateverTheSetUpSaysIfBodiesOverlap) {
     EXPECT_EQ(changed_at("50.", off).errors(), "");
 }
 
-// --- lengths as the set-up has them ---
+// Lengths as written in the set-up.
 
 TEST(FluteLength, IsToldAsItIsWritten) {
     const SetupWriter setup = SetupWriter().lengths("").tool(
@@ -105,10 +105,10 @@ TEST(FluteLength, IsToldAsItIsWritten) {
     EXPECT_THAT(told.message, Not(HasSubstr("5.2")));
 }
 
-// --- the same words with and without --pairs ---
+// The same words with and without --pairs.
 
 TEST(Witness, IsAtTheSameMomentHoweverMuchIsTold) {
-    // The holder goes through both walls of a slot that is too deep, and a clamp stands behind.
+    // The holder passes through both walls of a slot that is too deep, with a clamp behind it.
     const SetupWriter setup = SetupWriter()
                                   .fixture("clamp-1", "box = [[70, 60, -30], [80, 90, 12]]")
                                   .fixture("clamp-2", "box = [[90, 30, -30], [95, 40, 14]]");
