@@ -6,10 +6,11 @@
 
 #include "app/commands/check_options.h"
 #include "app/commands/read_files.h"
-#include "app/library/shard/shard.h"
 #include "app/report/text/batch_text.h"
 
 namespace app {
+
+struct Shard;
 
 /// Where lines for a person go: to standard output, unless a report for others does.
 struct BatchTalk {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -166,11 +167,9 @@ ExitCode fail(const CheckJob& job, const core::Error& error,
 }
 
 core::Result<CheckJob> one_job(const CheckOptions& options) {
-    CheckArguments what = options.what;
-    what.program = options.programs[0];
-    FEELER_TRY(CheckJob job, job_of(what));
-    job.detail = detail_of(options);
-    job.engine = options.engine;
+    CheckOptions one = options;
+    one.what.program = options.programs[0];
+    FEELER_TRY(CheckJob job, job_of(one));
     job.needs_surface = !options.stock.empty() || !options.comparison.empty();
     job.before_model = say_memory;
     job.is_stopped = is_interrupted;

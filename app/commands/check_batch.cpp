@@ -12,15 +12,19 @@
 #include <unistd.h>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_run.h"
 #include "app/commands/batch_ending.h"
 #include "app/commands/check_options.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/library/run/batch_job.h"
 #include "app/library/run/batch_run.h"
 #include "app/library/shard/shard.h"
+#include "app/library/store/database.h"
 #include "app/library/store/result_key.h"
 #include "app/library/store/result_store.h"
 #include "app/library/store/store_file.h"
+#include "app/library/watch/watched_files.h"
 
 namespace app {
 
@@ -313,9 +317,7 @@ core::Result<BatchPass> batch_pass(const CheckOptions& options,
     if (auto ready = forget_old_share(targets); !ready) return tl::unexpected(ready.error());
     if (const auto allowed = refuse_single_options(options); !allowed)
         return tl::unexpected(allowed.error());
-    FEELER_TRY(CheckJob asked, job_of(options.what));
-    asked.engine = options.engine;
-    asked.detail = detail_of(options);
+    FEELER_TRY(const CheckJob asked, job_of(options));
     stop_on_interrupt();
     const auto store = std::make_shared<BatchStore>(options);
     return [&options, &targets, asked, store, state = WatchState()](WatchedFiles* files) mutable {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
 #include "app/commands/output.h"
 
 namespace app {
@@ -40,9 +41,14 @@ std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets) {
     return paths;
 }
 
-core::Detail detail_of(const CheckOptions& options) {
-    if (options.pairs) return core::Detail::every_pair;
-    return options.verdict_only ? core::Detail::verdict : core::Detail::deciding_pair;
+core::Result<CheckJob> job_of(const CheckOptions& options) {
+    FEELER_TRY(CheckJob job, job_of(options.what));
+    job.engine = options.engine;
+    if (options.pairs)
+        job.detail = core::Detail::every_pair;
+    else if (options.verdict_only)
+        job.detail = core::Detail::verdict;
+    return job;
 }
 
 } // namespace app

@@ -8,9 +8,12 @@
 #include "app/commands/commands.h"
 #include "app/commands/program_arguments.h"
 #include "app/library/store/shard_number.h"
-#include "app/library/watch/watched_files.h"
 
 namespace app {
+
+class WatchedFiles;
+enum class Engine : uint8_t;
+struct CheckJob;
 
 /// The options of `feeler check`, as words of a command line.
 struct CheckOptions {
@@ -19,7 +22,7 @@ struct CheckOptions {
     std::vector<std::string> formats, outputs;
     std::string stock, comparison, cache;
     bool no_cache = false;
-    Engine engine = Engine::exact;
+    Engine engine{}; // the exact one
     bool blocks = false;
     bool pairs = false;
     bool verdict_only = false;
@@ -44,7 +47,10 @@ struct ReportTarget {
 core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
                                                    const std::vector<std::string>& outputs);
 
-core::Detail detail_of(const CheckOptions& options);
+/// The check that the options ask for; its program is that of `what`.
+///
+/// Errors: those of settings_of.
+core::Result<CheckJob> job_of(const CheckOptions& options);
 
 /// Checks many programs, says a line for each, and writes the reports. When it is called again it
 /// says a line for each program that was checked again. Null: nothing is watched.

@@ -1,5 +1,8 @@
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
+#include "app/check/check_run.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/output.h"

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "app/base/text.h"
+#include "app/library/watch/watched_files.h"
 #include "app/report/text/text_report.h"
 
 namespace app {

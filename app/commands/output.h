@@ -8,10 +8,11 @@
 
 #include "app/base/file_stamp.h"
 #include "app/commands/commands.h"
-#include "app/library/watch/watched_files.h"
 #include "core/base/result.h"
 
 namespace app {
+
+class WatchedFiles;
 
 /// Writes a result to a file, or to standard output when `path` is empty. A file is replaced only
 /// once all of the new one is on disk; the old one stays when something goes wrong. A device or

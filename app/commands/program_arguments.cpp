@@ -2,9 +2,12 @@
 
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/program_settings.h"
 
 namespace app {
 namespace {
@@ -127,6 +130,15 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     job.start_line = arguments.start_line;
     job.settings = std::move(settings);
     return job;
+}
+
+void add_device_arguments(CLI::App& command, DeviceArguments& arguments) {
+    command.add_flag("--coprocessor", arguments.shown,
+                     "Run the program beside an emulated coprocessor, and show its panel");
+    command
+        .add_option("--device", arguments.file,
+                    "The same beside this one: device file (TOML), as coproc --config has it")
+        ->each([&arguments](const std::string&) { arguments.shown = true; });
 }
 
 CLI::Validator number_range(double low, double high) {

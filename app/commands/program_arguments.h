@@ -4,12 +4,18 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "core/base/result.h"
 
-#include "app/check/check_run.h"
-#include "app/setup/program_settings.h"
+namespace CLI {
+class App;
+class Option;
+class Validator;
+} // namespace CLI
 
 namespace app {
+
+struct CheckJob;
+struct ProgramSettings;
 
 /// The options that say how a program is read, as words of a command line.
 struct ProgramArguments {
@@ -48,6 +54,15 @@ void add_start_line(CLI::App& command, CheckArguments& arguments);
 ///
 /// Errors: those of settings_of.
 core::Result<CheckJob> job_of(const CheckArguments& arguments);
+
+/// The options that say beside which coprocessor a program is run.
+struct DeviceArguments {
+    std::string file; // empty: the usual one
+    bool shown = false;
+};
+
+/// Gives a command these options. The arguments must outlive it.
+void add_device_arguments(CLI::App& command, DeviceArguments& arguments);
 
 /// Refuses an option's value that is no finite number from `low` to `high`.
 CLI::Validator number_range(double low, double high);

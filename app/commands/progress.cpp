@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
+#include "app/library/run/batch_run.h"
 
 namespace app {
 namespace {

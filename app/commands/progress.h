@@ -2,9 +2,10 @@
 
 #include <chrono>
 
-#include "app/library/run/batch_run.h"
-
 namespace app {
+
+struct BatchProgress;
+struct CheckProgress;
 
 /// From now on Ctrl-C, and what a scheduler or a closed terminal sends, asks a check to stop, once;
 /// the next one, half a second later or more, ends the process. Outlives readers, too.

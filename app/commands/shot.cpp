@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -15,7 +16,6 @@
 #include <unistd.h>
 
 #include "app/commands/commands.h"
-#include "app/commands/device_arguments.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
@@ -165,7 +165,7 @@ constexpr size_t most_frames = 500; // of a film: 20 seconds
 
 struct ShotOptions {
     CheckArguments what;
-    viewer::DeviceChoice device;
+    DeviceArguments device;
     std::string output, view = "iso", theme = "dark", size = "1440x900";
     std::optional<size_t> block, finding, from, to;
     bool worst = false, sheet = false, no_ui = false;

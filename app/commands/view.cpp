@@ -1,12 +1,13 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
-#include "app/commands/device_arguments.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/view/ui/window.h"
 
 namespace app {
 namespace {
@@ -29,7 +30,7 @@ std::filesystem::path pictures_folder(const std::string& program) {
 
 struct ViewOptions {
     CheckArguments what;
-    viewer::DeviceChoice device;
+    DeviceArguments device;
     std::string frame_log;
 };
 
@@ -43,7 +44,7 @@ ExitCode view(const ViewOptions& options) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";
     }
-    job.device = options.device;
+    job.device = {options.device.file, options.device.shown};
     job.write = [](const std::string& path, const std::string& text) {
         return write_output(path, text);
     };

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "app/check/check_run.h"
+#include "app/library/run/batch_job.h"
 #include "app/library/run/batch_run.h"
 #include "app/report/json/batch_report.h"
 #include "app/report/text/batch_text.h"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_run.h"
 #include "app/library/store/result_store.h"
 #include "app/library/store/store_file.h"
 #include "tests/app/checked.h"

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_run.h"
 #include "app/report/html/html_cards.h"
 #include "app/report/html/pictured_run.h"
 #include "render/body_mesh.h"
+#include "render/camera.h"
+#include "render/scene.h"
 
 namespace app {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "app/base/sha256.h"
 #include "app/check/check_run.h"
+#include "app/check/input_file.h"
 #include "app/library/store/input_files.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

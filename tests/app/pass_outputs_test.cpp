@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/commands/output.h"
+#include "app/library/watch/watched_files.h"
 #include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 

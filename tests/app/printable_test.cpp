@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/library/result/program_diff.h"
 #include "app/report/history/history_report.h"
 #include "app/report/text/batch_text.h"

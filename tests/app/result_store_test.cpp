@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_run.h"
+#include "app/check/input_file.h"
 #include "app/library/store/database.h"
 #include "app/library/store/result_key.h"
 #include "app/library/store/result_store.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
 #include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"

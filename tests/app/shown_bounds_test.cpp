@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/prompt/state_text.h"
 #include "app/library/result/program_diff.h"
 #include "app/report/exchange/csv_report.h"

@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_run.h"
+#include "app/check/input_file.h"
 #include "app/library/store/database.h"
 #include "app/library/store/result_store.h"
 #include "tests/support/scoped_folder.h"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_run.h"
 #include "app/library/store/result_store.h"
 #include "tests/support/scoped_folder.h"
 

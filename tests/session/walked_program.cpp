@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/report/json/json_report.h"

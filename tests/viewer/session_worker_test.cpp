@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
 #include "app/commands/output.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/session_worker.h"

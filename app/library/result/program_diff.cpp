@@ -8,6 +8,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "app/check/check_run.h"
+
 namespace app {
 namespace {
 

@@ -1,13 +1,12 @@
 #include "app/library/result/program_result.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-
-#include <nlohmann/json.hpp>
 
 #include "app/base/sha256.h"
 #include "app/base/text.h"
+#include "app/check/check_run.h"
+#include "app/library/result/stored_json.h"
 #include "core/base/file_reads.h"
 #include "gcode/text/program_text.h"
 
@@ -233,70 +232,6 @@ std::string shown_name(const std::string& path, FileBytes& bytes) {
 const std::string& name_shown_as(const std::string& text, const FileBytes& bytes) {
     const auto found = bytes.find(text);
     return found == bytes.end() ? text : found->second;
-}
-
-nlohmann::ordered_json json_of(const FileBytes& bytes) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (const auto& [text, name] : bytes) {
-        auto& list = json[text] = nlohmann::ordered_json::array();
-        for (const char byte : name) list.push_back(static_cast<uint8_t>(byte));
-    }
-    return json;
-}
-
-FileBytes file_bytes_from(const StoredJson& json) {
-    FileBytes bytes;
-    for (const auto& [text, list] : json.items())
-        for (const StoredJson& byte : list_from(list))
-            bytes[text] += static_cast<char>(whole_from<uint8_t>(byte));
-    return bytes;
-}
-
-namespace {
-
-constexpr size_t most_nested = 16; // a share's results need 7
-
-} // namespace
-
-bool is_nested_too_deep(std::string_view text) {
-    size_t depth = 0;
-    bool in_string = false;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string && c == '\\')
-            ++i;
-        else if (c == '"')
-            in_string = !in_string;
-        else if (!in_string && (c == '[' || c == '{') && ++depth > most_nested)
-            return true;
-        else if (!in_string && (c == ']' || c == '}') && depth > 0)
-            --depth;
-    }
-    return false;
-}
-
-StoredJson kept_json(const std::string& text) {
-    if (is_nested_too_deep(text)) throw std::invalid_argument("its lists are nested too deep");
-    return StoredJson::parse(text);
-}
-
-double number_from(const StoredJson& json, double least) {
-    // What is no number has a value too: true is 1.
-    const double number = json.is_number() ? json.get<double>() : std::nan("");
-    if (!std::isfinite(number) || number < least)
-        throw std::invalid_argument("a number is none, or out of its range");
-    return number;
-}
-
-const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count) {
-    if (!json.is_array() || (count && json.size() != *count))
-        throw std::invalid_argument("a list is none, or of another length");
-    return json;
-}
-
-std::array<std::string, 2> pair_from(const StoredJson& json) {
-    list_from(json, 2);
-    return {json[0].get<std::string>(), json[1].get<std::string>()};
 }
 
 } // namespace app

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "app/check/check_run.h"
 #include "app/library/find/folder_walk.h"
 
 namespace app {
+
+struct CheckJob;
 
 /// What a batch has to do.
 struct BatchPlan {

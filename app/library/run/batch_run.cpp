@@ -14,6 +14,9 @@
 #include <malloc.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
+#include "app/library/run/batch_job.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {

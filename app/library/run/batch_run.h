@@ -7,10 +7,16 @@
 #include <optional>
 
 #include "app/library/result/batch_result.h"
-#include "app/library/run/batch_job.h"
-#include "core/base/file_reads.h"
+
+namespace core {
+struct FileAccess;
+}
 
 namespace app {
+
+struct BatchPlan;
+struct CheckJob;
+struct CheckRun;
 
 /// What a batch may take.
 struct BatchLimits {

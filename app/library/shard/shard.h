@@ -1,10 +1,11 @@
 #pragma once
 
 #include "app/library/result/batch_result.h"
-#include "app/library/run/batch_job.h"
 #include "app/library/store/shard_number.h"
 
 namespace app {
+
+struct BatchPlan;
 
 /// A program as the plan of a batch has it, and what every machine must see alike of it.
 struct PlannedProgram {

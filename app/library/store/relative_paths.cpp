@@ -9,6 +9,7 @@
 
 #include "app/base/file_stamp.h"
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 
 namespace app {
 namespace {

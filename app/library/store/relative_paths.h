@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "app/base/file_stamp.h"
-#include "app/check/check_run.h"
+#include "app/check/input_file.h"
 #include "app/library/result/program_result.h"
 
 namespace app {
+
+struct CheckJob;
 
 /// Where files lie as seen from the folder that a database is for: the same from wherever one
 /// calls, and wherever the folder is moved to with all that is in it. No link is followed and no

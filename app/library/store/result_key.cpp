@@ -12,6 +12,7 @@
 #include "app/base/sha256.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
+#include "app/check/check_run.h"
 
 namespace app {
 namespace {

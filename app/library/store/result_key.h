@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "app/check/check_run.h"
-
 namespace app {
+
+struct CheckJob;
 
 /// Everything in a job that its result hangs on beside files, as JSON on one line; empty for a job
 /// with edits, whose results are not kept.

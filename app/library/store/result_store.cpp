@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_run.h"
 #include "app/library/store/database.h"
 #include "app/library/store/input_files.h"
 #include "app/library/store/relative_paths.h"
@@ -158,7 +159,7 @@ core::Result<ResultStore> ResultStore::open(const std::string& path, const std::
     state->answers = std::make_shared<InputAnswers>();
     state->retries = retries ? std::move(retries) : std::make_shared<RetryBudget>();
     state->writer = std::make_shared<ResultWriter>(path, state->retries);
-    return open_as(path, Database::Access::read_write, std::move(state));
+    return open_as(path, std::move(state));
 }
 
 core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
@@ -168,11 +169,13 @@ core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
     state->retries = own.state_->retries;
     state->writer = own.state_->writer;
     state->is_kept_in = false;
-    return open_as(path, Database::Access::read_only, std::move(state));
+    return open_as(path, std::move(state));
 }
 
-core::Result<ResultStore> ResultStore::open_as(const std::string& path, Database::Access access,
+core::Result<ResultStore> ResultStore::open_as(const std::string& path,
                                                std::unique_ptr<State> state) {
+    const auto access =
+        state->is_kept_in ? Database::Access::read_write : Database::Access::read_only;
     FEELER_TRY(state->database, open_store_file(path, access, state->retries));
     if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
     return ResultStore(std::move(state));

@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "app/library/result/program_result.h"
-#include "app/library/store/database.h"
-#include "app/library/store/input_files.h"
 
 namespace app {
+
+struct CheckJob;
+struct CheckRun;
+class RetryBudget;
 
 /// A result that was kept, and of when and what.
 struct StoredVersion {
@@ -95,8 +97,7 @@ public:
 
 private:
     struct State;
-    static core::Result<ResultStore> open_as(const std::string& path, Database::Access access,
-                                             std::unique_ptr<State> state);
+    static core::Result<ResultStore> open_as(const std::string& path, std::unique_ptr<State> state);
     explicit ResultStore(std::unique_ptr<State> state);
 
     std::unique_ptr<State> state_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/report/json/json_report.h"
 
 namespace app {

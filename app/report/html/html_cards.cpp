@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/report/html/html_text.h"
+#include "app/view/model/finding_group.h"
 #include "core/sim/verdict.h"
 
 namespace app {

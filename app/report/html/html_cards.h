@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "app/view/model/finding_group.h"
+namespace app::viewer {
+struct FindingGroup;
+}
 
 namespace app {
+
+struct CheckRun;
 
 /// What a report shows of one block.
 struct BlockView {

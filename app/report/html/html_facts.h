@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "app/check/check_run.h"
-
 namespace app {
+
+struct CheckRun;
 
 /// A row of a table of facts: a name, and what is HTML already.
 std::string fact_row(const std::string& name, const std::string& html);

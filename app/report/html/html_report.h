@@ -2,10 +2,11 @@
 
 #include <string>
 
-#include "app/check/check_run.h"
 #include "app/report/html/html_cards.h"
 
 namespace app {
+
+struct CheckRun;
 
 /// The report of a check as one HTML file that needs nothing else: no network, no other file.
 ///

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/check/check_run.h"
 #include "app/report/html/html_cards.h"
 #include "app/report/html/html_text.h"
 #include "app/view/model/navigation.h"
@@ -122,19 +123,32 @@ std::string mesh_json(const render::TriangleMesh& mesh) {
                        box.min.z, step.x, step.y, step.z, base64(bytes));
 }
 
-std::optional<size_t> SceneWriter::put(const render::TriangleMesh& mesh) {
+struct SceneWriter::State {
+    /// The number of a mesh; empty when nothing is left of it.
+    std::optional<size_t> mesh_of(const render::SharedMesh& mesh);
+    std::optional<size_t> stock_of(const render::StockBricks& bricks);
+    std::optional<size_t> put(const render::TriangleMesh& mesh);
+    std::string bodies_json(const render::Scene& scene);
+
+    std::vector<std::string> meshes;
+    std::vector<render::SharedMesh> kept; // so that no other mesh gets their addresses
+    std::map<const render::TriangleMesh*, std::optional<size_t>> known;
+    std::vector<std::pair<render::StockBricks, std::optional<size_t>>> stocks;
+};
+
+std::optional<size_t> SceneWriter::State::put(const render::TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     std::string json = mesh_json(mesh);
-    const auto same = std::find(meshes_.begin(), meshes_.end(), json);
-    if (same != meshes_.end()) return static_cast<size_t>(same - meshes_.begin());
-    meshes_.push_back(std::move(json));
-    return meshes_.size() - 1;
+    const auto same = std::find(meshes.begin(), meshes.end(), json);
+    if (same != meshes.end()) return static_cast<size_t>(same - meshes.begin());
+    meshes.push_back(std::move(json));
+    return meshes.size() - 1;
 }
 
-std::optional<size_t> SceneWriter::mesh_of(const render::SharedMesh& mesh) {
-    const auto [at, is_new] = known_.try_emplace(mesh.get());
+std::optional<size_t> SceneWriter::State::mesh_of(const render::SharedMesh& mesh) {
+    const auto [at, is_new] = known.try_emplace(mesh.get());
     if (is_new) {
-        kept_.push_back(mesh);
+        kept.push_back(mesh);
         const render::TriangleMesh* const parts[] = {mesh.get()};
         const bool is_small = mesh->triangles.size() <= body_triangles;
         at->second = put(is_small ? *mesh : render::coarse(parts, body_triangles));
@@ -142,17 +156,19 @@ std::optional<size_t> SceneWriter::mesh_of(const render::SharedMesh& mesh) {
     return at->second;
 }
 
-std::optional<size_t> SceneWriter::stock_of(const render::StockBricks& bricks) {
-    for (const auto& [known, mesh] : stocks_)
-        if (known == bricks) return mesh;
+std::optional<size_t> SceneWriter::State::stock_of(const render::StockBricks& bricks) {
+    for (const auto& [earlier, mesh] : stocks)
+        if (earlier == bricks) return mesh;
     std::vector<const render::TriangleMesh*> parts;
     for (const auto& brick : bricks) parts.push_back(&brick->mesh);
     const std::optional<size_t> mesh = put(render::coarse(parts, stock_triangles));
-    stocks_.emplace_back(bricks, mesh);
+    stocks.emplace_back(bricks, mesh);
     return mesh;
 }
 
-std::string SceneWriter::body_json(const render::Body& body, size_t mesh) const {
+namespace {
+
+std::string body_json(const render::Body& body, size_t mesh) {
     std::string json =
         fmt::format(R"({{"name":{},"role":"{}","mesh":{},"at":[{}])", script_string(body.name),
                     name_of(body.role), mesh, numbers(body.stock_from_body));
@@ -160,7 +176,9 @@ std::string SceneWriter::body_json(const render::Body& body, size_t mesh) const 
     return json + "}";
 }
 
-std::string SceneWriter::bodies_json(const render::Scene& scene) {
+} // namespace
+
+std::string SceneWriter::State::bodies_json(const render::Scene& scene) {
     std::vector<std::string> bodies;
     if (const auto stock = stock_of(scene.stock))
         bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}}})", *stock));
@@ -172,8 +190,11 @@ std::string SceneWriter::bodies_json(const render::Scene& scene) {
     return fmt::format("[{}]", fmt::join(bodies, ","));
 }
 
+SceneWriter::SceneWriter() : state_(std::make_unique<State>()) {}
+SceneWriter::~SceneWriter() = default;
+
 std::string SceneWriter::add(const render::Scene& scene, const render::Camera& camera) {
-    std::string json = R"({"bodies":)" + bodies_json(scene);
+    std::string json = R"({"bodies":)" + state_->bodies_json(scene);
     json +=
         R"(,"path":)"
         + (scene.path && scene.current_block ? path_json(*scene.path, *scene.current_block) : "[]");
@@ -185,7 +206,9 @@ std::string SceneWriter::add(const render::Scene& scene, const render::Camera& c
                          numbers(camera.target));
 }
 
-std::string SceneWriter::meshes() const { return fmt::format("[{}]", fmt::join(meshes_, ",\n")); }
+std::string SceneWriter::meshes() const {
+    return fmt::format("[{}]", fmt::join(state_->meshes, ",\n"));
+}
 
 namespace {
 

@@ -1,15 +1,21 @@
 #pragma once
 
-#include <map>
+#include <memory>
 #include <string>
-#include <vector>
 
-#include "app/check/check_run.h"
-#include "app/report/html/html_cards.h"
-#include "render/camera.h"
-#include "render/scene.h"
+#include "core/base/result.h"
+
+namespace render {
+struct Camera;
+struct Scene;
+struct TriangleMesh;
+} // namespace render
 
 namespace app {
+
+struct CheckJob;
+struct CheckRun;
+struct ReportViews;
 
 /// As run_check, and adds what a report shows of the worst blocks: pictures, if there is OpenGL,
 /// and scenes. The program is run once; places are had again from the record.
@@ -21,6 +27,9 @@ core::Result<CheckRun> run_pictured_check(const CheckJob& job, ReportViews& view
 /// Writes scenes for the 3D view of a page. What several of them share is written once.
 class SceneWriter {
 public:
+    SceneWriter();
+    ~SceneWriter();
+
     /// A JSON object: bodies with their places, the path, the current block's by itself, the
     /// witness, the camera. Bodies of the machine are left out, unless they are one of the pair.
     ///
@@ -31,17 +40,8 @@ public:
     std::string meshes() const;
 
 private:
-    /// The number of a mesh; empty when nothing is left of it.
-    std::optional<size_t> mesh_of(const render::SharedMesh& mesh);
-    std::optional<size_t> stock_of(const render::StockBricks& bricks);
-    std::optional<size_t> put(const render::TriangleMesh& mesh);
-    std::string body_json(const render::Body& body, size_t mesh) const;
-    std::string bodies_json(const render::Scene& scene);
-
-    std::vector<std::string> meshes_;
-    std::vector<render::SharedMesh> kept_; // so that no other mesh gets their addresses
-    std::map<const render::TriangleMesh*, std::optional<size_t>> known_;
-    std::vector<std::pair<render::StockBricks, std::optional<size_t>>> stocks_;
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 /// A mesh as a JSON object: places as 16-bit steps across its box, normals and tints as 8-bit

@@ -2,10 +2,13 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
-#include "app/check/check_run.h"
+#include "core/base/ids.h"
 
 namespace app {
+
+struct CheckRun;
 
 /// The report of a check as JSON, schema 1. `pairs` adds every pair of every block.
 std::string json_report(const CheckRun& run, bool pairs);

@@ -3,9 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "app/check/check_run.h"
+namespace core {
+struct Error;
+}
 
 namespace app {
+
+struct CheckRun;
 
 /// What a text report holds beside findings and summary.
 struct TextOptions {
