@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Prints what a batch, its database and its reports cost beside the checks themselves, in CPU seconds.
+"""Prints the overhead of a batch, its database and its reports over the checks themselves, in CPU seconds.
 
 usage: batch_overhead.py FEELER FOLDER [--rounds N] [--mesh-size MM]
 
-Each round checks the programs of the folder one by one with `feeler check`, then all as a batch with one
-job: without a database, with a new one, with a new one and a report of every form, and again with the full
-one. The ways take turns, and the least of all rounds counts. What it takes to start so many processes that
-do nothing is measured as well, and taken off the first way: the ratios are to the checks alone.
+Each round checks the programs of the folder separately with `feeler check`, then all as a batch with one
+job: without a database, with a new one, with a new one and a report in every format, and again with the
+filled one. The methods alternate, and the minimum over all rounds is used. The time to start as many
+processes that do nothing is measured as well and subtracted from the first method, so the ratios refer to
+the checks alone.
 """
 
 import argparse
@@ -20,7 +21,7 @@ FORMS = ("json", "jsonl", "csv", "sarif", "junit", "html", "text")
 
 
 def cpu_seconds(commands):
-    """What the commands and all that they start use, in seconds of all threads."""
+    """CPU seconds of all threads of the commands and their child processes."""
 
     def used():
         usage = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -35,7 +36,7 @@ def cpu_seconds(commands):
 
 
 def programs_of(feeler, folder, options):
-    """What a batch takes for programs."""
+    """CPU seconds of a batch of programs."""
     with tempfile.TemporaryDirectory() as place:
         rows = os.path.join(place, "rows.csv")
         batch = [feeler, "check", folder, "--no-cache", "--verdict-only", *options, "--format", "csv", "-o", rows]
@@ -45,7 +46,7 @@ def programs_of(feeler, folder, options):
 
 
 def ways_of(feeler, folder, programs, options, place):
-    """The ways by name, in the order in which a round takes them."""
+    """The methods by name, in the order of a round."""
     batch = [feeler, "check", folder, "-j1", *options]
     cache, plain = os.path.join(place, "results.db"), os.path.join(place, "plain.db")
     reports = [word for form in FORMS for word in ("--format", form, "-o", os.path.join(place, f"report.{form}"))]
@@ -60,7 +61,7 @@ def ways_of(feeler, folder, programs, options, place):
 
 
 def table(least):
-    """The lines that are printed, from the least seconds of each way."""
+    """The output lines, from the least seconds of each method."""
     alone = least["one by one"] - least["starting"]
     lines = [f"{'starting as many processes':<28}{least['starting']:8.2f} s"]
     lines.append(f"{'one by one, without that':<28}{alone:8.2f} s")

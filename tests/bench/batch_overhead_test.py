@@ -1,4 +1,4 @@
-"""What batch_overhead.py says of times that were worked out by hand, and what it runs."""
+"""Tests the output of batch_overhead.py for hand-calculated times, and the commands that it runs."""
 
 import unittest
 

@@ -26,12 +26,12 @@ JOBS = (  # program, set-up
     ("tilted_faces.nc", "tilted_faces"),
 )
 PRECISION = 1.05
-MOST = 10.0  # times the programmed feed: the greatest override of a device file
-BUS_CYCLES = 56  # to look at the status and to push a segment: 14 accesses of 4 cycles
+MOST = 10.0  # times the programmed feed: the highest override of a device file
+BUS_CYCLES = 56  # to read the status and to push a segment: 14 accesses of 4 cycles
 
 
 def bracket(keeps_up, most=MOST, precision=PRECISION):
-    """The greatest override found at which `keeps_up`, and the least at which it does not, or None."""
+    """The highest override found at which `keeps_up` holds, and the lowest at which it does not, or None."""
     kept, missed = 0.0, 1.0
     while keeps_up(missed):
         if missed >= most:
@@ -49,7 +49,7 @@ def bracket(keeps_up, most=MOST, precision=PRECISION):
 
 
 def first_late(report):
-    """The first block of which the permit came late, or None."""
+    """The first block whose permit came late, or None."""
     for block in report["blocks"]:
         if block["slack"] is not None and block["slack"] < 0.0:
             return block
@@ -57,7 +57,7 @@ def first_late(report):
 
 
 def feeds(trace):
-    """What blocks do, from lines of a trace: a feed in mm/min, or "rapid"; a feed counts for more."""
+    """The kind of each block, from the lines of a trace: a feed in mm/min, or "rapid"; a feed takes precedence."""
     found = {}
     for line in trace.splitlines():
         command = json.loads(line)
@@ -69,8 +69,8 @@ def feeds(trace):
 
 
 def asked_after(blocks, ahead):
-    """For each block the moment by plan at which it is asked for: when the machine enters the first one that
-    moves and is no more than the look-ahead before it."""
+    """For each block the planned time of its request: when the machine enters the first block that moves and is
+    at most the look-ahead before it."""
     entered, moments = math.inf, [0.0] * len(blocks)
     for j in reversed(range(len(blocks))):
         if blocks[j]["entered"] is not None:
@@ -81,15 +81,15 @@ def asked_after(blocks, ahead):
 
 
 def stretches(blocks, ahead):
-    """For each block but the first that moves: which seconds by plan there are for which cycles at least, as
-    many pairs as there are blocks before it to begin with.
+    """For each block except the first that moves: pairs of planned seconds and the cycles needed in them at
+    least, one pair for each earlier block to start with.
 
-    A permit comes a block's cycles after it was asked for, and its interval after the one before it. For
-    the first permit the machine waits.
+    A permit comes a block's cycles after its request, and its interval after the previous permit. The machine
+    waits for the first permit.
     """
     asked = asked_after(blocks, ahead)
     first = next((i for i, b in enumerate(blocks) if b["entered"] is not None), len(blocks))
-    queue, intervals, begin = 0, [0], 0.0  # `queue`: cycles to a permit of those asked for at the start
+    queue, intervals, begin = 0, [0], 0.0  # `queue`: cycles to a permit of those requested at the start
     for i, block in enumerate(blocks):
         if i == first:
             begin = block["entered"]
@@ -107,8 +107,8 @@ def stretches(blocks, ahead):
 
 
 def without_braking(report):
-    """The least override at which a permit would come after its block is reached, and that block: what
-    limits a machine that stops at once. The report must be of a run in which nothing was late.
+    """The lowest override at which a permit would come after its block is reached, and that block: the
+    limit for a machine that stops instantly. The report must be of a run in which nothing was late.
     """
     clock = 1e6 * report["config"]["device"]["clock_mhz"]
     least, late = math.inf, None
@@ -121,14 +121,14 @@ def without_braking(report):
 
 
 def bus_share(report):
-    """How much of the device's time is the register bus, on which segments come."""
+    """The share of the device's time taken by the register bus that carries the segments."""
     segments = sum(block["segments"] for block in report["blocks"])
     cycles = sum(block["interval"] for block in report["blocks"])
     return min(1.0, BUS_CYCLES * segments / max(cycles, 1))
 
 
 def reason(report, block):
-    """What made a block late."""
+    """The cause of a late block."""
     if block["asked"] >= block["due"]:
         return "look-ahead: the way to brake is longer"
     at_once = sum(1 for b in report["blocks"] if b["due"] == block["due"])
@@ -147,7 +147,7 @@ def number(value):
 
 
 class Job:
-    """A program with its set-up, and the device that it is run beside."""
+    """A program with its set-up and its device."""
 
     def __init__(self, feeler, assets, program, setup, config=""):
         self.feeler = feeler
@@ -157,7 +157,7 @@ class Job:
         self.reports = {}
 
     def report(self, override):
-        """The device's report at an override. What is refused is run all the same."""
+        """The device's report at an override. Refused blocks are run all the same."""
         if override not in self.reports:
             with tempfile.NamedTemporaryFile("w", suffix=".toml", encoding="utf-8") as file:
                 file.write(f"{self.config}\n[control]\nfeed_override = {override!r}\n")

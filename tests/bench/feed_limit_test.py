@@ -1,4 +1,4 @@
-"""What feed_limit.py says of reports that were worked out by hand."""
+"""Tests feed_limit.py with hand-written reports."""
 
 import json
 import math

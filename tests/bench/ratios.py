@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints how many times faster our engine is than the others, beside what is aimed at.
+"""Prints how many times faster our engine is than the others, with the targets.
 
 usage: ratios.py RESULTS.json [--best] [--keep FILE]
 
@@ -15,13 +15,13 @@ import statistics
 import sys
 
 SIZES = ("h1", "h0.5", "h0.1")
-AGAINST = (  # contestant, how the table calls it, times faster that is aimed at
+AGAINST = (  # engine, its name in the table, target for times faster
     ("paper", "the paper's engine", (9, 25, 100)),
     ("fcl", "FCL", (10, 8, 10)),
     ("nanoflann", "nanoflann", (35, 100, 1000)),
     ("embree", "Embree", (15, 50, 200)),
 )
-ABSOLUTE = (  # first part of the row's name, how the table calls it, microseconds aimed at
+ABSOLUTE = (  # first part of the row's name, its name in the table, target in microseconds
     ("spheres", "cold, us a query", 1.0, (15, 25, 110)),
     ("warm", "warm, us a pose", 1.0, (3, 8, 25)),
     ("build", "build, ms a body", 1e3, (5e3, 15e3, 500e3)),
@@ -45,7 +45,7 @@ MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
 
 
 class Results:
-    """CPU times in microseconds, by row, pose and contestant."""
+    """CPU times in microseconds, by row, pose and engine."""
 
     def __init__(self, data, best=False):
         self.context = data["context"]
@@ -104,7 +104,7 @@ class Table:
         self.measured = 0
 
     def cell(self, what, value, target, is_ratio):
-        """A value beside its target, with a ! if it falls short."""
+        """A value with its target, and a ! if it misses the target."""
         aim = f"({target:g})"
         if value is None:
             return f"{'-':>8}  {aim:<8}"
@@ -175,7 +175,7 @@ def others(results, table):
 
 
 def in_turn(results, table):
-    """How much it flatters that a query is repeated at one pose."""
+    """The gain from repeating a query at one pose."""
     table.lines.append("")
     for size in SIZES:
         row, ours = "spheres-" + size, results.challenger
@@ -204,7 +204,7 @@ def report(results):
 
 
 def kept(results):
-    """A run as it stands in the repository: one benchmark a line, and no names of hosts or files."""
+    """A run as stored in the repository: one benchmark on each line, without names of hosts or files."""
     facts = {key: results.context[key] for key in KEPT_FACTS if key in results.context}
     lines = []
     for key in sorted(results.time):

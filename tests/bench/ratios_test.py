@@ -1,4 +1,4 @@
-"""What ratios.py says of a run that was worked out by hand."""
+"""Tests the output of ratios.py for a hand-written run."""
 
 import copy
 import json

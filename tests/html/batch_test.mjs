@@ -1,5 +1,4 @@
-// What a person does with the page of many programs. Argument: the folder with the pages; pictures go
-// there.
+// Uses the page of a batch as a person does. Argument: the folder with the pages; pictures go there.
 
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";

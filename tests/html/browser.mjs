@@ -1,4 +1,4 @@
-// Chromium, and a report in it of which all that goes wrong is kept.
+// Opens a report in Chromium and records all its errors.
 
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";

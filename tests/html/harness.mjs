@@ -1,4 +1,4 @@
-// Runs tests one after the other in one browser, and says what became of each.
+// Runs tests one after the other in one browser and prints the result of each.
 
 import { launch } from "./browser.mjs";
 

@@ -1,4 +1,4 @@
-// What a person does with a report. Argument: the folder with the reports; pictures go there.
+// Uses a report as a person does. Argument: the folder with the reports; pictures go there.
 
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
@@ -195,7 +195,7 @@ for (const width of [1400, 400])
 
 test("of the blocks of a pixel the chart shows the worst: verdict, then margin, errors without a clearance too", async (browser) => {
   const { page } = await openReport(browser, report("clear"));
-  // The page keeps its functions to itself: they are made once more, without its start.
+  // The functions of the page are private: they are defined once more here, without its start.
   await page.evaluate(() => {
     const script = [...document.scripts].pop().textContent, inner = script.slice(script.indexOf("{") + 1, script.lastIndexOf("startPage();"));
     Object.assign(window, new Function(inner + "; return { unpackBlocks, worstPerPixel, stateOf };")());

@@ -1,4 +1,4 @@
-// Counts what a page does, so that a page which became slow is noticed on any machine, however busy.
+// Counts the work of a page, so that a page that has become slow is noticed even on a busy machine.
 
 import assert from "node:assert/strict";
 import { openReport } from "./browser.mjs";

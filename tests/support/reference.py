@@ -16,7 +16,7 @@ STRAIGHT = {"straight_traverse", "straight_feed", "rigid_tap"}
 
 
 def prepare_home(home):
-    """The tool table is kept in the home folder: one of our own keeps runs apart."""
+    """The tool table is in the home folder: a private one separates runs."""
     os.environ["HOME"] = home
     ctypes.CDLL(None).setenv(b"HOME", home.encode(), 1)
     empty = os.path.join(home, "empty.ngc")
@@ -28,7 +28,7 @@ def prepare_home(home):
 
 
 class Canon:
-    """Takes the calls of the interpreter; prints those that move."""
+    """Receives the calls of the interpreter and prints the motions."""
 
     def __init__(self, home):
         self.parameter_file = os.path.join(home, "p.var")
@@ -68,10 +68,10 @@ def main():
             programs = file.read().split("---\n")
         for text in programs:
             print("program", flush=True)
-            child = os.fork()  # what a program leaves in the interpreter must not reach the next
+            child = os.fork()  # the state left by a program must not affect the next
             if child == 0:
-                signal.setitimer(signal.ITIMER_VIRTUAL, 0.2)  # some cycles never end
-                sys.stdout = os.fdopen(os.dup(1), "w")  # some of them print, too
+                signal.setitimer(signal.ITIMER_VIRTUAL, 0.2)  # some cycles never finish
+                sys.stdout = os.fdopen(os.dup(1), "w")  # some of them print as well
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
                 os.dup2(1, 2)
                 run(gcode, home, text)

@@ -1,22 +1,22 @@
 #!/usr/bin/python3
-"""What LinuxCNC's interpreter makes of NC programs, as plain lines.
+"""Runs NC programs with LinuxCNC's interpreter and prints the results as plain lines.
 
 usage: reference_interpreter.py TOOLS SECONDS PROGRAM...
 
-TOOLS is a tool table in mm. Every program is given twice: to `rs274`, whose list has every call but
-few digits, six axes and no line numbers, and to the module `gcode`, which gives exact numbers, nine
-axes and lines but neither spindle nor coolant nor modes. Both lists are laid on top of one another.
-Each program gets a fresh process, a fresh variables file and at most SECONDS.
+TOOLS is a tool table in mm. Each program is run twice: by `rs274`, which lists every call but with few
+digits, six axes and no line numbers, and by the module `gcode`, which gives exact numbers, nine axes and
+lines but neither spindle nor coolant nor modes. The two lists are merged. Each program gets a new process,
+a new variables file and at most SECONDS.
 
-Lines that come out (lengths in mm, angles in degrees, seconds, mm/min):
+Output lines (lengths in mm, angles in degrees, seconds, mm/min):
 
     program INDEX
-    state KEY VALUE...          holds from here on; a key never said is not known
-    LINE EVENT VALUE...         motions: x y z a b c u v w, arcs then: centre centre turns
-    no_actions                  spindle, coolant, tools and modes are not told
-    print TEXT                  of (print, ...), after the events
-    doubt TEXT                  the two lists have other numbers; those of the module are given
-    problem TEXT                the two lists contradict one another
+    state KEY VALUE...          applies from here on; a key that never appears is unknown
+    LINE EVENT VALUE...         motions: x y z a b c u v w, for arcs also: centre centre turns
+    no_actions                  spindle, coolant, tools and modes are not reported
+    print TEXT                  from (print, ...), after the events
+    doubt TEXT                  the two lists disagree in numbers; those of the module are given
+    problem TEXT                the two lists contradict each other
     accepted | refused LINE TEXT | endless
 """
 import ctypes
@@ -65,7 +65,7 @@ def read_tools(path):
 
 
 def inch_table(rows):
-    """The same table as rs274 wants it, whose machine unit is the inch."""
+    """The same table for rs274, whose machine unit is the inch."""
     text = ''
     for row in rows:
         for letter, value in row.items():
@@ -78,7 +78,7 @@ def inch_table(rows):
 
 
 class Canon:
-    """Takes the calls of the module `gcode` and keeps them."""
+    """Receives and stores the calls of the module `gcode`."""
 
     def __init__(self, rows, folder):
         self.parameter_file = folder + '/module.var'
@@ -115,7 +115,7 @@ class Canon:
         return (-1,) + (0.0,) * 12 + (0,)
 
     def next_line(self, state):
-        if state.sequence_number > 0:  # G70 to G72 say -1 from their first move on
+        if state.sequence_number > 0:  # G70 to G72 give -1 from their first move on
             self.line = state.sequence_number
 
     def change_tool(self, index):
@@ -153,7 +153,7 @@ def module_calls(gcode, path, rows, folder, seconds):
 
 
 def rs_calls(path, folder, seconds):
-    """The calls that rs274 prints, how it ended, and what the program printed."""
+    """The calls that rs274 prints, how it ended, and the output of the program."""
     out = folder + '/out'
     try:
         ran = subprocess.run(['/usr/bin/rs274', '-t', folder + '/tool.tbl', '-v',
@@ -197,7 +197,7 @@ def line_of_refusal(path, line, text, message):
 
 
 def line_of_module_refusal(gcode, path, line, rows, folder, seconds):
-    """The line that the module refused where rs274 cannot say: the lines before do not suffice."""
+    """The line that the module refused, where rs274 cannot tell: the lines before are not sufficient."""
     with open(path, encoding='latin-1') as program:
         lines = program.readlines()
     before = folder + '/before.ngc'
@@ -212,7 +212,7 @@ def numbers(text):
 
 
 class Plain:
-    """Turns calls into the lines of the answer."""
+    """Converts calls to output lines."""
 
     def __init__(self, write):
         self.write = write
@@ -224,7 +224,7 @@ class Plain:
         self.is_per_turn = False
 
     def say_feed(self):
-        """In mm/min, under G95 as well."""
+        """In mm/min, with G95 as well."""
         turns = self.state.get('speed', (0.0,))[0] if self.is_per_turn else 1.0
         self.state['feed'] = (self.feed * turns,)
 
@@ -273,7 +273,7 @@ class Plain:
             self.event('message', values[0])
 
     def from_rs(self, name, text, unit):
-        """A call that only rs274 tells of."""
+        """A call that only rs274 reports."""
         if name in SWITCHES:
             key, value = SWITCHES[name]
             self.state[key] = (value,)
@@ -312,12 +312,12 @@ class Plain:
         elif name in ('SET_MOTION_OUTPUT_VALUE', 'SET_AUX_OUTPUT_VALUE'):
             self.event('set_output', *numbers(text), 1, int('MOTION' in name))
         elif name == 'ORIENT_SPINDLE':
-            self.state['spindle'] = ('stopped',)  # the interpreter leaves that to the machine
+            self.state['spindle'] = ('stopped',)  # the interpreter leaves this to the machine
             self.event('orient_spindle', *numbers(text)[1:])
 
 
 def near_what_rs_printed(name, values, text, unit):
-    """Whether a call of the module is the one that rs274 printed."""
+    """Whether a call of the module corresponds to the one that rs274 printed."""
     if name in ('MESSAGE', 'SELECT_PLANE'):
         return True
     printed = numbers(text)
@@ -344,7 +344,7 @@ def lay_together(module, rs, plain):
                 plain.line = points[-1][0]
                 plain.event('nurbs_feed', *plain.place(points[-1][2]))
         elif name == 'SET_FEED_RATE':
-            # The module has no machine to ask for the feed, so what M72 brings back is wrong there.
+            # The module has no machine to query for the feed, so M72 restores a wrong one there.
             feed = float(text) * unit
             if waiting and waiting[-1][1] == name.lower():
                 line, _, values = waiting.pop()
@@ -389,12 +389,12 @@ def answer(gcode, path, rows, fresh, seconds, write):
     if ending[0] == rs_ending[0] == 'refused' and not six_axes:
         ending = ('refused', line_of_refusal(path, ending[1], rs_ending[1], rs_ending[2]), ending[2])
     elif rs_ending[2] == 'Cannot do g1 with zero feed rate' and ending[0] == 'accepted':
-        # The module begins with a feed rate of its own.
+        # The module starts with its own feed rate.
         ending = ('refused', line_of_refusal(path, 0, rs_ending[1], ''), rs_ending[2])
         rs_ending = ending
     plain = Plain(write)
     if six_axes:
-        write('no_actions\n')  # six axes are all that rs274 has
+        write('no_actions\n')  # rs274 has only six axes
         for call in module:
             plain.from_module(*call)
     else:
@@ -412,7 +412,7 @@ def main():
     tools, seconds, paths = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
     rows = read_tools(tools)
     with tempfile.TemporaryDirectory(prefix='reference') as home:
-        # The interpreter keeps its tool table in HOME; rs274 is what writes it there.
+        # The interpreter's tool table is in HOME; rs274 writes it there.
         os.environ['HOME'] = home
         ctypes.CDLL(None).setenv(b'HOME', home.encode(), 1)
         for name, text in (('tool.tbl', inch_table(rows)), ('empty.ngc', 'M2\n'), ('e.var', '')):
@@ -423,7 +423,7 @@ def main():
         shutil.copy(home + '/.tool.mmap', home + '/pristine.mmap')
         library = ctypes.CDLL('libtooldata.so.0', mode=ctypes.RTLD_GLOBAL)
         library._Z14tool_mmap_userv()
-        import gcode  # not before the tool table is there
+        import gcode  # only once the tool table exists
         for index, path in enumerate(paths):
             sys.stdout.write('program %d\n' % index)
             answer(gcode, os.path.abspath(path), rows, home, seconds, sys.stdout.write)
