@@ -32,7 +32,7 @@ std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t 
     return bytes;
 }
 
-/// What there is of a name that leads to nothing.
+/// What exists under a path whose target cannot be reached.
 std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
                                             const std::error_code& failure) {
     std::error_code ignored;
@@ -48,16 +48,18 @@ std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
 
 } // namespace
 
-FileAccessObserver::FileAccessObserver(Told told) : told_(std::move(told)), older_(youngest) {
+FileAccessObserver::FileAccessObserver(Callback callback)
+    : callback_(std::move(callback)), older_(youngest) {
     youngest = this;
 }
 
 FileAccessObserver::~FileAccessObserver() { youngest = older_; }
 
-void notify_file_access(const FileAccess& look) {
+void notify_file_access(const FileAccess& access) {
     if (!youngest) return;
     const int reason = errno;
-    for (const FileAccessObserver* each = youngest; each; each = each->older_) each->told_(look);
+    for (const FileAccessObserver* each = youngest; each; each = each->older_)
+        each->callback_(access);
     errno = reason;
 }
 

@@ -10,65 +10,64 @@
 
 namespace core {
 
-/// What a reader asks the disk.
+/// The kinds of file access.
 enum class FileQuestion : uint8_t {
-    content,   // of the file: its bytes; no answer when it cannot be read, or not to its end
-    presence,  // as presence_of says it; no answer when there is nothing
-    in_folder, // where a file of that name leads to; no answer when there is none in the folder
-    any_case,  // the name of a file that is called so in any case; no answer when there is none
-    listing,   // of a folder, all names in it; the answer is not told
-    kind,      // of a file, whether it looks like a program; likewise
+    content,   // the bytes of a file; no answer if it cannot be read to its end
+    presence,  // the result of presence_of; no answer if nothing exists under the path
+    in_folder, // where a name in a folder leads to; no answer if the folder has no such file
+    any_case,  // the name of a file that matches when case is ignored; no answer if none does
+    listing,   // all names in a folder; the answer is not reported
+    kind,      // whether a file looks like a program; the answer is not reported
 };
 
-/// A question to the disk and what it answered.
+/// One access to the disk and its answer.
 struct FileAccess {
     FileQuestion question{};
-    std::string path; // of the file, or of the folder that is asked about a name
+    std::string path; // of the file, or of the folder that holds the name
     std::string name{};
     std::optional<std::string_view> answer{};
 };
 
-/// While it lives, somebody is told of every look that readers of this thread take at the disk. It
-/// is how a check knows its inputs: all of the stack asks by the functions below.
+/// Reports every file access of this thread to a callback while the object exists. A check collects
+/// its inputs this way: all code reads files through the functions below.
 class FileAccessObserver {
 public:
-    using Told = std::function<void(const FileAccess&)>;
+    using Callback = std::function<void(const FileAccess&)>;
 
-    explicit FileAccessObserver(Told told);
+    explicit FileAccessObserver(Callback callback);
     ~FileAccessObserver();
     FileAccessObserver(const FileAccessObserver&) = delete;
     FileAccessObserver& operator=(const FileAccessObserver&) = delete;
 
 private:
-    Told told_;
+    Callback callback_;
     const FileAccessObserver* older_;
 
-    friend void notify_file_access(const FileAccess& look);
+    friend void notify_file_access(const FileAccess& access);
 };
 
-/// Tells who listens on this thread, if anybody does. errno stays what it was.
-void notify_file_access(const FileAccess& look);
+/// Reports an access to the observer of this thread, if there is one. Leaves errno unchanged.
+void notify_file_access(const FileAccess& access);
 
-/// The bytes of a file; empty when it cannot be read, with the reason in errno. Of a file that is
-/// longer than `limit` one byte more than that is read. Pipes and devices, which may never end, are
-/// not read.
+/// The bytes of a file; empty if it cannot be read, with the reason in errno. Of a file longer than
+/// `limit`, the first `limit` + 1 bytes. Pipes and devices are not read, as they may never end.
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       size_t limit = std::numeric_limits<size_t>::max() - 1);
 
-/// What there is of this name: "file" that has bytes to be read, "folder", "link" that leads
-/// nowhere, "other" for a pipe or a device, "unknown" when the disk does not say, or nothing.
+/// What exists under a path: "file" (readable bytes), "folder", "link" (dangling), "other" (pipe or
+/// device), "unknown" (the system cannot tell); empty if nothing exists.
 std::optional<std::string_view> presence_of(const std::filesystem::path& path);
 
-/// Why no bytes can be read by this name: "is a folder, not a file"; empty for a file.
+/// Why the path cannot be read as a file, such as "is a folder, not a file"; empty for a file.
 std::string why_no_file(const std::filesystem::path& path);
 
-/// Whether there is anything of this name, be it a link that leads nowhere.
+/// Whether anything exists under the path, dangling links included.
 bool is_there(const std::filesystem::path& path);
 
-/// Whether there is a folder of this name.
+/// Whether the path is a folder.
 bool is_folder(const std::filesystem::path& path);
 
-/// Whether there is a file of this name that has bytes to be read.
+/// Whether the path is a file with readable bytes.
 bool is_file(const std::filesystem::path& path);
 
 } // namespace core

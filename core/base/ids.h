@@ -8,7 +8,7 @@ namespace core {
 /// Counts the blocks of a run in the order in which they are executed, from 0.
 enum class BlockIndex : uint32_t {};
 
-/// The number a program calls a tool by (T), never a pocket or an index.
+/// The number by which a program calls a tool (T). Not a pocket and not an index.
 enum class ToolNumber : int32_t {};
 
 /// The number of an entry in the control's tool offset table (H, D).

@@ -8,8 +8,8 @@
 
 namespace core {
 
-/// A stretch of the user's text. Lines and columns count from 1; line 0 means "no place in a file",
-/// column 0 "the whole line".
+/// A range in the user's text. Lines and columns count from 1. Line 0: not in a file; column 0: the
+/// whole line.
 struct SourceSpan {
     uint32_t line = 0;
     uint32_t column = 0;
@@ -18,12 +18,12 @@ struct SourceSpan {
 
 enum class ErrorCode : uint8_t { io, syntax, unsupported, invalid_value, missing_value };
 
-/// Something wrong with the user's input. Mistakes in our own code are asserts, not Errors.
+/// A mistake in the user's input. Mistakes in our own code are asserts, not Errors.
 struct Error {
     ErrorCode code;
     SourceSpan where;
-    std::string message; // one sentence, names the word or file at fault, no trailing newline
-    std::string file{};  // path as the user gave it; filled in by whoever knows it
+    std::string message; // one sentence that names the word or file at fault; no trailing newline
+    std::string file{};  // path as the user gave it; set by the caller that knows it
 };
 
 template <typename T>
@@ -38,7 +38,8 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, SourceSpa
 #define FEELER_CONCAT_(a, b) a##b
 #define FEELER_CONCAT(a, b) FEELER_CONCAT_(a, b)
 
-/// FEELER_TRY(auto block, parse_block(line)); declares `block`, or returns the error to our caller.
+/// FEELER_TRY(auto block, parse_block(line)); declares `block`, or returns the error from the
+/// enclosing function.
 #define FEELER_TRY(declaration, expression)                                                        \
     auto FEELER_CONCAT(feeler_try_, __LINE__) = (expression);                                      \
     if (!FEELER_CONCAT(feeler_try_, __LINE__))                                                     \

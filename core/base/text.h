@@ -6,11 +6,10 @@
 
 namespace core {
 
-/// How many letters must be changed, put in or left out to make one word from the other.
+/// The edit distance of two words: letters to change, insert or delete.
 size_t letters_apart(std::string_view a, std::string_view b);
 
-/// The name that takes the fewest letters to make it from this one, the first of several; empty
-/// when there are no names.
+/// The name with the least edit distance, the first of several; empty if `names` is empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
 
 } // namespace core

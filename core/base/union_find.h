@@ -7,7 +7,7 @@
 
 namespace core {
 
-/// Numbers 0 .. count - 1 in groups that can be joined. The least member stands for its group.
+/// Disjoint sets of the numbers 0 .. count - 1. The least member represents its set.
 class UnionFind {
 public:
     explicit UnionFind(size_t count) : parent_(count) {

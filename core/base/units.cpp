@@ -48,8 +48,8 @@ double polynomial(const std::array<double, 8>& terms, double x) {
     return sum;
 }
 
-/// Taylor's series; what is left out is below 1e-19 for |x| <= pi / 4, and the rounding of all
-/// terms but the first counts little.
+/// Taylor series. The truncation error is below 1e-19 for |x| <= pi / 4, and only the rounding of
+/// the first term matters.
 SinCos series(const Pair& x) {
     const double square = x.high * x.high, half = 0.5 * square;
     const double sine = x.high * (square * polynomial(sine_terms, square)) + x.low * (1.0 - half);

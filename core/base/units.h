@@ -13,19 +13,19 @@ struct SinCos {
     double cos = 1.0;
 };
 
-/// Sine and cosine with the same bits on every processor, within 1 ulp of the truth; the C
-/// library's differ where fused multiply-add is missing.
+/// Sine and cosine, with the same bits on every processor and within 1 ulp of the exact value. The
+/// functions of the C library differ where fused multiply-add is missing.
 ///
-/// Units:  radians, up to 1e6 either way; beyond, off by up to 1e-16 of the angle. Not a number for
-///         an angle that is not finite.
+/// Units:   radians, up to 1e6 either way; beyond that, off by up to 1e-16 of the angle. NaN for an
+///          angle that is not finite.
 SinCos sin_cos(double angle);
 
-/// The same for degrees of any size; multiples of 90 are exact.
+/// The same for degrees of any size. Multiples of 90 are exact.
 SinCos sin_cos_deg(double angle_deg);
 
-/// The angle in -pi..pi of the direction (cosine, sine), which need not have length 1.
+/// The angle of the direction (cosine, sine), in -pi..pi. The direction need not have unit length.
 ///
-/// Result: within 3 ulp, the same bits everywhere; 0 for (0, 0).
+/// Result:  within 3 ulp, with the same bits everywhere; 0 for (0, 0).
 double angle_of(double sine, double cosine);
 
 } // namespace core

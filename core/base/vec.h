@@ -17,7 +17,7 @@ inline bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// A box along the axes; empty (min above max) until something is added.
+/// An axis-aligned box; empty (min above max) until something is added.
 struct Aabb {
     Vec3 min = Vec3(+infinity);
     Vec3 max = Vec3(-infinity);
@@ -33,7 +33,7 @@ struct Aabb {
     bool empty() const { return min.x > max.x || min.y > max.y || min.z > max.z; }
     Vec3 center() const { return 0.5 * (min + max); }
     Vec3 size() const { return max - min; }
-    /// How far the corner farthest from the origin may lie from it, at most.
+    /// An upper bound of the distance of any point of the box from the origin.
     double reach() const { return glm::length(glm::max(glm::abs(min), glm::abs(max))); }
     Aabb grown(double by) const { return {min - Vec3(by), max + Vec3(by)}; }
 };
@@ -78,11 +78,11 @@ struct Transform {
 
 inline Transform translation(const Vec3& by) { return {Mat3(1.0), by}; }
 
-/// How far a matrix is from a rotation: the largest entry of R^T R - 1, so that no vector becomes
-/// longer than by 1.5 times this share; not a number if any entry is none.
+/// How far a matrix is from a rotation: the largest entry of |R^T R - 1|. A vector grows by at most
+/// 1.5 times this, relative to its length. NaN if any entry is NaN.
 double distortion(const Mat3& rotation);
 
-/// Rotation about X, then Y, then Z, fixed axes. Multiples of 90 degrees are exact.
+/// Rotation about the fixed axes X, then Y, then Z. Multiples of 90 degrees are exact.
 Mat3 rotation_xyz_deg(const Vec3& angles_deg);
 
 } // namespace core

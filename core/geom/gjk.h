@@ -11,11 +11,11 @@ namespace core {
 
 struct Triangle;
 
-/// A convex body known by its support function: a hull of up to eight points or a truncated cone,
-/// grown by `margin` all round, and swept over the hull of its `places`.
+/// A convex body given by its support function: a hull of up to eight points or a truncated cone,
+/// grown by `margin` on all sides and swept over the hull of its `places`.
 ///
-/// A place is where the body's own origin stands, and when; the hull of two places is a straight
-/// motion, the hull of eight a box in which nobody knows the path.
+/// A place is a position of the body's origin with a time. The hull of two places is a straight
+/// motion, the hull of eight a box within which the path is unknown.
 struct ConvexShape {
     enum class Core : uint8_t { points, cone };
     struct Place {
@@ -42,24 +42,24 @@ ConvexShape convex_segment(const Vec3& a, const Vec3& b);
 ConvexShape convex(const ProfileElement& element);
 ConvexShape convex_sphere(double radius);
 
-/// The shape rotated about its origin, then moved. It must stand at a single place.
+/// The shape rotated about its origin, then translated. It must have a single place.
 ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape);
 
-/// The shape moved over the hull of `places`; times are spread evenly, 0 at the first, 1 at the
-/// last.
+/// The shape moved over the hull of `places`; times are spread evenly from 0 at the first to 1 at
+/// the last.
 ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> places);
 
-/// A point of the shape that lies farthest along a direction, without the margin.
+/// The farthest point of the shape in a direction, without the margin.
 struct SupportPoint {
     Vec3 point;
     double time;
 };
 SupportPoint support(const ConvexShape& shape, const Vec3& direction);
 
-/// The box round the shape with its margin and its sweep.
+/// The box of the shape including its margin and its sweep.
 Aabb bounds(const ConvexShape& shape);
 
-/// How far two bodies are apart: lower <= true distance <= upper, and the points that give `upper`.
+/// The distance of two bodies: lower <= true distance <= upper, and the points that give `upper`.
 struct Separation {
     double lower = infinity;
     double upper = infinity;
@@ -71,21 +71,22 @@ struct Separation {
 
 /// When a search for the distance of two convex shapes may end.
 struct SeparationGoal {
-    double tolerance = 1e-7; // mm: ends when upper - lower is no wider
-    double limit = infinity; // mm: ends when lower is at least this; upper need not be tight then
+    double tolerance = 1e-7; // mm: ends when upper - lower is at most this
+    double limit = infinity; // mm: ends when lower reaches this; upper need not be tight then
 };
 
 /// The distance between two convex shapes.
 ///
-/// Result: both bounds hold however the search ends: `lower` comes from a separating plane, `upper`
-///         from a pair of points, each computed afresh from the support functions. Overlap gives 0.
-///         Rounding is below 1e-9 mm for coordinates within 2 m and is not subtracted here.
-/// Cost:   some 3-20 supports of each shape; 1-3 when `limit` decides.
-/// Source: Gilbert, Johnson, Keerthi 1988; sub-distances as in Ericson, Real-Time Collision
-///         Detection, 5.1.
+/// Result:  both bounds hold whenever the search ends: `lower` comes from a separating plane,
+///          `upper` from a pair of points, each recomputed from the support functions. 0 if the
+///          shapes overlap. Rounding is below 1e-9 mm for coordinates within 2 m and is not
+///          subtracted here.
+/// Cost:    some 3-20 supports of each shape; 1-3 if `limit` decides.
+/// Source:  Gilbert, Johnson, Keerthi 1988; sub-distances as in Ericson, Real-Time Collision
+///          Detection, 5.1.
 Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal = {});
 
-/// One to four points of the Minkowski difference A - B, with where they came from.
+/// One to four points of the Minkowski difference A - B and the points they come from.
 struct Simplex {
     struct Vertex {
         Vec3 difference; // on_a - on_b
@@ -97,9 +98,9 @@ struct Simplex {
     int count = 0;
 };
 
-/// Keeps the vertices whose hull holds the point nearest to the origin and sets their weights.
+/// Keeps the vertices whose hull contains the point nearest to the origin and sets their weights.
 ///
-/// Result: that point; the origin itself when the simplex is a tetrahedron round it.
+/// Result:  that point; the origin itself if the simplex is a tetrahedron around it.
 Vec3 reduce_to_nearest(Simplex& simplex);
 
 } // namespace core

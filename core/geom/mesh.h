@@ -19,7 +19,7 @@ struct Triangle {
     Aabb bounds() const { return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)}; }
 };
 
-/// A triangle mesh: corners shared between triangles, counter-clockwise seen from outside.
+/// A triangle mesh with shared vertices; triangles are counter-clockwise seen from outside.
 struct Mesh {
     using Corners = std::array<uint32_t, 3>;
 
@@ -33,34 +33,35 @@ struct Mesh {
     Aabb bounds() const;
 };
 
-/// Volume enclosed by a closed mesh; negative when its triangles face inwards.
+/// The volume enclosed by a closed mesh; negative if its triangles face inwards.
 double signed_volume(const Mesh& mesh);
 
-/// The closed surface of a box, its faces looking outwards.
+/// The closed surface of a box, facing outwards.
 Mesh mesh_of(const Aabb& box);
 
-/// A closed mesh (see checked_solid), with what searches need of it.
+/// A closed mesh (see checked_solid) with its search tree.
 struct SolidMesh {
     std::shared_ptr<const Mesh> mesh;
     std::shared_ptr<const TriangleBvh> bvh;
-    std::vector<Vec3> shell_points; // a vertex of each of its connected shells
+    std::vector<Vec3> shell_points; // one vertex of each connected shell
 };
 
 SolidMesh solid_mesh(Mesh mesh);
 
-/// The box of its triangles, which is known.
+/// The box of its triangles, without traversing them.
 Aabb bounds(const SolidMesh& solid);
 
 /// Red, green and blue.
 using Colour = std::array<uint8_t, 3>;
 
-/// A binary STL file. `comment` stands in its header, 80 characters of it at most.
+/// A binary STL file. The header holds the first 80 characters of `comment`.
 ///
-/// Result: single precision, as the format has it: a corner is off by up to 6e-8 of its coordinate.
+/// Result:  single precision, as the format requires: a vertex is off by up to 6e-8 of its
+///          coordinate.
 std::string stl_bytes(const Mesh& mesh, const std::string& comment);
 
-/// A binary PLY file in double precision. `comments` are lines of its header; `colours`, if there
-/// are any, one for each vertex.
+/// A binary PLY file in double precision. `comments` are lines of its header; `colours`, if any,
+/// has one entry for each vertex.
 std::string ply_bytes(const Mesh& mesh, const std::vector<std::string>& comments,
                       std::span<const Colour> colours = {});
 

@@ -10,61 +10,58 @@
 
 namespace core {
 
-/// A solid from a file, and what had to be put right for it to be one.
+/// A solid from a file and the repairs that it needed.
 struct MeshFile {
     Mesh mesh;
-    std::vector<std::string> repairs; // one sentence each, without the file's name
+    std::vector<std::string> repairs; // one sentence each, without the file name
 };
 
-/// Reads a closed body from an STL (binary or text), OBJ, PLY or OFF file, by its extension.
+/// Reads a closed body from an STL (binary or text), OBJ, PLY or OFF file, chosen by extension.
 ///
-/// Units:  mm, as the file has them; in single precision, as OpenMesh reads them.
-/// Result: closed, facing outwards, corners shared (see checked_solid).
-/// Errors: name the file and what is wrong with it, with the line, triangle or place where there is
-///         one. A mesh is never silently a part of what the file holds.
+/// Units:   mm, as in the file; single precision, as OpenMesh reads it.
+/// Result:  closed, facing outwards, with shared vertices (see checked_solid).
+/// Errors:  name the file and the problem, with the line, triangle or position if there is one. A
+///          file is never read in part.
 Result<MeshFile> read_mesh(const std::filesystem::path& path);
 
-/// One side of a triangle, at the edge between the corners `low` < `high`.
+/// One side of a triangle, on the edge between the vertices `low` < `high`.
 struct EdgeUse {
     uint32_t low, high;
     uint32_t triangle;
-    bool upwards; // the triangle passes it from `low` to `high`
+    bool upwards; // the triangle runs along it from `low` to `high`
 };
 
-/// Every side of every triangle, sorted so that those of one edge follow each other.
+/// All sides of all triangles, sorted so that those of one edge are adjacent.
 std::vector<EdgeUse> edge_uses(const Mesh& mesh);
 
-/// The end of the run of uses of the edge that begins at `first`.
+/// The end of the run of uses of one edge that starts at `first`.
 size_t end_of_edge(const std::vector<EdgeUse>& uses, size_t first);
 
-/// Which shell each triangle belongs to, counted from 0 in the order of their first triangles.
+/// The shell of each triangle; shells are numbered from 0 in the order of their first triangles.
 struct Shells {
     std::vector<uint32_t> of_triangle;
     uint32_t count = 0;
 };
 
-/// Divides a closed mesh into shells, each of them closed. Shells that share an edge only stay
-/// apart.
+/// Divides a closed mesh into closed shells. Shells that share only an edge are separate.
 Shells shells_of(const Mesh& mesh);
 
-/// Turns triangles so that neighbours across an edge of two agree; the first triangle of each
-/// connected piece stays. Returns how many were turned.
+/// Flips triangles so that neighbours across an edge of two agree; the first triangle of each
+/// connected piece stays. Returns the number of flipped triangles.
 size_t turn_to_agree(Mesh& mesh);
 
-/// Turns the shells that face inwards though nothing is around them, each with all that it holds.
-/// Returns how many were turned.
+/// Flips inward-facing shells that no other shell encloses, each with everything inside it. Returns
+/// the number of flipped shells.
 size_t turn_outwards(Mesh& mesh);
 
-/// Makes a solid of triangles, or says why they are none.
+/// Makes a solid of triangles, or says why they do not form one.
 ///
-/// Result: corners that coincide are shared; triangles that name a corner twice are gone; every
-/// edge
-///         is passed as often one way as the other; outer shells face outwards, and a shell
-///         inside another that faces inwards stays a cavity. Each change but the sharing of
-///         corners adds a sentence to `repairs`. Shells may overlap.
-/// Errors: no triangles, a coordinate that is not finite or beyond 1e6 mm, open edges (how many,
-/// and
-///         where one is), a surface with one side only, no volume.
+/// Result:  coinciding vertices are shared; triangles that use a vertex twice are removed; every
+///          edge is used equally often in both directions; outer shells face outwards, and an
+///          inward-facing shell inside another stays a cavity. Each change except sharing vertices
+///          adds a sentence to `repairs`. Shells may overlap.
+/// Errors:  no triangles; a coordinate that is not finite or beyond 1e6 mm; open edges (how many,
+///          and where one is); a one-sided surface; no volume.
 Result<Mesh> checked_solid(Mesh mesh, std::vector<std::string>& repairs);
 
 } // namespace core

@@ -15,7 +15,7 @@ struct Box {
     Vec3 size = Vec3(0.0); // full sizes
 };
 
-/// A cylinder whose axis is Z.
+/// A cylinder about the Z axis.
 struct Cylinder {
     double radius = 0.0;
     double height = 0.0;
@@ -26,7 +26,7 @@ using Primitive = std::variant<Sphere, Box, Cylinder>;
 
 Aabb bounds(const Primitive& primitive);
 
-/// The primitive itself, if all its sizes are positive, finite lengths.
+/// The primitive itself if all its sizes are positive and finite.
 Result<Primitive> checked_primitive(const Primitive& primitive);
 
 } // namespace core

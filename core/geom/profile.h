@@ -9,7 +9,8 @@ namespace core {
 struct Mesh;
 
 /// A convex piece of a body of revolution about Z: the truncated cone from (r0, z0) up to (r1, z1),
-/// grown by `margin` all round. A ball is a point with a margin, a rounded corner a disc with one.
+/// grown by `margin` on all sides. A ball is a point with a margin, a rounded corner a disc with
+/// one.
 struct ProfileElement {
     double z0 = 0.0, r0 = 0.0; // lower rim, mm; r >= 0, z0 <= z1
     double z1 = 0.0, r1 = 0.0; // upper rim
@@ -19,7 +20,7 @@ struct ProfileElement {
 /// A body of revolution about Z, as the union of convex pieces.
 struct RevolvedProfile {
     std::vector<ProfileElement> elements;
-    double form_error = 0.0; // how far the true surface may be off the pieces, mm
+    double form_error = 0.0; // maximum distance of the true surface from the pieces, mm
 
     bool empty() const { return elements.empty(); }
 };
@@ -27,29 +28,27 @@ struct RevolvedProfile {
 Aabb bounds(const ProfileElement& element);
 Aabb bounds(const RevolvedProfile& profile);
 
-/// Whether the union of the pieces is convex, piece upon piece from the tip up.
+/// Whether the union of the pieces, stacked from the tip up, is convex.
 bool is_convex(const RevolvedProfile& profile);
 
-/// A profile that lies within the given one, `by` away from its surface everywhere. Seams between
-/// pieces open by up to 2 * by; for a convex profile the hull of the pieces is still within.
+/// A profile inside the given one, `by` away from its surface everywhere. Seams between pieces open
+/// by up to 2 * by; for a convex profile the hull of the pieces is still inside.
 RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by);
 
-/// A profile that holds every point deeper than `by` in the given one, and none outside it: its
-/// sides, its faces seen from below and the upper faces of its steps are moved inwards; the face at
-/// its top is left alone.
+/// A profile that contains every point deeper than `by` in the given one and none outside it: its
+/// sides, its downward faces and the upward faces of its steps move inwards; its top face stays.
 RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by);
 
-/// A profile that holds every point nearer than `by` to the given one.
+/// A profile that contains every point closer than `by` to the given one.
 RevolvedProfile grown(const RevolvedProfile& profile, double by);
 
-/// The smallest body of revolution about Z that holds a mesh, as cones one upon the other from its
-/// lowest point to its highest.
+/// The smallest body of revolution about Z that contains a mesh, as stacked cones from its lowest
+/// point to its highest.
 ///
-/// Result: nothing of the mesh stands out of it. It is wider than need be by at most `tolerance`
-/// and
-///         what the chord of an edge's way round the axis adds over a 400th of the height; where
-///         the vertices have more than 400 heights also by what flanks widen over some of them.
-/// Cost:   triangles times heights, at most 800 of them.
+/// Result:  the whole mesh is inside. It is too wide by at most `tolerance` plus the sagitta of the
+///          chord of an edge's rotation about the axis over a 400th of the height; if the vertices
+///          have more than 400 heights, also by what flanks widen over some of them.
+/// Cost:    triangles times heights, at most 800 of them.
 RevolvedProfile revolved_hull(const Mesh& mesh, double tolerance);
 
 } // namespace core

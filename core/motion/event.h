@@ -13,7 +13,7 @@
 
 namespace core {
 
-/// X Y Z, the rotary A B C and the secondary U V W, in this order everywhere.
+/// X Y Z, the rotary axes A B C and the secondary axes U V W, always in this order.
 constexpr size_t axis_count = 9;
 constexpr std::string_view axis_letters = "XYZABCUVW";
 
@@ -21,11 +21,11 @@ constexpr bool is_rotary(size_t axis) { return axis >= 3 && axis < 6; }
 
 constexpr bool is_secondary(size_t axis) { return axis >= 6; }
 
-/// Axis by axis; mm, and degrees of the rotary axes, as controls count them.
+/// One value for each axis: mm, or degrees for rotary axes, as controls count them.
 using AxisValues = std::array<double, axis_count>;
 
-/// The length that a feed is counted along, given how far each axis goes: of X, Y and Z, or, when
-/// these stand, of U, V and W, or of the rotary ones, in degrees.
+/// The length along which a feed is counted, given the travel of each axis: of X, Y and Z; if these
+/// do not move, of U, V and W; else of the rotary axes, in degrees.
 inline double fed_length(const AxisValues& by) {
     for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
         const double length = glm::length(Vec3(by[first], by[first + 1], by[first + 2]));
@@ -34,11 +34,10 @@ inline double fed_length(const AxisValues& by) {
     return 0.0;
 }
 
-/// The same where an axis may stand anywhere: empty, nobody knows.
+/// One value for each axis; empty where the position is unknown.
 using AxisPosition = std::array<std::optional<double>, axis_count>;
 
-/// A rigid part of the machine: what an axis moves, by the axis's index, or the base on which all
-/// stands.
+/// A link of the machine: what an axis carries, by the index of the axis, or the base.
 enum class LinkId : uint8_t { base = 255 };
 
 constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
@@ -51,22 +50,22 @@ struct Mount {
 
 enum class MotionKind : uint8_t { rapid, feed, arc };
 
-/// A circular or helical path: the plane's first two axes turn about the centre, the third
+/// A circular or helical path: the first two axes of the plane turn about the centre, the third
 /// advances.
 struct ArcPath {
-    int normal = 2;          // axis along the arc's axis: 0 X, 1 Y, 2 Z
+    int normal = 2;          // axis of the arc: 0 X, 1 Y, 2 Z
     Vec3 centre = Vec3(0.0); // machine coordinates; the component along `normal` is not used
     double angle = 0.0;      // radians, positive counter-clockwise seen from +normal
 };
 
-/// The way of a tool's tip that the control keeps straight seen from the work, while rotary axes
-/// move. Frame: the link of the machine's table.
+/// The path of the tool tip when the control keeps it straight relative to the work while rotary
+/// axes move. Frame: the table link.
 struct TipPath {
     Vec3 from = Vec3(0.0), to = Vec3(0.0);
-    double tool_length = 0.0; // that the control counts with
+    double tool_length = 0.0; // as used by the control
 };
 
-/// One rapid, feed or arc move in machine coordinates: those of the gauge line, not the tip.
+/// One rapid, feed or arc move. Machine coordinates of the gauge line, not of the tip.
 struct Motion {
     MotionKind kind = MotionKind::rapid;
     AxisPosition from, to;
@@ -75,7 +74,7 @@ struct Motion {
     double feed = 0.0;               // mm/min along the path; 0 on rapids
 };
 
-/// The tool that is in the spindle from now on; empty for T0, an empty spindle.
+/// The tool in the spindle from now on; empty for T0, an empty spindle.
 struct ToolChange {
     std::optional<ToolNumber> tool;
 };
@@ -91,31 +90,31 @@ struct Dwell {
     double seconds = 0.0;
 };
 
-/// The length the control adds along Z from now on; empty after G49.
+/// The length that the control adds along Z from now on; empty after G49.
 struct LengthOffsetChange {
     std::optional<OffsetNumber> number;
     double length = 0.0; // mm
 };
 
-/// What becomes of corners. exact_stop: every motion ends at rest (G61.1). exact_path: the path is
-/// kept, and only what is no corner to the machine is passed without a stop (G61). continuous:
-/// corners are rounded within a tolerance (G64).
+/// How corners are passed. exact_stop: every motion ends at rest (G61.1). exact_path: the path is
+/// kept, and the machine passes without a stop only where there is no corner for it (G61).
+/// continuous: corners are rounded within a tolerance (G64).
 enum class Blending : uint8_t { exact_stop, exact_path, continuous };
 
 /// How corners are passed from now on.
 struct PathModeChange {
     Blending blending = Blending::continuous;
     std::optional<double> tolerance; // mm; empty: not stated
-    double joining = 0.0;            // short moves this near to a line may be joined to it, mm
+    double joining = 0.0;            // short moves this close to a line may be joined into it, mm
 };
 
-/// A fixture that somebody puts there or takes away, by its index in the set-up.
+/// A fixture that is put in place or removed, by its index in the set-up.
 struct FixtureChange {
     size_t fixture = 0;
     bool is_there = true;
 };
 
-/// What a block does to the machine, in order.
+/// What a block does to the machine, in order of execution.
 using Event = std::variant<Motion, ToolChange, SpindleChange, Dwell, LengthOffsetChange,
                            PathModeChange, FixtureChange>;
 

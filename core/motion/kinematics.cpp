@@ -10,7 +10,7 @@
 namespace core {
 namespace {
 
-/// The turn about a line through the origin; exact for the frame's axes and multiples of 90
+/// The rotation about a line through the origin; exact for the frame's axes and multiples of 90
 /// degrees.
 Mat3 rotation_about(const Vec3& axis, double angle_deg) {
     const auto [sine, cosine] = sin_cos_deg(angle_deg);
@@ -36,7 +36,7 @@ Transform joint(const MachineAxis& axis, bool rotary, double value) {
     return {turn, axis.point - turn * axis.point};
 }
 
-/// The rotary axes between a link and the base, the one nearest to the base first.
+/// The rotary axes between a link and the base, starting at the base.
 std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
     std::vector<size_t> chain;
     while (link != LinkId::base) {
@@ -47,14 +47,14 @@ std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
     return chain;
 }
 
-/// What a direction fixed to the spindle is, seen from the table.
+/// A direction fixed to the spindle, in the frame of the table.
 Vec3 tool_axis_at(const Machine& machine, const AxisValues& values) {
     const Transform table = machine_from_link(machine, machine.table, values);
     const Transform spindle = machine_from_link(machine, machine.spindle, values);
     return glm::transpose(table.rotation) * (spindle.rotation * Vec3(0, 0, 1));
 }
 
-/// An angle as near to `from` as whole turns bring it, within the limits where that can be.
+/// The angle plus whole turns that is closest to `from`, within the limits if possible.
 double nearest_turn(const MachineAxis& axis, double from, double angle_deg) {
     double best = angle_deg + 360.0 * std::round((from - angle_deg) / 360.0);
     while (axis.max && best > *axis.max + 1e-9) best -= 360.0;
@@ -66,8 +66,8 @@ bool within_limits(const MachineAxis& axis, double value) {
     return (!axis.min || value >= *axis.min - 1e-9) && (!axis.max || value <= *axis.max + 1e-9);
 }
 
-/// Rotary axes as they bear on the direction of the tool seen from the work: first the outermost of
-/// the table, last the one nearest to the tool, each turning what comes after it by its angle.
+/// The rotary axes that affect the direction of the tool relative to the work, from the outermost
+/// of the table to the one nearest to the tool. Each rotates all that follow it.
 struct DirectionJoint {
     size_t axis;
     Vec3 about;
@@ -83,7 +83,7 @@ std::vector<DirectionJoint> direction_joints(const Machine& machine) {
     return joints;
 }
 
-/// The angles t with a cos t + b sin t = c, degrees; none when it cannot be.
+/// The angles t with a cos t + b sin t = c, degrees; empty if there is none.
 std::vector<double> angles_with(double a, double b, double c) {
     const double size = std::hypot(a, b);
     if (size < 1e-12 || std::abs(c) > size * (1.0 + 1e-9)) return {};
@@ -93,15 +93,16 @@ std::vector<double> angles_with(double a, double b, double c) {
     return {(middle + away) * degrees_per_radian, (middle - away) * degrees_per_radian};
 }
 
-/// The angle about `axis` from one direction to another, degrees; both must lean alike.
+/// The angle about `axis` from one direction to another, degrees; both must have the same angle to
+/// the axis.
 std::optional<double> angle_between(const Vec3& axis, const Vec3& from, const Vec3& to) {
     const Vec3 u = from - glm::dot(from, axis) * axis, v = to - glm::dot(to, axis) * axis;
     if (glm::length(u) < 1e-9 || glm::length(v) < 1e-9) return std::nullopt;
     return angle_of(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v)) * degrees_per_radian;
 }
 
-/// The turn that takes Z to the wanted direction, about a first axis and then about a second: the
-/// second one's angle is where the lean against the first axis is right.
+/// The rotations about a first and a second axis that turn Z to the wanted direction. The angle of
+/// the second is the one that gives the right angle to the first axis.
 void add_two_turns(const Machine& machine, const AxisValues& values, const DirectionJoint& outer,
                    const DirectionJoint& inner, const Vec3& wanted, std::vector<AxisValues>& ways) {
     const Vec3 z(0, 0, 1), k = inner.about, w = outer.about;
@@ -112,21 +113,21 @@ void add_two_turns(const Machine& machine, const AxisValues& values, const Direc
         const Vec3 leaning = rotation_about(k, angle) * z;
         AxisValues way = values;
         way[inner.axis] = nearest_turn(machine.axes[inner.axis], values[inner.axis], angle);
-        // Where the direction is the outer axis itself any angle does: it stays.
+        // Along the outer axis itself any angle is right: keep the current one.
         if (const auto turn = angle_between(w, leaning, wanted))
             way[outer.axis] = nearest_turn(machine.axes[outer.axis], values[outer.axis], *turn);
         ways.push_back(way);
     }
 }
 
-/// Every axis that moves one link against another.
+/// All axes that move one link relative to another.
 std::vector<size_t> axes_between(const Machine& machine, LinkId a, LinkId b) {
     std::vector<size_t> axes;
     for (LinkId link : {a, b}) {
         while (link != LinkId::base) {
             const auto axis = static_cast<size_t>(link);
             const auto known = std::find(axes.begin(), axes.end(), axis);
-            // What carries both moves neither against the other.
+            // Axes that carry both links cancel out.
             if (known != axes.end())
                 axes.erase(known);
             else
@@ -137,7 +138,7 @@ std::vector<size_t> axes_between(const Machine& machine, LinkId a, LinkId b) {
     return axes;
 }
 
-/// The largest distance of a point from the lines that some axes turn about. Frame: the machine's.
+/// The largest distance of a point from the given axes of rotation. Frame: the machine's.
 double reach_from_axes(const Machine& machine, const std::vector<size_t>& axes,
                        const AxisValues& values, const Vec3& point) {
     double reach = 0.0;
@@ -151,7 +152,7 @@ double reach_from_axes(const Machine& machine, const std::vector<size_t>& axes,
     return reach;
 }
 
-/// A length that the distance of a point from the rotary axes of a chain never exceeds.
+/// An upper bound of the distance of a point from the rotary axes of a chain.
 double chain_reach(const Machine& machine, LinkId link, const Vec3& point) {
     double reach = 0.0;
     Vec3 here = point;
@@ -176,7 +177,7 @@ AxisValues half_way(const Leg& leg) {
     return values;
 }
 
-/// How far linear axes have moved a link.
+/// The translation of a link by linear axes.
 Vec3 shift_of(const Machine& machine, LinkId link, const AxisValues& values) {
     Vec3 shift(0.0);
     while (link != LinkId::base) {
@@ -188,7 +189,7 @@ Vec3 shift_of(const Machine& machine, LinkId link, const AxisValues& values) {
     return shift;
 }
 
-/// The pose on a machine that has linear axes only.
+/// The pose on a machine with linear axes only.
 Transform shifted_pose(const Machine& machine, const Mount& target, const Mount& mover,
                        const AxisValues& values) {
     const Vec3 shift =
@@ -198,7 +199,7 @@ Transform shifted_pose(const Machine& machine, const Mount& target, const Mount&
             back * (shift - target.link_from_body.translation + mover.link_from_body.translation)};
 }
 
-/// A leg on which the mover does not turn against the target.
+/// A leg on which the mover does not rotate relative to the target.
 RelativeLeg without_turning(const Machine& machine, const Mount& target, const Mover& mover,
                             const Leg& leg) {
     RelativeLeg relative;

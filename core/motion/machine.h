@@ -11,12 +11,12 @@
 
 namespace core {
 
-/// Which half of the machine an axis moves: what holds the tool, or what holds the work.
+/// The half of the machine that an axis moves: the tool side or the work side.
 enum class Side : uint8_t { tool, table };
 
-/// One axis. `direction` is the way the tool moves relative to the work as the axis grows, or for a
-/// rotary axis the line that it turns about by the right hand; an axis of the table side moves the
-/// work the other way.
+/// One axis. `direction` is the direction in which the tool moves relative to the work as the value
+/// increases; for a rotary axis, the axis of rotation by the right-hand rule. An axis on the table
+/// side moves the work the opposite way.
 struct MachineAxis {
     Vec3 direction = Vec3(0.0); // unit length, machine frame with all axes at 0
     std::optional<double> min = {}, max = {}, home = {};
@@ -24,35 +24,37 @@ struct MachineAxis {
     std::optional<double> acceleration = {}; // mm/s2, degrees/s2
     bool present = true;
     Side side = Side::tool;
-    Vec3 point = Vec3(0.0);        // rotary: a point of the line that it turns about
-    LinkId carrier = LinkId::base; // what the axis stands on
-    bool shortest_way = false;     // rotary: goes to an angle by less than half a turn
+    Vec3 point = Vec3(0.0);        // rotary: a point on the axis of rotation
+    LinkId carrier = LinkId::base; // the link that carries this axis
+    bool shortest_way = false;     // rotary: goes to an angle by at most half a turn
 };
 
-/// straight: all axes arrive together; dogleg: each axis runs at its own speed.
+/// straight: all axes arrive together. dogleg: each axis moves at its own speed.
 enum class RapidStyle : uint8_t { straight, dogleg };
 
-/// A body of the machine itself. Frame: the machine's, all axes at 0.
+/// A solid part of the machine. Frame: the machine's with all axes at 0.
 struct MachineBody {
     std::string name;
     ExactBody body;
-    LinkId link = LinkId::base; // that carries it
+    LinkId link = LinkId::base; // that carries the body
 };
 
-/// A machine: linear and rotary axes from the base to the spindle, and from the base to the table.
+/// A machine: linear and rotary axes from the base to the spindle and from the base to the table.
 ///
-/// Frame: with all axes at 0 the gauge line's centre is the origin, and the tool points to -Z.
+/// Frame:   with all axes at 0, the centre of the gauge line is the origin and the tool points to
+///          -Z.
 struct Machine {
     std::array<MachineAxis, axis_count> axes = three_axes();
     RapidStyle rapid = RapidStyle::straight;
     std::optional<double> corner_tolerance; // mm, where the program states none
-    LinkId spindle = link_of(2);            // what carries the tool
-    LinkId table = LinkId::base;            // what carries the work
+    LinkId spindle = link_of(2);            // carries the tool
+    LinkId table = LinkId::base;            // carries the work
     std::vector<MachineBody> bodies;
 
     bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }
 
-    /// Where the gauge line stands relative to the work, machine frame, as far as linear axes say.
+    /// Position of the gauge line relative to the work from the linear axes alone. Frame: the
+    /// machine's.
     Vec3 place(const AxisValues& values) const {
         Vec3 p(0.0);
         for (size_t i = 0; i < axis_count; ++i)
@@ -67,7 +69,7 @@ struct Machine {
     }
 
 private:
-    /// X, Y and Z along the frame's axes, all of them moving the tool.
+    /// X, Y and Z along the axes of the frame, all on the tool side.
     static std::array<MachineAxis, axis_count> three_axes() {
         std::array<MachineAxis, axis_count> axes;
         for (size_t i = 0; i < axis_count; ++i) axes[i].present = i < 3;

@@ -10,7 +10,7 @@
 namespace core {
 namespace {
 
-/// The values of a position; empty when an axis of the machine may stand anywhere.
+/// The values of a position; empty if the position of an axis is unknown.
 std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
     AxisValues values{};
     for (size_t i = 0; i < axis_count; ++i) {
@@ -20,7 +20,7 @@ std::optional<AxisValues> known(const AxisPosition& p, const Machine& machine) {
     return values;
 }
 
-/// The values of a position that is known.
+/// The values of a known position.
 AxisValues values_of(const AxisPosition& p) {
     AxisValues values{};
     for (size_t i = 0; i < axis_count; ++i) values[i] = p[i].value_or(0.0);
@@ -32,7 +32,7 @@ double rapid_speed(const MachineAxis& axis, Path& path) {
     return axis.rapid.value_or(assumed_rapid);
 }
 
-/// Seconds each axis needs on its own.
+/// The time of each axis on its own, seconds.
 AxisValues axis_times(const AxisValues& from, const AxisValues& to, const Machine& machine,
                       Path& path) {
     AxisValues times{};
@@ -66,7 +66,7 @@ double feed_length(const AxisValues& from, const AxisValues& to) {
     return fed_length(by);
 }
 
-/// Corners of the box of values of X, Y and Z between two places, the others as in the first.
+/// The corners of the box of X, Y and Z between two places; other axes as in the first.
 std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& high) {
     std::vector<AxisValues> corners;
     for (unsigned i = 0; i < 8; ++i) {
@@ -79,7 +79,7 @@ std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& hig
     return corners;
 }
 
-/// Each axis at its own speed: the path bends where an axis arrives.
+/// Each axis moves at its own speed: the path bends where an axis arrives.
 size_t moving_axes(const AxisValues& from, const AxisValues& to) {
     size_t count = 0;
     for (size_t i = 0; i < axis_count; ++i) count += from[i] != to[i];
@@ -114,7 +114,7 @@ void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, cons
     }
 }
 
-/// The place on an arc after a share of its angle, axis values.
+/// The axis values on an arc at a fraction of its angle.
 AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues& to,
                   double share) {
     const ArcPath& arc = *motion.arc;
@@ -144,8 +144,8 @@ std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
     return {radius(from), radius(to)};
 }
 
-/// The bend of an arc or spiral: on a step of the angle it stays within the step's square times
-/// this of a chord that is passed evenly.
+/// The curvature factor of an arc or spiral: for a step of the angle, its distance from a chord
+/// passed at constant speed is at most this times the square of the step.
 ///
 /// That is an eighth of the second derivative by the angle, whose part towards the centre is the
 /// radius, and whose part across is twice what the radius changes by.
@@ -184,12 +184,12 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     }
 }
 
-/// The path of a tip, as legs on which the axes move evenly.
+/// A path of the tip as legs with constant axis rates.
 ///
-/// Between two moments the linear axes are off an even motion by an eighth of their acceleration.
-/// The tip lies at most r from every rotary axis and moves by v against the work while the rotary
-/// axes turn by w in all: the linear axes make up for that, so their acceleration is at most
-/// 2 w (w r + v).
+/// Between two moments the linear axes deviate from constant rates by an eighth of their
+/// acceleration. The tip lies at most r from every rotary axis and moves by v against the work
+/// while the rotary axes turn by w in all: the linear axes make up for that, so their acceleration
+/// is at most 2 w (w r + v).
 void add_tip_path(Path& path, const Machine& machine, const Motion& motion, const AxisValues& from,
                   const AxisValues& to, double max_error) {
     const TipPath& tip = *motion.tip;
@@ -221,7 +221,7 @@ void add_tip_path(Path& path, const Machine& machine, const Motion& motion, cons
     }
 }
 
-/// Every straight way to the end from wherever the limits allow the machine to stand.
+/// All straight paths to the end from any position within the limits.
 void add_from_unknown(Path& path, const Machine& machine, const Motion& motion) {
     AxisValues starts[2] = {}, ends[2] = {};
     for (size_t i = 0; i < axis_count; ++i) {
@@ -239,7 +239,7 @@ void add_from_unknown(Path& path, const Machine& machine, const Motion& motion) 
     if (const auto to = known(motion.to, machine)) {
         leg.certain = {*to};
         leg.places.push_back(*to);
-    } else { // an axis nobody commanded stands anywhere all the way
+    } else { // an axis that was never commanded: unknown position throughout
         for (size_t i = 0; i < 3; ++i) {
             starts[0][i] = std::min(starts[0][i], ends[0][i]);
             starts[1][i] = std::max(starts[1][i], ends[1][i]);

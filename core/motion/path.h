@@ -11,68 +11,68 @@ namespace core {
 
 struct Machine;
 
-/// A piece of an arc or helix, between two shares of its angle.
+/// A piece of an arc or helix between two fractions of its angle.
 struct ArcPiece {
-    std::shared_ptr<const Motion> motion; // the whole of it; empty: no arc
+    std::shared_ptr<const Motion> motion; // the whole arc; empty: no arc
     double first = 0.0, last = 1.0;
 };
 
 /// A piece of a motion that is checked as a whole.
 ///
-/// `straight`: all axes move evenly from the first of two places to the second. Else the linear
-/// ones take some way through the hull of the places, and only `certain` ones are known to be on
-/// it; rotary axes stand still then.
+/// `straight`: all axes move at constant rates from the first to the second of two places.
+/// Otherwise the linear axes take an unknown path within the hull of the places, of which only
+/// `certain` ones are known to be passed; the rotary axes do not move then.
 struct Leg {
     std::vector<AxisValues> places;
     double begin = 0.0; // seconds after the motion's start
     double end = 0.0;
-    double path_error = 0.0; // the true place of every point of the tool is this near, mm
+    double path_error = 0.0; // every point of the tool is really within this distance, mm
     bool straight = true;
-    bool start_known = true; // false: the machine may come from anywhere within its limits
+    bool start_known = true; // false: the machine may start anywhere within its limits
     std::vector<AxisValues> certain = {};
-    ArcPiece arc = {}; // whose chord it is
+    ArcPiece arc = {}; // the arc of which this is a chord
 };
 
-/// The part of a straight leg between two shares of it, 0..1.
+/// The part of a straight leg between two fractions of it, 0..1.
 Leg stretch(const Leg& leg, double first, double last);
 
-/// The halves of a straight leg. Those of a chord meet on the arc, and are nearer to it.
+/// The halves of a straight leg. Those of a chord meet on the arc and are closer to it.
 std::array<Leg, 2> halves(const Leg& leg);
 
-/// The place half way along a straight leg, as a leg on which nothing moves; of a chord the one on
-/// the arc.
+/// The middle of a straight leg, as a leg on which nothing moves; for a chord, the point on the
+/// arc.
 Leg still_half_way(const Leg& leg);
 
-/// A motion as legs, in order. Empty when an axis may stand anywhere.
+/// The legs of a motion, in order. Empty when an axis may be anywhere.
 struct Path {
     std::vector<Leg> legs;
     double duration = 0.0;      // seconds
-    bool assumed_speed = false; // a rapid on an axis whose speed is not stated
+    bool assumed_speed = false; // a rapid with an axis whose speed is not stated
 };
 
-/// What rapids run at on axes whose speed is not stated, mm/min.
+/// The rapid speed of axes for which none is stated, mm/min.
 constexpr double assumed_rapid = 10'000.0;
 
-/// Chords of an arc stay within this of it, mm.
+/// The maximum distance of a chord from its arc, mm.
 double chord_error(double mesh_size);
 
 /// The legs of a motion.
 ///
-/// Shape: a straight move is one leg; an arc or helix is chords that stay within `max_error` of it;
-///        a dog-leg rapid is a leg for each change of direction, or one box of the axes that move
-///        when speeds are unknown; a motion from an unknown place is the hull of the limits. A
-///        path of the tip becomes legs on which the axes stay within `max_error` of where the
-///        control has them. Rotary axes from or to an unknown angle leave the path empty. The
-///        chords of an arc end on it.
+/// Shape:   a straight move is one leg. An arc or helix becomes chords within `max_error` of it
+///          that end on it. A dog-leg rapid is one leg for each change of direction, or, if speeds
+///          are unknown, one box of the moving axes. A motion from an unknown position is the hull
+///          of the limits. A path of the tip becomes legs on which the axes stay within `max_error`
+///          of the control's path. If a rotary axis starts or ends at an unknown angle, the path is
+///          empty.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
-/// The least and greatest value of each axis.
+/// The least and the greatest value of each axis.
 struct AxisRange {
     AxisValues min, max;
 };
 
-/// The range of every axis over a motion whose ends are known, its extremes on the way included.
-/// A path of the tip is counted by its legs, and up to `max_error` too wide.
+/// The range of every axis over a motion with known ends, including extremes on the way. For a path
+/// of the tip it is taken from the legs and may be up to `max_error` too wide.
 AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error);
 
 } // namespace core

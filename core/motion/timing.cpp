@@ -18,10 +18,10 @@ bool bends(const PathMotion& motion) {
     return std::any_of(motion.bend.begin(), motion.bend.end(), [](double b) { return b > 0.0; });
 }
 
-/// What an axis may use up along with a rate; nothing that stands still limits anything.
+/// The limit along the path from the limit of an axis; an axis at rest imposes none.
 double share(double limit, double rate) { return rate > 0.0 ? limit / rate : infinity; }
 
-/// Up from one speed and down to another, as squares, within a length.
+/// Accelerates and decelerates between two speeds, given as squares, within a length.
 MotionTime trapezoid(const WaitingMotion& motion, double enter_squared, double leave_squared) {
     MotionTime time{.tag = motion.tag, .length = motion.length};
     time.acceleration = motion.acceleration;
@@ -29,7 +29,7 @@ MotionTime trapezoid(const WaitingMotion& motion, double enter_squared, double l
     time.enter = std::sqrt(enter_squared);
     time.leave = std::sqrt(leave_squared);
     time.cruise = std::sqrt(std::min(motion.cruise_squared, reached));
-    // Rounding must not let the top speed fall below what it rises from.
+    // Rounding must not make the top speed less than the entry speed.
     time.cruise = std::max({time.cruise, time.enter, time.leave});
     const double a = time.acceleration;
     const double up = time.cruise - time.enter, down = time.cruise - time.leave;
@@ -39,7 +39,7 @@ MotionTime trapezoid(const WaitingMotion& motion, double enter_squared, double l
     return time;
 }
 
-/// Makes the first motion that waits final.
+/// Makes the first waiting motion final.
 void settle_first(TimePlan& plan, std::vector<MotionTime>& done) {
     const WaitingMotion first = plan.waiting.front();
     plan.waiting.pop_front();
@@ -51,8 +51,8 @@ void settle_first(TimePlan& plan, std::vector<MotionTime>& done) {
     plan.enter = done.back().leave;
 }
 
-/// From which speeds the new end can be kept. Speeds only rise as more becomes known, so the first
-/// that does not change ends it.
+/// Updates the entry speeds for the new end. Speeds only rise as more motions become known, so the
+/// loop ends at the first that does not change.
 void look_back(TimePlan& plan) {
     double after = 0.0;
     for (size_t i = plan.waiting.size(); i-- > 0;) {
@@ -156,8 +156,8 @@ void come_to_rest(TimePlan& plan, std::vector<MotionTime>& done) {
 
 namespace {
 
-/// How far each axis goes; empty if nobody knows. An axis that nobody knows and nobody tells to
-/// move stays where it is.
+/// The travel of each axis; empty if unknown. An axis with an unknown position that is not
+/// commanded to move stays in place.
 std::optional<AxisValues> travels(const Motion& motion) {
     AxisValues by{};
     for (size_t i = 0; i < motion.from.size(); ++i) {
@@ -167,8 +167,8 @@ std::optional<AxisValues> travels(const Motion& motion) {
     return by;
 }
 
-/// The length that a feed is counted along: where the control follows the tip, that of its way,
-/// unless it only turns.
+/// The length that a feed is counted along: where the control follows the tip, the length of its
+/// path, unless it only rotates.
 double feed_length(const Motion& motion, const AxisValues& by) {
     if (motion.tip && motion.kind != MotionKind::rapid)
         if (const double way = glm::distance(motion.tip->from, motion.tip->to); way > 0.0)
@@ -189,7 +189,7 @@ PathMotion along_line(const AxisValues& by, double length) {
     return path;
 }
 
-/// The greatest |cos| of the angles between two.
+/// The greatest |cos| of any angle between two angles.
 double greatest_cosine(double first, double last) {
     const double pi = std::numbers::pi;
     if (std::floor(last / pi) >= std::ceil(first / pi)) return 1.0;
@@ -231,7 +231,7 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) 
     return path;
 }
 
-/// The way of the axes while the control keeps the tip on a line, from places at even steps of it.
+/// The axis motion while the control keeps the tip on a line, sampled at even steps.
 ///
 /// The linear axes make up for w radians of turning at a distance of at most r and for the tip's
 /// way v: per share of the motion they go no faster than w r + v, bend no more than 2 w (w r + v),
