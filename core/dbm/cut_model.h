@@ -14,6 +14,8 @@ namespace core {
 /// A list that only grows, but for its last element, in chunks that copies share: a copy costs a
 /// pointer per chunk.
 template <typename T>
+/// An append-only list (only its last element can be replaced), stored in chunks that copies share:
+/// a copy costs a pointer per chunk.
 class SharedLog {
 public:
     static constexpr size_t chunk_size = 64;
@@ -46,14 +48,14 @@ private:
     size_t size_ = 0;
 };
 
-/// One move of a cutter that was carried out, with the box of what it may have removed.
+/// One executed move of a cutter, with the box of what it may have removed.
 struct LoggedSweep {
     CutterSweep sweep;
     Aabb box;
 };
 
-/// The moves that were carried out, in order. A move that goes on where the last one ended, with
-/// the same cutter held the same way, takes some 36 bytes.
+/// The executed moves in order. A move that continues where the last one ended, with the same
+/// cutter in the same orientation, takes some 36 bytes.
 class SweepLog {
 public:
     size_t size() const { return entries_.size(); }
@@ -65,7 +67,7 @@ public:
     Aabb box(size_t i) const;
 
 private:
-    /// A cutter and how it is held; `body` is its box about its tip.
+    /// A cutter and its orientation; `body` is its box relative to the tip.
     struct Attitude {
         std::shared_ptr<const Cutter> cutter;
         Mat3 orientation;
@@ -81,7 +83,7 @@ private:
     SharedLog<Entry> entries_;
 };
 
-/// The numbers first .. last of moves in a log.
+/// The moves first .. last of a log.
 struct SweepRun {
     uint32_t first = 0, last = 0;
 };
@@ -89,71 +91,72 @@ struct SweepRun {
 /// Adds the newest move to a list of runs.
 void append(SharedLog<SweepRun>& runs, uint32_t number);
 
-/// A stock as it is after some cuts: the discrete boundary model, an outer model that holds every
-/// point of the stock, and the cuts themselves, from which either can be had again at any finer h.
+/// A stock after some cuts: the discrete boundary model; an outer model that contains every point
+/// of the stock; and the cuts themselves, from which both can be recomputed at any finer mesh size.
 ///
-/// The columns are the outer model of the Z family: cell (i, j) stands between lines i - 1, i and
-/// j - 1, j, and its intervals hold every height at which the stock may have a point in the cell.
-/// A copy is a snapshot; it shares whatever neither side has changed since.
+/// The columns are the outer model of the Z family: cell (i, j) is between lines i - 1, i and j -
+/// 1, j, and its intervals contain every height at which the stock may have a point in the cell. A
+/// copy is a snapshot; it shares everything that neither side has changed since.
 struct CutModel {
     Solid solid;
     Aabb outer_box; // of the solid with its tolerance
     Dbm lines;
-    ScanLines columns; // none, if the model was made without
+    ScanLines columns; // empty if the model was made without
     std::array<TileBoxes, 3> line_boxes;
     TileBoxes column_boxes;
     SweepLog log; // the moves that came near the stock; marks are numbers + 1
-    std::vector<SharedLog<SweepRun>> history; // per tile of columns: which of them came near it
+    std::vector<SharedLog<SweepRun>> history; // per tile of columns: the moves that came near it
     CutterSweep last;                         // of all moves, near or not
-    double volume_owed = 0.0;                 // removed, but not yet reported (see cut), mm3
-    size_t loose_tests = 0;                   // of boxes, by searches since all boxes were fitted
+    double volume_owed = 0.0;                 // removed but not yet reported (see cut), mm3
+    size_t loose_tests = 0;                   // box tests by searches since all boxes were fitted
 
-    // Where lines run and where the corners of cells stand, along X, Y, Z.
+    // Positions of the lines and of the corners of cells, along X, Y, Z.
     std::array<std::vector<double>, 3> places;
     std::array<std::vector<double>, 2> corners;
 };
 
-/// Whether a model keeps columns; without them it has no lower bound.
+/// Whether a model keeps columns. Without them it gives no lower bound.
 enum class WithColumns { no, yes };
 
 /// The uncut model.
 ///
-/// Errors: those of scan().
+/// Errors:  those of scan().
 Result<CutModel> make_cut_model(Solid solid, double spacing,
                                 double memory_limit = default_memory_limit,
                                 WithColumns with_columns = WithColumns::yes);
 
-/// Removes what one move of a cutter sweeps, and returns the volume, mm3.
+/// Removes what one move of a cutter sweeps and returns the removed volume, mm3.
 ///
-/// The volume counts grid points and what ends lie beyond their cells, weighed by the normals there
-/// (README.md, "Volume"): additive over cuts, and true to first order for faces of any direction.
-/// One small cut alone may come out below 0; such a remainder is taken off the next ones, so that
-/// nothing that is reported is negative and all of it adds up.
+/// The volume counts grid points and the overlap of ends beyond their cells, weighted by the
+/// normals there (README.md, "Volume"): additive over cuts, and exact to first order for faces of
+/// any direction. The volume of one small cut may come out negative; such a remainder is carried
+/// over to the next cuts, so no reported volume is negative and the sum is right.
 double cut(CutModel& model, const CutterSweep& sweep);
 
-/// The same for many moves in order, on so many threads, and the volume that each removed.
+/// The same for several moves in order on several threads; returns the volume that each removed.
 ///
-/// Result: the same bits for any number of threads.
-/// Cost:   on two threads some half of the time of one, if there are hundreds of moves.
+/// Result:  the same bits for any number of threads.
+/// Cost:    with hundreds of moves, two threads take about half of the time of one.
 std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, unsigned threads);
 
-/// Counts the boxes that a search has tested, and fits those round what has been cut since when
-/// searches have spent as much on loose ones as the fitting costs. Changes no answer.
+/// Counts the box tests of a search, and refits the boxes around recent cuts once searches have
+/// spent as much on outdated ones as refitting costs. Does not change any result.
 void note_search(CutModel& model, size_t box_tests);
 
-/// The square of a column, clipped to where the stock can be.
+/// The square of a column, clipped to the extent of the stock.
 Square cell_square(const CutModel& model, int i, int j);
 
-/// The heights that cell (i, j)'s part `square` may hold matter at, worked out afresh from the log.
+/// The heights at which the part `square` of cell (i, j) may contain matter, recomputed from the
+/// log.
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square);
 
-/// The matter on a line along Z through cell (i, j), worked out afresh from the log.
+/// The matter on a line along Z through cell (i, j), recomputed from the log.
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y);
 
-/// The numbers of the logged sweeps that may have come into a box, in order.
+/// The numbers of the logged sweeps that may have reached into a box, in order.
 std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box);
 
-/// Whether the model holds no matter any more.
+/// Whether the model contains no matter.
 bool is_gone(const CutModel& model);
 
 } // namespace core

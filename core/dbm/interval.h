@@ -8,7 +8,7 @@
 
 namespace core {
 
-/// A stretch of a line that holds matter; empty unless lower < upper.
+/// A segment of a line inside a body; empty unless lower < upper.
 struct Interval {
     double lower = 0.0;
     double upper = 0.0;
@@ -17,8 +17,8 @@ struct Interval {
     bool operator==(const Interval&) const = default;
 };
 
-/// The matter on one scan line: sorted, disjoint intervals with a gap between neighbours. One
-/// interval, the usual case, is held in place; only more of them need the heap.
+/// The matter on one scan line: sorted, disjoint intervals with gaps between neighbours. A single
+/// interval, the usual case, is stored in place; more need the heap.
 class IntervalList {
 public:
     IntervalList() = default;
@@ -29,17 +29,16 @@ public:
     IntervalList& operator=(IntervalList&& other) noexcept;
     ~IntervalList();
 
-    /// Takes `cut` out of the list and returns the length that was really removed.
+    /// Removes `cut` from the list and returns the removed length.
     ///
-    /// Result: what stays is closed: its new ends are the ends of `cut`. An empty cut changes
-    /// nothing.
+    /// Result:  the remaining intervals are closed: their new ends are the ends of `cut`. An empty
+    ///          cut changes nothing.
     double subtract(const Interval& cut);
 
-    /// Unites the list with `interval`; touching intervals become one. An empty one changes
-    /// nothing.
+    /// Adds `interval` to the list; touching intervals are merged. An empty one changes nothing.
     void add(const Interval& interval);
 
-    /// Whether `x` lies on matter, ends included.
+    /// Whether `x` is inside an interval, ends included.
     bool contains(double x) const;
     double length() const;
 
@@ -67,8 +66,8 @@ private:
     uint32_t capacity_ = 1;
 };
 
-/// The matter on one line, to be read wherever it is kept: sorted, disjoint intervals with a gap
-/// between neighbours. It points to the line and is good for as long as the line is not changed.
+/// Read access to the matter on one line wherever it is stored: sorted, disjoint intervals with
+/// gaps between neighbours. Valid until the line changes.
 class LineView {
 public:
     class Iterator {
@@ -111,10 +110,10 @@ public:
     };
 
     LineView() = default;
-    /// Interval i lies `stride` doubles after interval i - 1.
+    /// Interval i is stored `stride` doubles after interval i - 1.
     LineView(const double* lower, const double* upper, std::ptrdiff_t stride, size_t size)
         : lower_(lower), upper_(upper), stride_(stride), size_(size) {}
-    LineView(const IntervalList& list) // NOLINT: a list can be read like any line
+    LineView(const IntervalList& list) // NOLINT: implicit on purpose
         : LineView(&list.begin()->lower, &list.begin()->upper,
                    static_cast<std::ptrdiff_t>(sizeof(Interval) / sizeof(double)), list.size()) {}
 
@@ -126,7 +125,7 @@ public:
     Interval front() const { return (*this)[0]; }
     Interval back() const { return (*this)[size_ - 1]; }
 
-    /// Whether `x` lies on matter, ends included.
+    /// Whether `x` is inside an interval, ends included.
     bool contains(double x) const {
         return std::any_of(begin(), end(),
                            [x](const Interval& i) { return i.lower <= x && x <= i.upper; });

@@ -6,53 +6,53 @@
 
 namespace core {
 
-/// A ball, or the circle that an upright cylinder is from above, along one move: what lines of one
-/// family meet of it. Coordinates: along the lines (a), and across them (u, v).
+/// A ball, or the circle of an upright cylinder seen from above, along one move: parameters for its
+/// intersection with the lines of one family. Coordinates: along the lines (a), and across them (u,
+/// v).
 ///
-/// Seen along the lines the move has a direction (cos_u, cos_v) and a length; a line passes it at g
-/// along it and e beside it. The moments at which its stretch begins and ends are
-/// t = g * per_length + w * by_half + at, w = sqrt(r^2 - e^2), kept within 0..1. For moves along
-/// the lines per_length and by_half are 0.
+/// Seen along the lines the move has a direction (cos_u, cos_v) and a length; a line is at g along
+/// it and e beside it. Its segment begins and ends at the times t = g * per_length + w * by_half +
+/// at, w = sqrt(r^2 - e^2), clamped to 0..1. For moves along the lines per_length and by_half are
+/// 0.
 struct CapsuleLanes {
     double from_a, from_u, from_v;
     double by_a;
     double radius;
     double cos_u, cos_v, length, per_length;
     double low_by_half, low_at, high_by_half, high_at;
-    double low_end, high_end; // added to the ends of a cylinder's stretch: its end faces
-    bool opens_up;            // there is nothing above: every stretch may end at high_end itself
-    double reach_low, reach_high; // no ball's centre and no end of a cylinder lies beyond them
-    double u_most, v_most;        // beyond this height another element holds all that this one does
+    double low_end, high_end;     // added to the ends of a cylinder's segment: its end faces
+    bool opens_up;                // no stock above: every segment may end at high_end
+    double reach_low, reach_high; // bounds of the ball's centre or of the cylinder's ends
+    double u_most, v_most;        // beyond these another element covers this one
 };
 
-/// An upright cylinder met from the side: (a, s) is the plane of its circle, z the height.
+/// An upright cylinder crossed from the side: (a, s) is the plane of its circle, z the height.
 struct AcrossLanes {
     bool side_is_u; // else the height is
     double from_a, from_side, from_z;
     double by_a, by_side, by_z;
     double radius, z0, z1;
-    double reach_low, reach_high; // between them the centre moves
-    double per_side, per_z;       // 1 / by_side, 1 / by_z; 0 when there is none to speak of
+    double reach_low, reach_high; // bounds of the centre
+    double per_side, per_z;       // 1 / by_side, 1 / by_z; 0 if negligible
     double low_at, high_at;       // the moments are side * per_side + these, ...
     double by_radius; // ... less radius * by_radius for the low one, more for the high one
 };
 
-/// A cone or a rounded corner. On a level move, or straight up or down, it is at a distance from
-/// the path what it is at every moment, and at a height a circle that only moves or only grows;
-/// else it is `sloped`.
+/// A cone or a rounded corner. On a level or vertical move its section at a distance from the path,
+/// or at a height, is constant or only moves or only grows; otherwise it is `sloped`.
 struct ElementLanes {
     ProfileElement element;
     CapsuleLanes path;  // for lines along Z
-    AcrossLanes across; // for the others; its radius means nothing
+    AcrossLanes across; // for the others; its radius is not used
     bool sloped;
 };
 
-/// How one convex piece along one move meets the lines of one family, in numbers made for lanes.
+/// How one convex piece on one move meets the lines of one family, in the form that the lanes use.
 struct LanePlan {
     static constexpr size_t most = 4;
 
     int axis = 0;
-    bool by_lanes = false; // else line by line: with RevolvedProfile and CutterSweep below
+    bool by_lanes = false; // else line by line, with the profile and the sweep below
     size_t balls = 0, uprights = 0, across = 0, elements = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
     std::array<AcrossLanes, most> beside;         // cylinders met by lines along X and Y
@@ -61,7 +61,7 @@ struct LanePlan {
     const CutterSweep* sweep = nullptr;
 };
 
-/// The plan for a convex piece; it points to both arguments. Stretches along Z need not be true
+/// The plan for a convex piece; it points to both arguments. Segments along Z need not be exact
 /// above `top`, where there is no stock.
 LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis,
                    double top = infinity);

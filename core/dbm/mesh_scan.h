@@ -6,35 +6,35 @@ namespace core {
 
 struct Mesh;
 
-/// The model of a mesh, and whether shells of the mesh overlap (their union was taken).
+/// The model of a mesh, and whether shells of the mesh overlap (they are united).
 struct MeshScan {
     Dbm dbm;
     bool shells_overlap = false;
 };
 
-/// Scans a closed mesh: matter is where the winding number along a line is at least 1, so that
+/// Scans a closed mesh. Matter is where the winding number along a line is at least 1, so
 /// overlapping shells are united and cavities stay empty.
 ///
-/// Frame:  that of the mesh; the grid is centred on its box.
-/// Result: every line is decided exactly, also one through edges and corners (it counts as shifted
-///         towards +u, +v); matter and gaps thinner than 1e-11 of the coordinates are rounding and
-///         do not appear.
-/// Errors: as empty_dbm; no line meets the body; a mesh that is open or partly inside out.
-/// Cost:   time grows with the triangles and the crossings, not with their product.
+/// Frame:   the mesh's; the grid is centred on its box.
+/// Result:  every line is decided exactly, also through edges and corners (it counts as shifted
+///          towards +u, +v). Matter and gaps thinner than 1e-11 of the coordinates are dropped as
+///          rounding.
+/// Errors:  as for empty_dbm; no line meets the body; an open or partly inverted mesh.
+/// Cost:    proportional to the triangles plus the crossings.
 Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing,
                            double memory_limit = default_memory_limit);
 
-/// The same, for callers who take overlapping shells as they come.
+/// The same, for callers that accept overlapping shells.
 Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit = default_memory_limit);
 
-/// What the line along `axis` at (u, v) of the next two axes meets of a closed mesh.
+/// The intersection of a closed mesh with the line along `axis` at (u, v) of the next two axes.
 ///
-/// Errors: a mesh that is open or inside out along this line.
-/// Cost:   every triangle of the mesh.
+/// Errors:  a mesh that is open or inverted along this line.
+/// Cost:    every triangle of the mesh.
 Result<IntervalList> scan_line(const Mesh& mesh, int axis, double u, double v);
 
-/// The same, where the winding number is at least 1, also beside stretches at which the mesh is
-/// inside out: a fold of the surface must not hide the matter before or behind it.
+/// The same, but matter is wherever the winding number is at least 1, even if the mesh is inverted
+/// elsewhere on the line: a fold of the surface must not hide the matter before or after it.
 IntervalList matter_on_line(const Mesh& mesh, int axis, double u, double v);
 
 } // namespace core

@@ -11,7 +11,7 @@
 
 namespace core {
 
-/// What made the ends of an interval: 0 for the raw body, else the number of a cut.
+/// What made the ends of an interval: 0 for raw stock, else the number of a cut.
 struct EndMarks {
     uint32_t lower = 0, upper = 0;
     uint8_t lower_tilt = 0, upper_tilt = 0; // see ScanTile::Marks
@@ -20,10 +20,10 @@ struct EndMarks {
 };
 
 /// The lines of a tile, in layers: layer k holds the k-th interval of every line, all lower ends
-/// and all upper ends side by side, so that rows of lines can be worked on in vector lanes.
+/// and all upper ends side by side, so that rows of lines can be processed in vector lanes.
 ///
-/// Most lines hold one interval or none. Where a line has no k-th one, layer k has (+inf, -inf),
-/// which overlaps nothing.
+/// Most lines hold one interval or none. A line without a k-th interval has (+inf, -inf) in layer
+/// k, which overlaps nothing.
 struct ScanTile {
     static constexpr int side = 16;
     static constexpr size_t lines = static_cast<size_t>(side) * side;
@@ -32,15 +32,16 @@ struct ScanTile {
         std::array<double, lines> lower, upper;
         Layer();
     };
-    /// The tilt of an end is 0 where the surface faces along the line or nobody knows, `steepest`
-    /// where the line runs along it: steepest * (1 - n^2), n the normal's component on the line.
+    /// The tilt of an end is steepest * (1 - n^2), where n is the component of the surface normal
+    /// along the line: 0 where the surface faces along the line or its normal is unknown,
+    /// `steepest` where the line runs along the surface.
     struct alignas(64) Marks {
         std::array<uint32_t, lines> lower{}, upper{};
         std::array<uint8_t, lines> lower_tilt{}, upper_tilt{};
     };
     static constexpr int steepest = 255;
     std::vector<Layer> layers = std::vector<Layer>(1);
-    std::vector<Marks> marks; // as many as layers, or none as long as all are 0
+    std::vector<Marks> marks; // one per layer, or none while all are 0
 
     LineView line(size_t place) const {
         size_t size = 0;
@@ -54,36 +55,37 @@ struct ScanTile {
         const Marks& m = marks[interval];
         return {m.lower[place], m.upper[place], m.lower_tilt[place], m.upper_tilt[place]};
     }
-    /// Makes room for marks, from now on kept for every end.
+    /// Allocates marks; from now on they are stored for every end.
     void keep_marks() { marks.resize(layers.size()); }
 };
 
-/// Puts `matter` on a line in place of what it held; all its ends count as raw.
+/// Replaces the matter of a line; all its ends count as raw stock.
 void set_line(ScanTile& tile, size_t place, const LineView& matter);
 
-/// Takes `cut` out of a line; the ends that it makes, matter's lower one at the upper end of `cut`,
-/// get these marks, if the tile keeps marks. Returns the length that was really removed.
+/// Removes `cut` from a line and returns the removed length. If the tile keeps marks, the new ends
+/// get those in `made`: the lower end of the remaining matter, at the upper end of `cut`, gets the
+/// lower mark.
 double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made);
 
-/// The axis along which the first (u) and the second (v) index of a family of lines count:
-/// X has (Y, Z), Y has (Z, X), Z has (X, Y).
+/// The axes along which the first (u) and second (v) index of a family of lines count: (Y, Z) for
+/// X, (Z, X) for Y, (X, Y) for Z.
 constexpr int u_axis(int axis) { return (axis + 1) % 3; }
 constexpr int v_axis(int axis) { return (axis + 2) % 3; }
 
-/// One family of scan lines along `axis`, u_count x v_count of them. Lines live in tiles that
-/// copies share until one of them edits: a copy is a snapshot and costs a pointer per tile.
+/// One family of scan lines along `axis`, u_count x v_count of them. Lines are stored in tiles that
+/// copies share until one of them changes: a copy is a snapshot and costs a pointer per tile.
 ///
-/// Copies may be edited from several threads; one and the same object, tile by tile.
+/// Copies may be edited from several threads; a single object only tile by tile.
 class ScanLines {
 public:
     static constexpr int tile_side = ScanTile::side;
 
-    /// A line about to be changed.
+    /// Write access to a line.
     class Edit {
     public:
         Edit(ScanTile& tile, size_t place) : tile_(tile), place_(place) {}
         Edit& operator=(const LineView& matter);
-        /// As IntervalList has them; new ends count as raw.
+        /// As for IntervalList; new ends count as raw stock.
         void add(const Interval& interval);
         double subtract(const Interval& cut) { return core::subtract(tile_, place_, cut, {}); }
 
@@ -103,31 +105,31 @@ public:
         const auto& tile = tiles_[tile_of(u, v)];
         return tile ? tile->line(place_in_tile(u, v)) : LineView();
     }
-    /// What made the ends of the line's interval `i`.
+    /// The marks of the ends of interval `i` of a line.
     EndMarks marks(int u, int v, size_t i) const {
         const auto& tile = tiles_[tile_of(u, v)];
         return tile ? tile->marks_of(place_in_tile(u, v), i) : EndMarks();
     }
 
-    /// The line, to be changed. Its tile is cloned first if another snapshot shares it.
+    /// Write access to a line. Its tile is cloned first if another snapshot shares it.
     Edit edit(int u, int v) { return {edit_tile(tile_of(u, v)), place_in_tile(u, v)}; }
 
-    /// Tiles are counted u fastest; null: no line of the tile holds anything.
+    /// Tiles are numbered u fastest; null: no line of the tile holds anything.
     size_t tile_count() const { return tiles_.size(); }
     const ScanTile* tile(size_t index) const { return tiles_[index].get(); }
-    /// The tile, to be changed; the same rule as for lines.
+    /// Write access to a tile, cloned first if another snapshot shares it.
     ScanTile& edit_tile(size_t index);
-    /// Whether a snapshot holds the same tile.
+    /// Whether a snapshot shares the tile.
     bool is_shared(size_t index) const { return tiles_[index].use_count() > 1; }
     size_t tile_of(int u, int v) const {
         assert(u >= 0 && u < u_count_ && v >= 0 && v < v_count_);
         return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
     }
 
-    /// Whether both hold the very same tile around the line, so that it need not be compared.
+    /// Whether both share the tile that contains the line, so it need not be compared.
     bool shares_tile(const ScanLines& other, int u, int v) const;
 
-    /// Whether the same matter is on all lines, whatever made its ends.
+    /// Whether all lines hold the same matter; marks are ignored.
     bool operator==(const ScanLines& other) const;
 
 private:

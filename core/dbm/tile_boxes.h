@@ -7,38 +7,38 @@
 
 namespace core {
 
-/// Boxes round 4 x 4 of the boxes of the level below; empty where there is no matter.
+/// Boxes around 4 x 4 boxes of the level below; empty where there is no matter.
 struct TileLevel {
     int u_count = 0, v_count = 0;
     std::vector<Aabb> boxes; // u fastest
 };
 
-/// A stretch along the lines, inside a box round matter, that holds none; empty where none is
-/// known.
+/// A range along the lines, within a box, that contains no matter; empty if none is known.
 struct BoxGap {
     double from = 0.0, to = 0.0;
 
     bool empty() const { return from >= to; }
 };
 
-/// A box round the matter in each tile of a family of lines or columns, and in each 4 x 4 block of
-/// a tile, with its widest gap; empty where there is none. Boxes of blocks that have been cut
-/// lately may still be those of before: too large, never too small.
+/// Boxes around the matter in each tile of a family of lines or columns and in each 4 x 4 block of
+/// a tile, with their widest gaps; empty where there is no matter. Boxes of recently cut blocks may
+/// be outdated: too large, never too small.
 struct TileBoxes {
     static constexpr int block_side = 4;
     static constexpr int blocks_per_side = ScanLines::tile_side / block_side;
     static constexpr size_t blocks_per_tile = blocks_per_side * blocks_per_side;
-    static constexpr size_t most_stale = 64; // tiles that wait for their boxes to be fitted
+    static constexpr size_t most_stale = 64; // tiles waiting for their boxes to be refitted
 
     int u_tiles = 0;
     int v_tiles = 0;
-    std::vector<Aabb> boxes;           // u fastest
-    std::vector<BoxGap> gaps;          // of the boxes
-    std::vector<TileLevel> above;      // over the tiles; the last level is one box
-    std::vector<Aabb> blocks;          // of 4 x 4 lines, the 16 of a tile in a row, u fastest
-    std::vector<BoxGap> block_gaps;    // of the blocks
-    std::vector<uint16_t> stale;       // per tile: bit i, block i has been cut since it was fitted
-    std::vector<uint32_t> stale_tiles; // those with any
+    std::vector<Aabb> boxes;        // u fastest
+    std::vector<BoxGap> gaps;       // of the boxes
+    std::vector<TileLevel> above;   // over the tiles; the last level is one box
+    std::vector<Aabb> blocks;       // of 4 x 4 lines, 16 per tile, u fastest
+    std::vector<BoxGap> block_gaps; // of the blocks
+    std::vector<uint16_t>
+        stale; // per tile: bit i is set if block i was cut since its box was fitted
+    std::vector<uint32_t> stale_tiles; // tiles with any such block
 
     size_t index(int u, int v) const {
         return static_cast<size_t>(v / ScanLines::tile_side) * static_cast<size_t>(u_tiles)
@@ -52,7 +52,7 @@ struct TileBoxes {
                + static_cast<size_t>(along * blocks_per_side + across);
     }
 
-    /// Remembers that blocks of a tile have been cut.
+    /// Records cut blocks of a tile.
     void note(size_t tile, uint32_t cut_blocks) {
         if (cut_blocks == 0) return;
         if (stale[tile] == 0) stale_tiles.push_back(static_cast<uint32_t>(tile));
@@ -73,19 +73,20 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
 /// The lines of one of its 4 x 4 blocks.
 LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
 
-/// The tiles, or boxes of a level, under one of the level above: all of its 4 x 4 that are there.
+/// The tiles, or boxes of a level, under one box of the level above: those of its 4 x 4 that exist.
 LineRange below(const TileBoxes& tiles, size_t level, size_t index);
 
-/// Boxes for these lines, all empty and none of them fitted.
+/// Boxes for these lines, all empty and all outdated.
 TileBoxes unfitted_boxes(const ScanLines& lines);
 
-/// Fits what is stale to its lines: `places_u` and `places_v` say where line i and i + 1 of a
-/// column's cell stand, or the line itself with `columns` false.
+/// Positions of the lines: line i is at u[i], or, for columns (`cells`), cell i spans u[i] .. u[i +
+/// 1].
 struct LinePlaces {
     const double* u = nullptr;
     const double* v = nullptr;
-    bool cells = false; // line i fills u[i] .. u[i + 1]
+    bool cells = false;
 };
+/// Refits all outdated boxes.
 void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places);
 
 } // namespace core

@@ -6,20 +6,21 @@
 
 namespace core {
 
-/// What was removed from lines, before it is made a volume: grid points, a cell each, and how far
-/// the ends of what went lie beyond the borders of these cells.
+/// What was removed from lines, before conversion to a volume: grid points, one cell each, and how
+/// far the removed ends extend beyond the borders of these cells.
 struct LineSums {
-    double beyond = 0.0; // mm, each end weighed by the square of its normal along the line
-    double points = 0.0; // counted by the lines along Z
+    double beyond = 0.0; // mm, each end weighted by the square of its normal along the line
+    double points = 0.0; // counted on the lines along Z
 };
 
-/// What a sweep did to a tile.
+/// The effect of a sweep on a tile.
 struct TileOutcome {
     LineSums removed;
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
 };
 
-/// A sweep ready for cutting: where it can remove anything, and the mark for the ends it makes.
+/// A sweep prepared for cutting: the box in which it can remove anything, and the mark of the ends
+/// that it makes.
 struct ReadySweep {
     const CutterSweep* sweep = nullptr;
     Aabb front;
@@ -29,12 +30,13 @@ struct ReadySweep {
 /// The tiles of a family that a range of lines touches: first .. last - 1 in both directions.
 LineRange tiles_of(const LineRange& lines);
 
-/// The lines of a family whose places lie in the box, the cells that meet it.
+/// The lines of a family within the box; the cells that overlap it.
 LineRange lines_in(const CutModel& model, int axis, const Aabb& box);
 LineRange cells_in(const CutModel& model, const Aabb& box);
 
 /// Runs `act` over the tiles that a range of lines touches, u fastest.
 template <typename Act>
+/// Calls `act` for the tiles that a range of lines touches, u fastest.
 void for_tiles(const LineRange& lines, const TileBoxes& boxes, const Act& act) {
     if (lines.empty()) return;
     const LineRange tiles = tiles_of(lines);
@@ -43,24 +45,23 @@ void for_tiles(const LineRange& lines, const TileBoxes& boxes, const Act& act) {
             act(static_cast<size_t>(v * boxes.u_tiles + u));
 }
 
-/// Fits the boxes of all tiles that are stale.
+/// Refits the outdated boxes of all tiles.
 void fit_boxes(CutModel& model);
 
-/// Takes a convex piece out of those lines of one tile that are in the range. Nothing but the tile
-/// is written to: several threads may work on different tiles of one model.
+/// Removes a convex piece from the lines of one tile that are in the range. Writes only to the
+/// tile: several threads may work on different tiles of one model.
 TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
                       const ReadySweep& ready);
 
-/// The same for columns; what is removed is not counted.
+/// The same for columns; removed volume is not counted.
 TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
                         const ReadySweep& ready);
 
-/// The box of what a sweep can remove from a stock, out of which the cutter standing at `from` has
-/// been taken already; `top` is above all stock.
+/// A box of what a sweep can remove from a stock from which the cutter at `from` was already
+/// removed; `top` is above all stock.
 ///
-/// Proof: a point that the cutter comes to hold, and did not hold at `from`, lies on the way of a
-/// point of its surface where the surface faces the motion. The box is that of those points and
-/// their way.
+/// Proof:   a point that the cutter enters lies on the path of a point of its surface where the
+///          surface faces the motion. The box is that of those points and their paths.
 Aabb front_bounds(const CutterSweep& sweep, double top);
 
 } // namespace core
