@@ -5,22 +5,21 @@
 
 namespace hwsim {
 
-/// Upright posts that together hold every point of a body, in its own frame: its columns on a grid
-/// of this spacing. Of a convex shape that is neither an upright piece of revolution nor a box they
-/// hold the box round it.
+/// Upright posts that together contain a body, in its own frame: its columns on a grid of this
+/// spacing. A convex shape that is neither an upright piece of revolution nor a box is covered by
+/// its box.
 ///
-/// Errors: what does not fit into the device's numbers.
+/// Errors:  coordinates out of the device's range.
 core::Result<std::vector<Record>> posts_round(const core::ExactBody& body, double spacing);
 
-/// Upright posts that together hold every point of a body of revolution that is turned about its
-/// origin. A point of it over a cell is no farther from the line through the cell's middle than
-/// half the cell's diagonal, so the column reaches as far as that line is in the body grown by so
-/// much.
+/// Upright posts that together contain a body of revolution rotated about its origin. A point of it
+/// over a cell is within half the cell diagonal of the line through the cell centre, so the column
+/// spans that line's segment inside the body grown by as much.
 core::Result<std::vector<Record>> posts_round(const core::RevolvedProfile& profile, double spacing,
                                               const core::Mat3& orientation);
 
-/// Cubes that together hold every point of a body's surface, in its own frame: what turns with the
-/// machine is covered again for each way it is held, and scanned but once.
+/// Cubes that together contain the surface of a body, in its own frame. A body that rotates with
+/// the machine is scanned once and covered again for each orientation.
 struct CubeCover {
     double side = 0.0;
     std::vector<core::Vec3> centres;
@@ -28,9 +27,9 @@ struct CubeCover {
 
 CubeCover cubes_round(const core::ExactBody& body, double side);
 
-/// Upright cylinders round the cubes, turned about the body's origin.
+/// Upright cylinders around the cubes, rotated about the origin of the body.
 ///
-/// Errors: what does not fit into the device's numbers.
+/// Errors:  coordinates out of the device's range.
 core::Result<std::vector<Record>> cylinders_round(const CubeCover& cubes,
                                                   const core::Mat3& orientation);
 

@@ -7,25 +7,24 @@
 
 namespace hwsim {
 
-/// Where the answer to an entry of the FIFO comes from.
+/// The source of the answer to an entry of the FIFO.
 struct Dispatched {
     Segment segment;
     uint64_t pushed = 0;   // cycle
-    bool searched = false; // by a thread; else `fault` is all there is to say
+    bool searched = false; // by a thread; otherwise `fault` is the whole answer
     uint8_t element = 0, thread = 0;
     Stop fault = Stop::none;
 
     bool operator==(const Dispatched&) const = default;
 };
 
-/// Decides what is permitted: takes answers in the order of the FIFO, and stops at the first that
-/// is no yes.
+/// Decides what is permitted: takes answers in FIFO order and stops at the first refusal.
 struct PermitUnit {
     Ring<Dispatched> in_order;
-    uint32_t permit_sequence = 0; // everything up to this may be entered
+    uint32_t permit_sequence = 0; // all segments up to this one may be entered
     uint32_t retired = 0;         // entries
 
-    Stop stopped = Stop::none; // nothing is permitted while it is not none
+    Stop stopped = Stop::none; // nothing is permitted unless this is none
     uint32_t stop_sequence = 0, stop_line = 0;
 
     Answer found; // of the violation or the last measurement
@@ -37,25 +36,25 @@ struct PermitUnit {
     bool operator==(const PermitUnit&) const = default;
 };
 
-/// What an answer made of the permits.
+/// The effect of an answer on the permits.
 struct Retirement {
     bool permitted = false, measured = false;
-    Stop stopped = Stop::none; // why the device has to stop
+    Stop stopped = Stop::none; // why the device must stop
 };
 
-/// Takes the answer to the first entry: one that permits advances the permit if it is the last of
-/// its segment; any other is a reason to stop.
+/// Takes the answer to the first entry. A positive one advances the permit if it is the last of its
+/// segment; any other stops the device.
 Retirement retire(PermitUnit& unit, const Answer& answer, uint64_t cycle);
 
-/// Stops for a reason, unless stopped already. Entries that wait are dropped.
+/// Stops with a reason unless already stopped. Waiting entries are dropped.
 void stop(PermitUnit& unit, Stop reason, uint32_t sequence, uint32_t line = 0);
 
-/// Segments on their way, and which number comes next.
+/// Waiting segments and the next sequence number.
 struct SegmentFifo {
     struct Entry {
         Segment segment;
         uint64_t pushed = 0; // cycle
-        uint64_t lines = 0;  // that the memory had been given by then
+        uint64_t lines = 0;  // stored in memory by then
         bool operator==(const Entry&) const = default;
     };
     Ring<Entry> entries;
@@ -64,10 +63,10 @@ struct SegmentFifo {
     bool operator==(const SegmentFifo&) const = default;
 };
 
-/// Takes a segment in, or says why not; then nothing has changed.
+/// Adds a segment, or returns the reason for refusal and changes nothing.
 Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t lines);
 
-/// The header of the model that a slot holds.
+/// The header of the model in a slot.
 struct ModelSlot {
     bool valid = false;
     uint32_t header = 0, epoch = 0;
@@ -75,7 +74,7 @@ struct ModelSlot {
     bool operator==(const ModelSlot&) const = default;
 };
 
-/// Sums over all searches that were retired.
+/// Sums over all retired searches.
 struct SearchSums {
     uint64_t queries = 0, nodes = 0, splits = 0, box_tests = 0, pair_tests = 0;
     uint32_t deepest = 0;
@@ -83,11 +82,11 @@ struct SearchSums {
     bool operator==(const SearchSums&) const = default;
 };
 
-/// What the host writes and reads directly.
+/// The registers that the host writes and reads directly.
 struct HostRegisters {
     bool enabled = false;
     uint32_t irq_pending = 0, irq_enable = 0;
-    uint32_t watchdog = 10'000'000; // cycles; 0: nobody watches
+    uint32_t watchdog = 10'000'000; // cycles; 0: off
     uint64_t heartbeat = 0;         // cycle of the last one
     uint32_t high_word = 0;         // of the pair whose low word was read last
     SegmentWords segment{};
@@ -95,7 +94,7 @@ struct HostRegisters {
     bool operator==(const HostRegisters&) const = default;
 };
 
-/// An entry that was finished in the last cycle, for whoever looks on.
+/// An entry that was finished in the last cycle, for observers.
 struct Retired {
     bool valid = false;
     Segment segment;
@@ -105,7 +104,8 @@ struct Retired {
     bool operator==(const Retired&) const = default;
 };
 
-/// All that the device is at a cycle. A copy is a snapshot; put back, it goes on the same way.
+/// The whole state of the device in a cycle. A copy is a snapshot from which it continues
+/// identically.
 struct CoprocessorState {
     uint64_t cycle = 0;
     uint32_t run = 0; // counts stops
@@ -115,16 +115,16 @@ struct CoprocessorState {
     std::array<ModelSlot, model_slots> slots{};
     std::vector<SearchElement> elements;
     MemoryUnit memory;
-    uint32_t searching = 0;   // threads that have a search
-    uint8_t next_element = 0; // is asked first for an idle thread
-    uint8_t next_request = 0; // may ask the memory first
+    uint32_t searching = 0;   // threads with a search
+    uint8_t next_element = 0; // has priority for the next search
+    uint8_t next_request = 0; // has priority for the memory
     SearchSums searched;
     Retired retired;
 
     bool operator==(const CoprocessorState&) const = default;
 };
 
-/// The device as it is after power-up: nothing is permitted, no model is there.
+/// The device after power-up: nothing is permitted, no models are loaded.
 CoprocessorState power_up(const DeviceConfig& config);
 
 /// One rising clock edge.
@@ -134,15 +134,15 @@ void tick(CoprocessorState& state, const DeviceConfig& config);
 uint32_t read(CoprocessorState& state, const DeviceConfig& config, uint32_t address);
 void write(CoprocessorState& state, const DeviceConfig& config, uint32_t address, uint32_t value);
 
-/// Puts a line on its way into the memory; false if the queue is full or the address beyond it.
+/// Queues a line for writing to memory; false if the queue is full or the address is out of range.
 bool store(CoprocessorState& state, uint32_t address, const Line& line);
 
-/// Stops the device, unless it is stopped: the reason is latched, and whatever waits or is under
-/// way is dropped.
+/// Stops the device unless it is stopped: the reason is latched, and everything waiting or pending
+/// is dropped.
 void halt(CoprocessorState& state, Stop reason, uint32_t sequence, uint32_t line = 0);
 
-/// What the emulator and the functional model do alike: what is wrong with the models of a segment,
-/// what is asked, a model for its slot, and what an answer to the first entry leads to.
+/// Shared by the emulator and the functional model: the fault of the models of a segment, its
+/// query, loading a model into its slot, and the effect of the answer to the first entry.
 Stop fault_of_models(const CoprocessorState& state, const Segment& segment);
 Query query_of(const CoprocessorState& state, const Segment& segment);
 void take_model(CoprocessorState& state, const Segment& segment);

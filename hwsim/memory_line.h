@@ -11,8 +11,8 @@
 
 namespace hwsim {
 
-/// One beat of the memory: 512 bits. The last word is a check of all others and of the address, the
-/// one before it the epoch in which the line was written.
+/// One beat of the memory: 512 bits. The last word is a check word over all others and the address,
+/// the one before it the epoch in which the line was written.
 struct alignas(64) Line {
     static constexpr size_t words = 16;
     static constexpr size_t epoch_word = 14;
@@ -22,15 +22,16 @@ struct alignas(64) Line {
     bool operator==(const Line&) const = default;
 };
 
-/// CRC-32 (reversed polynomial edb88320) of the line's address and all words before the check word:
-/// every wrong bit, any two or three, every burst of 32, and a line from another address are seen.
+/// CRC-32 (reversed polynomial edb88320) of the address of the line and all words before the check
+/// word. It detects any one, two or three wrong bits, every burst of 32, and a line from another
+/// address.
 uint32_t check_of(const Line& line, uint32_t address);
 
 inline bool is_intact(const Line& line, uint32_t address) {
     return line.word[Line::check_word] == check_of(line, address);
 }
 
-/// A box along the axes, closed.
+/// A closed axis-aligned box.
 struct Box {
     FixedVec min{}, max{};
 
@@ -43,13 +44,12 @@ struct Box {
     bool operator==(const Box&) const = default;
 };
 
-/// Everything a coordinate can be.
+/// The range of coordinates.
 constexpr Box everywhere{{least_coordinate, least_coordinate, least_coordinate},
                          {greatest_coordinate, greatest_coordinate, greatest_coordinate}};
 
-/// What holds a part of a model: all points no farther than `radius`, on their level, from a box.
-/// Of the tool's side the box is round the axes of cylinders; of the work's side there is no
-/// radius.
+/// Bounding volume of a part of a model: all points within `radius`, horizontally, of a box. On the
+/// tool side the box is around the axes of cylinders; on the work side the radius is 0.
 struct Volume {
     Box box;
     int32_t radius = 0;
@@ -61,12 +61,12 @@ struct Volume {
     bool operator==(const Volume&) const = default;
 };
 
-/// Whose models these are.
+/// The side of a model.
 enum class Side : uint8_t { tool, work };
 
-/// A point of a model with an extent: it reaches from `base` upwards by `run`, and sideways by
-/// `half`. In a model of the tool's side it is an upright cylinder of that radius, in one of the
-/// work's side an upright post whose square section has that half side. Both 0: a bare point.
+/// A point of a model with an extent: from `base` up by `run`, and sideways by `half`. On the tool
+/// side it is an upright cylinder of that radius; on the work side an upright post with a square
+/// section of that half side. Both 0: a bare point.
 struct Record {
     static constexpr int extent_bits = 20;
     static constexpr int32_t greatest_extent = (1 << extent_bits) - 1;
@@ -78,7 +78,7 @@ struct Record {
     bool operator==(const Record&) const = default;
 };
 
-/// The box round a record, whatever it stands for.
+/// The box around a record of either side.
 inline Box box_of(const Record& r) {
     return {{r.base[0] - r.half, r.base[1] - r.half, r.base[2]},
             {r.base[0] + r.half, r.base[1] + r.half, r.base[2] + r.run}};
@@ -89,8 +89,8 @@ inline Volume volume_of(const Record& r, Side side) {
     return {{r.base, {r.base[0], r.base[1], r.base[2] + r.run}}, r.half};
 }
 
-/// What a node refers to: another node, a leaf of up to 32 records in consecutive lines, or
-/// nothing.
+/// A reference of a node: to another node, to a leaf of up to 32 records in consecutive lines, or
+/// to nothing.
 struct Reference {
     static constexpr uint32_t line_bits = 26;
     static constexpr uint32_t leaf_flag = 0x8000'0000U;
@@ -110,8 +110,8 @@ struct Reference {
     bool operator==(const Reference&) const = default;
 };
 
-/// Two children and what holds them. The header of a model is a node whose first child is its
-/// root and whose second is none.
+/// Two children and their bounding volumes. The header of a model is a node whose first child is
+/// its root; the second child is empty.
 struct Node {
     std::array<Volume, 2> volume{};
     std::array<Reference, 2> child{};
@@ -122,12 +122,12 @@ struct Node {
 constexpr uint32_t records_per_line = 4;
 using Records = std::array<Record, records_per_line>;
 
-/// The lines that a leaf of so many records takes.
+/// The number of lines of a leaf with so many records.
 constexpr uint32_t leaf_lines(uint32_t count) {
     return (count + records_per_line - 1) / records_per_line;
 }
 
-/// A record is named by its line and its place in it.
+/// The number of a record, from its line and its position in the line.
 constexpr uint32_t record_name(uint32_t line, uint32_t place) {
     return line * records_per_line + place;
 }
@@ -143,23 +143,23 @@ Records records_in(const Line& line);
 
 inline uint32_t epoch_of(const Line& line) { return line.word[Line::epoch_word]; }
 
-/// Some lines of memory in a row.
+/// Consecutive lines of memory.
 struct LineRun {
     uint32_t first = 0, count = 0;
 
     bool operator==(const LineRun&) const = default;
 };
 
-/// Which lines of the device's memory are free. A plain value, kept by the host.
+/// The free lines of the device memory. A plain value, kept by the host.
 struct LineSpace {
     static constexpr uint32_t most = leaf_lines(Reference::most_records); // lines of a run
 
-    uint32_t next = 0, end = 0;                           // never used so far
+    uint32_t next = 0, end = 0;                           // never used yet
     std::array<std::vector<uint32_t>, most + 1> returned; // by length
 };
 
-/// A run of so many free lines, or none if the memory is full. A longer one that was returned is
-/// broken up before the memory counts as full.
+/// Allocates consecutive lines; empty if the memory is full. Longer returned runs are split before
+/// the memory counts as full.
 std::optional<LineRun> take(LineSpace& space, uint32_t count);
 
 void give_back(LineSpace& space, const LineRun& run);
@@ -167,16 +167,17 @@ void give_back(LineSpace& space, const LineRun& run);
 /// The least integer whose square is at least `square`, for squares below 2^50. In the circuit: 25
 /// stages, one subtraction each.
 inline int64_t root_up(int64_t square) {
-    // The root of a double is right to the last bit, so one step either way makes it exact.
+    // The square root of a double is correctly rounded, so one step either way makes it exact.
     auto root = static_cast<int64_t>(std::sqrt(static_cast<double>(square)));
     while (root * root < square) ++root;
     while (root > 0 && (root - 1) * (root - 1) >= square) --root;
     return root;
 }
 
-/// The squared distance of two records whose axis and post are so far apart along X, Y and Z, the
-/// cylinder having this radius. Exact without a radius; else the root is rounded up, so that the
-/// distance is less than one step too large. It grows with each gap and shrinks with the radius.
+/// The squared distance of two records, given the gaps between axis and post along X, Y and Z and
+/// the radius of the cylinder. Exact for radius 0; otherwise the root is rounded up, so the
+/// distance is less than one step too large. It increases with each gap and decreases with the
+/// radius.
 inline uint64_t squared_distance(const std::array<int64_t, 3>& gap, int64_t radius) {
     int64_t level = gap[0] * gap[0] + gap[1] * gap[1];
     if (radius > 0) {
@@ -186,8 +187,8 @@ inline uint64_t squared_distance(const std::array<int64_t, 3>& gap, int64_t radi
     return static_cast<uint64_t>(level + gap[2] * gap[2]);
 }
 
-/// The squared distance between a record of the tool's side, moved by `offset`, and one of the
-/// work's side: between an upright cylinder and an upright square post.
+/// The squared distance between a record of the tool side, moved by `offset`, and one of the work
+/// side: between an upright cylinder and an upright square post.
 inline uint64_t squared_distance(const Record& tool, const FixedVec& offset, const Record& work) {
     const auto beside = [&](size_t axis) {
         const int64_t apart = int64_t{tool.base[axis]} + offset[axis] - work.base[axis];

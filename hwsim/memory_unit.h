@@ -10,6 +10,7 @@ namespace hwsim {
 
 /// A FIFO of fixed depth, as in the circuit: a memory, a place to read and a level.
 template <typename T>
+/// A FIFO of fixed depth, as in the circuit: a memory, a read position and a level.
 class Ring {
 public:
     Ring() = default;
@@ -50,13 +51,13 @@ private:
 struct ReadRequest {
     bool valid = false;
     uint8_t element = 0, thread = 0;
-    uint32_t run = 0; // counts stops: what was asked before one is not for those after it
+    uint32_t run = 0; // counts stops: requests from before a stop are ignored after it
     uint32_t address = 0;
 
     bool operator==(const ReadRequest&) const = default;
 };
 
-/// A line that came, for the element that asked.
+/// A line for the element that requested it.
 struct ReadResponse {
     ReadRequest request;
     Line line;
@@ -64,19 +65,19 @@ struct ReadResponse {
     bool operator==(const ReadResponse&) const = default;
 };
 
-/// The memory and its port: reads in order, each after the latency, lines no faster than the
-/// bandwidth; lines written by DMA go between them: when no read waits, or in turn with reads while
-/// their queue is full.
+/// The memory and its port. Reads are in order, each after the latency, limited by the bandwidth.
+/// Lines written by DMA are interleaved: when no read waits, or alternating with reads while the
+/// write queue is full.
 struct MemoryUnit {
     struct Pending {
         ReadRequest request;
-        uint64_t cycle = 0; // when it was asked, then when the line is there
+        uint64_t cycle = 0; // of the request, then of the arrival of the line
         bool operator==(const Pending&) const = default;
     };
     struct Write {
         uint32_t address = 0;
         Line line;
-        uint64_t cycle = 0; // when it was given
+        uint64_t cycle = 0; // of the call to store()
         bool operator==(const Write&) const = default;
     };
 
@@ -84,12 +85,12 @@ struct MemoryUnit {
     Ring<Pending> asked, under_way;
     Ring<Write> writes;
     uint64_t free_at = 0;        // the port
-    bool write_was_last = false; // so a read goes first
-    uint64_t watched_from = 0;   // cycle; who waited before it counts from there
-    bool stalled = false;        // answers nothing: a fault to be injected
+    bool write_was_last = false; // so a read has priority
+    uint64_t watched_from = 0;   // cycle; earlier waiting does not count
+    bool stalled = false;        // no responses: injected fault
 
     ReadResponse response;    // output
-    bool has_written = false; // output: so caches forget the line
+    bool has_written = false; // output: caches invalidate the line
     uint32_t written = 0;     // its address
     uint64_t reads_done = 0, writes_done = 0;
 
@@ -98,10 +99,10 @@ struct MemoryUnit {
 
 MemoryUnit memory_unit(const DeviceConfig& config);
 
-/// Whether a request can be taken in.
+/// Whether a request can be accepted.
 inline bool accepts(const MemoryUnit& unit) { return !unit.asked.full(); }
 
-/// How many lines it has been given to write, from reset on.
+/// The number of lines stored since reset, including queued ones.
 inline uint64_t lines_given(const MemoryUnit& unit) {
     return unit.writes_done + unit.writes.size();
 }
@@ -110,7 +111,7 @@ inline uint64_t lines_given(const MemoryUnit& unit) {
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);
 
 /// Whether a request has waited longer than the limit, or a line to be written has while the port
-/// did nothing.
+/// was idle.
 bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle);
 
 } // namespace hwsim

@@ -8,9 +8,9 @@
 
 namespace hwsim {
 
-/// Columns of an outer model, and where their cells end: cell (i, j) is the rectangle from
-/// (x[i], y[j]) to (x[i + 1], y[j + 1]), and its intervals hold all heights at which the body may
-/// have a point over it.
+/// Columns of an outer model, and the borders of their cells: cell (i, j) is the rectangle from
+/// (x[i], y[j]) to (x[i + 1], y[j + 1]), and its intervals contain all heights at which the body
+/// may have a point over it.
 struct ColumnCells {
     const core::ScanLines* columns = nullptr; // of the Z family
     std::vector<double> x, y;
@@ -21,12 +21,12 @@ ColumnCells cells_of(const core::CutModel& stock);
 /// Errors: no columns along Z.
 core::Result<ColumnCells> cells_of(const core::OuterModel& model);
 
-/// Upright posts that hold the columns of one tile of the lines.
+/// Upright posts that contain the columns of one tile of the lines.
 ///
-/// Result: equal columns side by side become one post. Posts stand out of the columns by two steps
-///         of rounding, and sideways by an eighth of the longer side of a cell more that is four
-///         times as long as wide.
-/// Errors: what does not fit into the device's numbers.
+/// Result:  adjacent equal columns become one post. Posts are larger than the columns by two steps
+///          of rounding, and sideways by another eighth of the longer side of a cell that is four
+///          times as long as wide.
+/// Errors:  coordinates out of the device's range.
 core::Result<std::vector<Record>> posts_of_tile(const ColumnCells& cells, size_t tile);
 
 /// The posts of all tiles.

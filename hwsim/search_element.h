@@ -8,7 +8,7 @@
 
 namespace hwsim {
 
-/// A direct mapped cache of lines. What is in it has been checked.
+/// A direct mapped cache of lines that were checked.
 struct LineCache {
     struct Entry {
         bool valid = false;
@@ -25,7 +25,7 @@ inline LineCache::Entry& entry_of(LineCache& cache, uint32_t address) {
     return cache.entries[address & (cache.entries.size() - 1)];
 }
 
-/// The line, or null if it is not there.
+/// The line, or null if it is not in the cache.
 inline const Line* looked_up(LineCache& cache, uint32_t address) {
     const LineCache::Entry& entry = entry_of(cache, address);
     return entry.valid && entry.address == address ? &entry.line : nullptr;
@@ -35,7 +35,7 @@ inline void fill(LineCache& cache, uint32_t address, const Line& line) {
     entry_of(cache, address) = {true, address, line};
 }
 
-/// The memory has another line there now.
+/// The line in memory has changed.
 inline void invalidate(LineCache& cache, uint32_t address) {
     LineCache::Entry& entry = entry_of(cache, address);
     if (entry.address == address) entry.valid = false;
@@ -43,7 +43,7 @@ inline void invalidate(LineCache& cache, uint32_t address) {
 
 /// Tests both halves of a division: swept volume against box, twice, as a pipeline.
 ///
-/// Latency:    15 cycles: offsets, then those of the pair unit, for the arithmetic is the same.
+/// Latency:    15 cycles: the offsets, then as in the pair unit, with the same arithmetic.
 /// Throughput: one division a cycle, no stall.
 struct BoxUnit {
     static constexpr uint32_t latency = 15;
@@ -55,8 +55,8 @@ struct BoxUnit {
         std::array<uint64_t, 2> squared{};
         bool operator==(const Output&) const = default;
     };
-    /// The halves stay with their thread; only what is computed of them travels. Stages move round
-    /// instead of their contents: `next` is where a question enters, and where the oldest leaves.
+    /// The halves stay with their thread; only results travel. Stages rotate instead of their
+    /// contents: `next` is where a question enters and the oldest leaves.
     std::array<Output, latency> stage{};
     uint32_t next = 0;
 
@@ -64,7 +64,7 @@ struct BoxUnit {
     bool operator==(const BoxUnit&) const = default;
 };
 
-/// What enters the first stage: both halves, of which some may not be there.
+/// The input of the first stage: both halves, either of which may be missing.
 BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment& segment);
 
 /// One rising clock edge.
@@ -96,16 +96,16 @@ struct PairUnit {
 /// One rising clock edge.
 void tick(PairUnit& unit, const PairUnit::Output& in);
 
-/// What a thread is about to do, or waits for.
+/// What a thread does next, or waits for.
 enum class Phase : uint8_t {
     idle,
-    divide,    // decide what of the pair is divided
+    divide,    // select what of the pair is divided
     open,      // read the node: needs the node cache
     test,      // needs the box unit
     tested,    // waits for the box unit
     pop,       // take the next pair from the stack
     take_tool, // read a line of the tool's leaf: needs the record cache
-    take_work, // and one of the work's
+    take_work, // read a line of the work's leaf
     compare,   // needs the pair unit
     drain,     // waits for the last pairs
     ask,       // needs the element's port to the memory
@@ -113,8 +113,7 @@ enum class Phase : uint8_t {
     done,      // waits until everything before it is retired
 };
 
-/// One search of a processing element, as far as it has come. All of it is registers, but for the
-/// stack, which is a memory.
+/// One search of a processing element. All of it is registers, except the stack, which is a memory.
 struct SearchThread {
     Phase phase = Phase::idle;
     Phase after_line = Phase::idle; // open, take_tool or take_work: what a line is read for
@@ -137,34 +136,34 @@ struct SearchThread {
 
 void start(SearchThread& thread, const Query& query, uint64_t cycle);
 
-/// The line that the thread wants to read, in phases open, take_tool and take_work.
+/// The line that the thread reads in phases open, take_tool and take_work.
 uint32_t wanted_line(const SearchThread& thread);
 
-/// Whether a line is of the work's model, else the tool's.
+/// Whether that line belongs to the work model, else to the tool model.
 bool wants_work(const SearchThread& thread);
 
-/// Decides what comes next for the thread's pair.
+/// Decides the next step for the pair of the thread.
 void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit);
 
-/// Goes on with the line that it wanted.
+/// Continues with the line that was read.
 void take_line(SearchThread& thread, const Line& line);
 
-/// Goes on with what the box unit found.
+/// Continues with the result of the box unit.
 void take_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth);
 
-/// Takes the next pair from the stack; done when there is none.
+/// Takes the next pair from the stack; the search is done if it is empty.
 void pop(SearchThread& thread);
 
-/// The pair of records that goes into the pair unit next. Moves on to the one after it.
+/// The next pair of records for the pair unit; advances to the one after it.
 PairUnit::Output next_records(SearchThread& thread, uint8_t number);
 
-/// Takes what the pair unit found.
+/// Takes the result of the pair unit.
 void take_distance(SearchThread& thread, const PairUnit::Output& distance);
 
 /// Ends the search without an answer.
 void stop(SearchThread& thread, Stop reason, uint32_t line);
 
-/// What an element counts, from reset on.
+/// Counters of an element since reset.
 struct ElementCounts {
     uint64_t busy = 0;
     uint64_t node_hits = 0, node_misses = 0, record_hits = 0, record_misses = 0;
@@ -173,20 +172,20 @@ struct ElementCounts {
     bool operator==(const ElementCounts&) const = default;
 };
 
-/// A processing element: a few searches that share a box unit, a pair unit, two caches and one
-/// request to the memory. Each thread does one thing a cycle, if nobody else has what it needs;
-/// who is asked first goes round.
+/// A processing element: several searches that share a box unit, a pair unit, two caches and one
+/// request to the memory. Each thread does one step per cycle if the unit that it needs is free;
+/// the priority rotates.
 struct SearchElement {
     std::vector<SearchThread> threads;
-    uint32_t acting = 0;  // a bit for each thread that has something to do
-    uint32_t busy = 0;    // that has a search
+    uint32_t acting = 0;  // bit set of the threads that can act
+    uint32_t busy = 0;    // with a search
     uint32_t waiting = 0; // for the memory
-    uint32_t done = 0;    // whose answer waits
-    uint8_t first = 0;    // is asked first
+    uint32_t done = 0;    // with an answer to retire
+    uint8_t first = 0;    // has priority
     BoxUnit box;
     PairUnit pair;
     LineCache nodes, records;
-    ReadRequest request; // output: stays until it is granted
+    ReadRequest request; // output: held until granted
     ElementCounts counts;
 
     bool operator==(const SearchElement&) const = default;
@@ -194,28 +193,28 @@ struct SearchElement {
 
 SearchElement search_element(const DeviceConfig& config);
 
-/// What an element sees in a cycle.
+/// The inputs of an element in a cycle.
 struct ElementInput {
     uint8_t number = 0; // its own
     uint64_t cycle = 0;
     uint32_t run = 0;                       // of the device: counts stops
-    bool granted = false;                   // its request was taken in
-    const ReadResponse* response = nullptr; // if it is for this element
-    bool forget = false;                    // a line of memory was written
+    bool granted = false;                   // its request was accepted
+    const ReadResponse* response = nullptr; // null unless for this element
+    bool forget = false;                    // a line of memory was written: invalidate it
     uint32_t forgotten = 0;                 // its address
 };
 
 /// One rising clock edge.
 void tick(SearchElement& element, const DeviceConfig& config, const ElementInput& in);
 
-/// A thread without a search, if there is one.
+/// A thread without a search, if any.
 std::optional<uint8_t> idle_thread(const SearchElement& element);
 
-/// Gives a thread its search; releases one that is done.
+/// Starts a search on a thread; release() frees one that is done.
 void begin(SearchElement& element, uint8_t thread, const Query& query, uint64_t cycle);
 void release(SearchElement& element, uint8_t thread);
 
-/// Drops all searches and what is under way.
+/// Drops all searches and pending requests.
 void flush(SearchElement& element);
 
 } // namespace hwsim

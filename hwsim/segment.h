@@ -7,17 +7,18 @@
 
 namespace hwsim {
 
-/// What an entry of the segment FIFO asks for.
+/// The kinds of entries of the segment FIFO.
 enum class SegmentKind : uint8_t {
-    permit = 0,  // is the tool at least this far from the work all the way? Counts for the permit
-    measure = 1, // how near does it come? Counts for nothing
-    model = 2,   // from here on slot `work_slot` holds the model at `model_header`
+    permit =
+        0, // is the tool at least this far from the work over the whole path? Counts for the permit
+    measure = 1, // how close does it come? Does not count for the permit
+    model = 2,   // from now on slot `work_slot` holds the model at `model_header`
 };
 
-/// An entry of the segment FIFO. The tool model goes straight from `start` to `end`; it is looked
-/// at in 2^log2_steps + 1 samples, evenly spread, the first at the start and the last at the end.
+/// An entry of the segment FIFO. The tool model moves straight from `start` to `end` and is
+/// compared at 2^log2_steps + 1 evenly spaced samples, including both ends.
 ///
-/// Several entries with one sequence number are one segment of the path; the last one says so.
+/// Entries with the same sequence number form one segment of the path; `last` marks the last one.
 struct Segment {
     static constexpr uint8_t most_log2_steps = 12;
 
@@ -27,11 +28,11 @@ struct Segment {
     uint8_t log2_steps = 0;
     bool last = true;
     FixedVec start{}, end{};
-    uint32_t threshold = 0;  // T: refused if d2 < (T + rounding_reserve)^2; of kind measure: looks
-                             // no farther, 0: however far
-    uint32_t work_epoch = 0; // the epoch of the work's model that it is to be held against
-    uint32_t model_header = 0; // of kind model: the line of the header; its epoch is `work_epoch`
-    uint32_t budget = 0;       // cycles from the push until the permit is needed; 0: none
+    uint32_t threshold = 0; // T: refused if d2 < (T + rounding_reserve)^2; for `measure` the search
+                            // limit, 0: unlimited
+    uint32_t work_epoch = 0;   // the required epoch of the work model
+    uint32_t model_header = 0; // for `model`: the header line; its epoch is `work_epoch`
+    uint32_t budget = 0;       // cycles from the push until the permit is needed; 0: unlimited
 
     bool operator==(const Segment&) const = default;
 };
@@ -39,12 +40,12 @@ struct Segment {
 /// Why the device does not permit, or none. Codes of the register `stop`.
 enum class Stop : uint8_t {
     none = 0,
-    violation = 1,      // the tool comes too near
-    out_of_range = 2,   // a coordinate beyond 24 bits, or a word that says nothing
-    sequence = 3,       // a segment out of turn
+    violation = 1,      // the tool comes too close
+    out_of_range = 2,   // a coordinate beyond 24 bits, or an invalid word
+    sequence = 3,       // an unexpected sequence number
     fifo_overrun = 4,   // pushed while the FIFO was full
-    model_missing = 5,  // a slot that holds no model
-    model_changed = 6,  // the work's model is not of the epoch asked for
+    model_missing = 5,  // a slot without a model
+    model_changed = 6,  // the work model does not have the required epoch
     bad_check = 7,      // a line of memory with a wrong check word
     bad_address = 8,    // a reference beyond the memory
     stack_overflow = 9, // a search deeper than the stack
@@ -54,13 +55,13 @@ enum class Stop : uint8_t {
 };
 constexpr uint8_t stop_count = 13;
 
-/// As reports say it: `stack-overflow`.
+/// The name in reports, such as `stack-overflow`.
 const char* name_of(Stop stop);
 
-/// How much a search did.
+/// The work done by a search.
 struct SearchCounts {
     uint32_t nodes = 0;      // lines of nodes opened
-    uint32_t splits = 0;     // of the way, in two
+    uint32_t splits = 0;     // of the path, in two
     uint32_t box_tests = 0;  // of swept boxes against boxes
     uint32_t pair_tests = 0; // of records against records
     uint32_t deepest = 0;    // entries on the stack
@@ -73,8 +74,8 @@ struct Answer {
     Stop stop = Stop::none;   // a fault, never a violation
     uint32_t at_line = 0;     // of the fault
     bool found = false;       // a pair is nearer than the limit
-    uint64_t squared = 0;     // its squared distance; the limit when none is found
-    uint32_t tool_record = 0; // names of the pair's records
+    uint64_t squared = 0;     // its squared distance; the limit if none was found
+    uint32_t tool_record = 0; // record numbers of the pair
     uint32_t work_record = 0;
     uint16_t sample = 0;
     SearchCounts counts;
@@ -82,26 +83,26 @@ struct Answer {
     bool operator==(const Answer&) const = default;
 };
 
-/// A segment with the models that it is held against.
+/// A segment with its models.
 struct Query {
     Segment segment;
     uint32_t tool_header = 0, work_header = 0; // lines
     uint32_t tool_epoch = 0, work_epoch = 0;
-    uint64_t limit = 0; // pairs whose squared distance is below this count
+    uint64_t limit = 0; // only pairs with a squared distance below this count
 
     bool operator==(const Query&) const = default;
 };
 
-/// The limit from which a search for this segment starts.
+/// The initial limit of a search for this segment.
 constexpr uint64_t limit_of(const Segment& segment) {
     const bool has_no_limit = segment.kind == SegmentKind::measure && segment.threshold == 0;
     return has_no_limit ? beyond_all_squares : squared_limit(segment.threshold);
 }
 
-/// Where the tool stands at sample `k`, 0 .. 2^log2_steps: the true place rounded to the nearest
-/// step, ties upwards. One product of 13 by 25 bits for each axis.
+/// The offset of the tool at sample `k`, 0 .. 2^log2_steps: the exact position rounded to the
+/// nearest step, ties up. One product of 13 by 25 bits for each axis.
 ///
-/// Along each axis it never turns back, so the box round any two samples holds those between.
+/// It is monotonic along each axis, so the box around any two samples contains those between.
 constexpr FixedVec offset_at(const Segment& segment, uint32_t k) {
     FixedVec at{};
     const int64_t half = (int64_t{1} << segment.log2_steps) >> 1;

@@ -10,7 +10,7 @@
 
 namespace hwsim {
 
-/// A tree or a part of one, and what holds it. The volume of none says nothing.
+/// A tree or subtree and its bounding volume, which is undefined if the tree is empty.
 struct Branch {
     Reference reference;
     Volume volume;
@@ -18,48 +18,48 @@ struct Branch {
     bool operator==(const Branch&) const = default;
 };
 
-/// A line and where it belongs.
+/// A line and its address.
 struct AddressedLine {
     uint32_t address = 0;
     Line line;
 };
 
-/// Lines that are being made for the device: what is to be written, and the room it takes.
+/// Collects lines for the device: their contents and the memory that they take.
 struct ModelWriter {
     LineSpace* space = nullptr;
     Side side = Side::work;
-    uint32_t epoch = 0; // of all lines made
+    uint32_t epoch = 0; // of all new lines
     std::vector<AddressedLine> lines;
-    std::vector<LineRun> runs; // taken from the space, in order
+    std::vector<LineRun> runs; // allocated, in order
 
     /// Errors: the memory is full.
     core::Result<uint32_t> add(const Node& node);
     core::Result<Branch> add_leaf(std::span<const Record> records); // 1 to 32
 };
 
-/// A tree over records, split at the median along the longest side of the box of their places until
-/// no more than `leaf_size` are left. Same records, same tree.
+/// A tree over records, split at the median along the longest side of the box of their positions
+/// down to `leaf_size` records. The same records give the same tree.
 ///
-/// Errors: no records; a record that reaches beyond the range of coordinates; a leaf size that is
-///         not 1 to 32; the memory is full.
+/// Errors:  no records; a record out of the range of coordinates; a leaf size that is not 1 to 32;
+///          the memory is full.
 core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records, uint32_t leaf_size);
 
-/// The node above two branches, either of which may be none; the other one itself if one is.
+/// The node above two branches; if one is empty, the other one itself.
 core::Result<Branch> add_above(ModelWriter& writer, const Branch& a, const Branch& b);
 
-/// The header line of a model: what a slot of the device holds.
+/// The header line of a model, to be put into a slot of the device.
 core::Result<uint32_t> add_header(ModelWriter& writer, const Branch& root);
 
-/// A stock as the device holds it: a tree of posts for each tile of columns, and above them a tree
-/// whose shape is that of the grid. The host's copy of what it is made of; a plain value.
+/// A stock as stored in the device: a tree of posts for each tile of columns, and above them a tree
+/// with the shape of the grid. The host's copy of its structure; a plain value.
 struct StockModel {
-    /// A part of the upper tree, or a tile: what stands for it, and its lines.
+    /// A part of the upper tree, or a tile: its branch and its lines.
     struct Part {
         Branch branch;
         std::vector<LineRun> runs;
     };
-    core::ScanLines columns;        // as taken over last
-    std::vector<double> x, y;       // ends of the cells
+    core::ScanLines columns;        // at the last update
+    std::vector<double> x, y;       // borders of the cells
     std::vector<Part> tiles;        // by tile
     std::vector<Part> above;        // of the upper tree, in the order of its division
     std::optional<uint32_t> header; // none before the first update
@@ -67,7 +67,7 @@ struct StockModel {
     uint32_t leaf_size = 4;
 };
 
-/// What an update writes, and which lines are needed no more once everything before it is retired.
+/// The lines that an update writes, and those that are free once everything before it is retired.
 struct StockUpdate {
     std::vector<AddressedLine> lines;
     std::vector<LineRun> released;
@@ -76,21 +76,21 @@ struct StockUpdate {
     size_t tiles = 0; // rebuilt
 };
 
-/// All lines that a stock has in the memory.
+/// All lines of a stock in the memory.
 std::vector<LineRun> lines_of(const StockModel& model);
 
 StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
 
-/// Whether these are the columns that were taken last.
+/// Whether these are the columns of the last update.
 bool is_current(const StockModel& model, const core::ScanLines& columns);
 
-/// Takes over the columns as they are now: makes the lines of all tiles that the columns do not
-/// share with those taken before, of what is above them, and of a new header. No line that the
-/// device may be reading is touched.
+/// Updates the model to the current columns: makes the lines of all tiles that the columns do not
+/// share with those of the last update, of the tree above them, and of a new header. Lines that the
+/// device may be reading are not changed.
 ///
-/// Errors: what does not fit into the device's numbers or its memory; the model and the space are
-///         then as before. The columns must be of the same grid.
-/// Cost:   these tiles; a pointer comparison for all others.
+/// Errors:  out of the device's range or memory; the model and the space are then unchanged. The
+///          columns must be of the same grid.
+/// Cost:    these tiles; a pointer comparison for all others.
 core::Result<StockUpdate> update(StockModel& model, LineSpace& space,
                                  const core::ScanLines& columns);
 

@@ -7,14 +7,14 @@
 
 namespace hwsim {
 
-/// The signals of a device over time, as a value change dump (IEEE 1364) that GTKWave reads.
+/// The signals of a device over time, as a value change dump (IEEE 1364) for GTKWave.
 ///
-/// Units: picoseconds; the device's cycles at its clock.
+/// Units:   picoseconds; one device cycle is one clock period.
 class VcdTrace {
 public:
     explicit VcdTrace(const DeviceConfig& config);
 
-    /// The device after a cycle. Cycles between two that are shown pass without a change.
+    /// Records the device after a cycle. Between two recorded cycles nothing changes in the dump.
     void note(const CoprocessorState& state);
 
     /// The whole file.

@@ -8,15 +8,15 @@
 
 namespace core {
 
-/// A body whose surface is known exactly: a convex shape, or a closed mesh.
+/// A body with an exactly known surface: a convex shape or a closed mesh.
 using ExactBody = std::variant<ConvexShape, SolidMesh>;
 
 Aabb bounds(const ExactBody& body);
 
-/// The distance between a convex shape over its sweep and a body, insides included.
+/// The distance between a convex shape over its sweep and a body, interiors included.
 ///
-/// Result: as separation() of the shapes; 0 also when one lies wholly inside the other. `upper` is
-///         infinite when nothing is found within `goal.limit`, and `lower` at most the limit.
+/// Result:  as for separation() of two shapes; also 0 if one is wholly inside the other. `upper` is
+///          infinite if nothing is within `goal.limit`; `lower` is at most the limit.
 Separation separation(const ConvexShape& shape, const ExactBody& body,
                       const SeparationGoal& goal = {});
 

@@ -15,20 +15,20 @@ struct PointPair {
     bool operator==(const PointPair&) const = default;
 };
 
-/// What a search for the closest pair of points should find out, and what is known beforehand.
+/// What a search for the closest pair of points should find, and what is known beforehand.
 struct PairGoal {
-    double limit = infinity;        // mm: pairs this far apart or farther do not count
-    bool any = false;               // any pair below the limit will do: "closer than m?"
-    double tolerance = 0.0;         // mm: how much nearer than the pair found another one may be
-    Vec3 sweep = Vec3(0.0);         // B moves on by this; the least distance on the way counts
-    std::optional<Transform> end;   // or every point of B goes straight to where this puts it
-    std::optional<PointPair> first; // compared before all others: the last answer is a good guess
+    double limit = infinity;      // mm: pairs at this distance or farther do not count
+    bool any = false;             // any pair below the limit will do: "closer than m?"
+    double tolerance = 0.0;       // mm: how much closer than the result another pair may be
+    Vec3 sweep = Vec3(0.0);       // B moves by this; the least distance on the way counts
+    std::optional<Transform> end; // or every point of B moves straight to its position in this pose
+    std::optional<PointPair> first; // compared first: the last answer is a good guess
 };
 
-/// The nearest points of two bodies, and what it took to find them.
+/// The nearest points of two bodies, and the cost of finding them.
 struct ClosestPair {
-    double distance = infinity; // mm; infinite when no pair is below the limit
-    double lower = 0.0;         // no two points are nearer than this
+    double distance = infinity; // mm; infinite if no pair is below the limit
+    double lower = 0.0;         // no two points are closer than this
     PointPair points;
     Vec3 witness_a = Vec3(0.0); // both in the frame of A, B's at the time `at`
     Vec3 witness_b = Vec3(0.0);
@@ -39,7 +39,7 @@ struct ClosestPair {
     bool found() const { return distance < infinity; }
 };
 
-/// The time, 0..1, at which a point that moves on by `sweep` is nearest to another; `apart` leads
+/// The time, 0..1, at which a point moving by `sweep` is nearest to another; `apart` is the vector
 /// from the first to the second at time 0.
 inline double nearest_time(const Vec3& apart, const Vec3& sweep) {
     const double length_squared = glm::dot(sweep, sweep);
@@ -47,21 +47,22 @@ inline double nearest_time(const Vec3& apart, const Vec3& sweep) {
     return std::clamp(glm::dot(apart, sweep) / length_squared, 0.0, 1.0);
 }
 
-/// Their distance at that time.
+/// The distance at that time.
 inline double swept_distance(const Vec3& apart, const Vec3& sweep) {
     return glm::length(apart - nearest_time(apart, sweep) * sweep);
 }
 
-/// Where a point of B is at first, and by how much it goes on.
+/// The start of a point of B and its displacement.
 struct MovingPoint {
     Vec3 at, sweep;
 };
 
-/// How B moves past A during one search: every point goes straight, at its own pace. Frame: A's.
+/// The motion of B relative to A during one search: every point moves straight at constant speed.
+/// Frame: A's.
 struct StraightMotion {
     Transform start;
     Vec3 sweep = Vec3(0.0);
-    std::optional<Transform> end; // where the points go instead of by `sweep`
+    std::optional<Transform> end; // final pose, instead of `sweep`
 
     StraightMotion(const Transform& a_from_b, const PairGoal& goal)
         : start(a_from_b), sweep(goal.sweep), end(goal.end) {}

@@ -12,21 +12,21 @@
 
 namespace core {
 
-/// Counts the bodies that an engine holds, from 0.
+/// Index of a body in an engine, from 0.
 enum class PointBody : uint32_t {};
 
-/// Finds closest pairs among bodies given by their points. All engines give the same distance, to
-/// the last bit; of pairs equally near each may name another.
+/// Finds closest pairs of bodies given by points. All engines give the same distance to the last
+/// bit; of equally near pairs each may return another.
 class DistanceEngine {
 public:
     virtual ~DistanceEngine() = default;
 
     virtual std::string_view name() const = 0;
 
-    /// Takes in a body.
+    /// Adds a body.
     ///
-    /// Errors: no points; a coordinate that is not finite or beyond 1e12 mm; more points than fit
-    ///         into `memory_limit` bytes: it says what they would take, and nothing is tried.
+    /// Errors:  no points; a coordinate that is not finite or beyond 1e12 mm; more points than fit
+    ///          into `memory_limit` bytes: the message states the need, and nothing is allocated.
     Result<PointBody> add(std::span<const Vec3> points, double memory_limit = default_memory_limit);
 
     /// The closest pair of points of two bodies.
@@ -47,10 +47,10 @@ private:
                                const PairGoal& goal) const = 0;
 };
 
-/// The search of the paper: spheres, one point to a leaf.
+/// The search of the paper: a tree of spheres with one point per leaf.
 std::unique_ptr<DistanceEngine> paper_engine();
 
-/// Turned boxes, eight at a time, sixteen points to a leaf.
+/// A tree of oriented boxes, eight per node, sixteen points per leaf.
 std::unique_ptr<DistanceEngine> fast_engine();
 
 } // namespace core

@@ -13,50 +13,54 @@
 
 namespace core {
 
-/// The fast engine's hierarchy over the points of a body: eight boxes to a node, each turned as its
-/// points lie, up to sixteen points to a leaf.
+/// The tree of the fast engine over the points of a body: eight oriented boxes per node, up to
+/// sixteen points per leaf.
 struct PointTree {
     static constexpr int width = 8;
     static constexpr int leaf_size = 16;
     static constexpr uint32_t leaf_flag = 0x8000'0000U;
     using Lanes = std::array<float, width>;
 
-    /// Up to eight children, in the lanes whose bits are set in `used`; what stands in the other
-    /// lanes is finite and means nothing.
+    /// Up to eight children, in the lanes set in `used`; other lanes hold finite, meaningless
+    /// values.
     struct alignas(64) Node {
         std::array<Lanes, 3> centre{};              // of the children's boxes, from `origin`
         std::array<std::array<Lanes, 3>, 3> axis{}; // [which][x, y, z]; of unit length
         std::array<Lanes, 3> half{};                // half sizes along the three axes
-        Lanes radius{};                             // of a ball about the centre
-        std::array<uint32_t, width> child{};        // a node; with the flag, a leaf
+        Lanes radius{};                             // of a ball around the centre
+        std::array<uint32_t, width> child{};        // a node, or with the flag a leaf
         Vec3 origin = Vec3(0.0);
         float reach = 0.0F; // no box reaches farther from `origin`
         uint32_t used = 0;
     };
 
-    /// Points in single precision, from `origin`; the places beyond `count` repeat the last one.
+    /// Points in single precision, relative to `origin`; entries beyond `count` repeat the last
+    /// one.
     struct alignas(64) Leaf {
         std::array<std::array<float, leaf_size>, 3> place{};
         Vec3 origin = Vec3(0.0);
         float reach = 0.0F;
         uint32_t first = 0; // in `points`
         uint32_t count = 0;
-        std::array<float, 3> normal{}; // the axis along which its box is thinnest
-        std::array<float, 3> along{};  // and longest
+        std::array<float, 3> normal{}; // the thinnest axis of its box
+        std::array<float, 3> along{};  // the longest axis
         float thickness = 0.0F;        // thinnest side over longest; 1 for a single point
     };
 
-    std::vector<Node> nodes; // the root in front
+    std::vector<Node> nodes; // the root first
     std::vector<Leaf> leaves;
     std::vector<Vec3> points;    // in the order of the leaves
-    std::vector<uint64_t> index; // of `points` among the points given
-    std::vector<uint32_t> place; // the other way round
+    std::vector<uint64_t> index; // of each of `points` in the input
+    std::vector<uint32_t> place; // the inverse of `index`
     Aabb box;                    // of the points
 };
 
+/// An oriented box around points, in single precision: every point p has |axis[k] . (p - origin -
+/// centre)| <= half[k], and for any unit vector u |u . (p - origin - centre)| <= sum of half[k]
+/// |axis[k] . u|, although the axes are rounded.
 struct TurnedBox;
 
-/// Gives a child of a node its box; `reach` grows with it.
+/// Sets the box of a child of a node; `reach` grows with it.
 void set_box(PointTree::Node& node, size_t lane, const TurnedBox& box);
 
 /// Builds the tree.
@@ -79,10 +83,10 @@ struct TurnedBox {
 /// both, whichever has the least surface.
 TurnedBox turned_box(std::span<const Vec3> points, const Vec3& origin);
 
-/// The box itself, its axes those of the frame.
+/// An axis-aligned box as a TurnedBox.
 TurnedBox turned_box(const Aabb& box, const Vec3& origin);
 
-/// The next float that is not less.
+/// The smallest float that is not less.
 inline float rounded_up(double x) {
     const auto f = static_cast<float>(x);
     return static_cast<double>(f) >= x ? f

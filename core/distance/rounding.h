@@ -7,16 +7,16 @@
 
 namespace core {
 
-/// How far the matter that a scan found on a line may stand out of the body, mm; `reach` is that of
-/// the body.
+/// How far the matter found on a scan line may extend beyond the body, mm; `reach` is the distance
+/// of the farthest point of the body from the origin.
 constexpr double scan_rounding(double reach) { return 1e-9 + 1e-11 * reach; }
 
-/// Lengths beyond this are refused, mm.
+/// Larger coordinates are refused, mm.
 constexpr double farthest_coordinate = 1e12;
 
-/// The number of points, if a body can be made of them.
+/// The number of points, if they are valid as a body.
 ///
-/// Errors: no point; a coordinate that is not finite or beyond 1e12 mm; more than 2^31 points.
+/// Errors:  no point; a coordinate that is not finite or beyond 1e12 mm; more than 2^31 points.
 Result<size_t> checked_points(std::span<const Vec3> points);
 
 } // namespace core

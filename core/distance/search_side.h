@@ -9,37 +9,37 @@
 
 namespace core {
 
-/// Three directions at right angles, in which a search compares its boxes. Frame: that of A.
+/// Three orthogonal directions in which a search compares its boxes. Frame: A's.
 struct SearchFrame {
     std::array<Vec3, 3> directions{};
     Vec3 origin = Vec3(0.0);
 
-    /// A vector along the directions.
+    /// The components of a vector along the directions.
     Vec3 along(const Vec3& v) const {
         return {glm::dot(directions[0], v), glm::dot(directions[1], v), glm::dot(directions[2], v)};
     }
 };
 
-/// The frame whose first direction is `across` and whose second lies near `along`; for a moving
-/// body as near as possible to its way, `sweep`. None needs unit length.
+/// The frame whose first direction is `across` and whose second is close to `along`; for a moving
+/// body, as close as possible to its displacement `sweep`. The arguments need not have unit length.
 SearchFrame search_frame(const Vec3& across, const Vec3& along, const Vec3& origin,
                          const Vec3& sweep);
 
-/// A node that a search came to, with its children's boxes in the search's frame, over all of B's
-/// motion.
+/// A visited node, with the boxes of its children in the search frame over the whole motion of B.
 struct VisitedNode {
     BoxLanes boxes;
-    PointTree::Lanes size; // of the children: the larger one is opened; -1: a leaf
-    std::array<uint32_t, PointTree::width> below; // their numbers among the visited, or `none`
-    uint32_t count;                               // of the children
+    PointTree::Lanes size; // of the children: the larger one is opened first; -1: a leaf
+    std::array<uint32_t, PointTree::width>
+        below;      // their numbers among the visited nodes, or `none`
+    uint32_t count; // of the children
     const PointTree::Node* node;
 };
 
-/// A leaf that it came to.
+/// A visited leaf.
 struct VisitedLeaf {
-    PointLanes points; // where they start
-    PointLanes end;    // and where they go; unused where that is the same for all of them
-    float margin;      // what rounding may add to a coordinate or take from it
+    PointLanes points; // at the start
+    PointLanes end;    // at the end; unused if all points move alike
+    float margin;      // bound of the rounding of a coordinate
     const PointTree* tree;
     const PointTree::Leaf* leaf;
 };
@@ -57,15 +57,15 @@ struct PointPlace {
 /// Where the point with this index is stored.
 PointPlace place_of(const PointTree& tree, uint64_t index);
 
-/// One body's part in a search: what was visited of it, in the frame of the search.
+/// One body in a search: its visited nodes and leaves in the frame of the search.
 class SearchSide {
 public:
     static constexpr uint32_t none = 0xFFFF'FFFFU;
 
-    std::vector<VisitedNode> nodes;  // beyond those visited stand those of earlier searches
+    std::vector<VisitedNode> nodes;  // entries beyond the visited ones are from earlier searches
     std::vector<VisitedLeaf> leaves; // the same
 
-    /// Forgets what was visited, and visits the root. A stands still: `motion` is null.
+    /// Clears the visited nodes and visits the root. `motion` is null for A, which does not move.
     void begin(const PointTree& tree, const SearchFrame& frame, const StraightMotion* motion);
 
     uint32_t child_node(uint32_t at, uint32_t lane);
@@ -74,12 +74,12 @@ public:
     FrameBox box(uint32_t at, uint32_t lane) const;
 
 private:
-    /// A pose of the body, and the frame's directions in its own frame.
+    /// A pose of the body, and the directions of the frame in the frame of the body.
     struct Pose {
         Transform frame_from_body;
         std::array<Vec3, 3> directions;
     };
-    /// How a node or leaf is seen in the frame, and what rounding may add, per axis.
+    /// The view of a node or leaf in the frame, and the rounding bound per axis.
     struct Sight {
         FrameView view;
         Float3 base{}, margin{};
@@ -94,9 +94,9 @@ private:
     const PointTree* tree_ = nullptr;
     uint32_t node_count_ = 0, leaf_count_ = 0; // visited
     Pose start_, end_;
-    bool spreads_ = false;   // the points do not all go the same way
-    Vec3 sweep_ = Vec3(0.0); // along the directions, when they do
-    float coarse_ = 0.0F;    // what double precision adds to a margin, for a body far away
+    bool spreads_ = false;   // the points do not all move alike
+    Vec3 sweep_ = Vec3(0.0); // along the directions, if they do
+    float coarse_ = 0.0F;    // rounding of double precision, for a body far away
 };
 
 } // namespace core

@@ -9,43 +9,42 @@ namespace core {
 
 struct CutModel;
 
-/// A scan line of a stock: which one, of which family.
+/// A scan line of a stock: its family and its indices.
 struct LineId {
     int axis = 0, u = 0, v = 0;
 };
 
-/// Which bounds of the distance are asked for. Of one that is not, a search tells what it happens
-/// to know.
+/// The bounds of the distance to compute. The other one is whatever the search happens to find.
 enum class StockBound : uint8_t { both, lower, upper };
 
-/// What a search against a stock should decide, and what it may spend.
+/// What a search against a stock should decide, and its budget.
 struct StockGoal {
-    double limit = 50.0; // mm: beyond it nobody asks
+    double limit = 50.0; // mm: larger distances do not matter
     StockBound bound = StockBound::both;
-    double enough = 0.0;         // mm: of an upper bound no greater, no lesser one is looked for
-    double threshold = 0.0;      // mm: the interval is narrowed until it lies on one side of this
-    double finest = 0.03;        // mm: squares are not divided below this side
-    size_t work_limit = 100'000; // squares that may be worked out afresh
-    std::optional<LineId>
-        first_line; // looked at before all others; the last answer is a good guess
+    double enough = 0.0;              // mm: an upper bound this small need not be improved
+    double threshold = 0.0;           // mm: the interval is narrowed until it does not contain this
+    double finest = 0.03;             // mm: squares are not divided below this side
+    size_t work_limit = 100'000;      // squares that may be recomputed
+    std::optional<LineId> first_line; // searched first; the last answer is a good guess
 };
 
-/// How far a shape is from a stock that is being cut.
+/// The distance of a shape from a stock that is being cut.
 struct StockSeparation {
-    Separation separation;      // `upper` from matter on a scan line, `lower` from the outer model
+    Separation separation;      // `upper` to matter on a scan line, `lower` to the outer model
     std::optional<LineId> line; // that gave `upper`
-    size_t refined = 0;         // squares worked out afresh
+    size_t refined = 0;         // recomputed squares
     size_t box_tests = 0;       // pairs of boxes compared
     size_t shape_tests = 0;     // exact distances of convex shapes
 };
 
-/// The distance from convex shapes, taken together, to a stock.
+/// The distance from several convex shapes to a stock.
 ///
-/// Result: lower <= distance to the stock as cut by the logged sweeps <= upper. `upper` is infinite
-///         when no matter on a scan line is nearer than `goal.limit`, `lower` at most the limit.
-///         While the interval spans `goal.threshold` the columns that are too near are divided and
-///         worked out afresh; it may still span it when the work or the finest square is reached.
-/// Source: the column and corner rule, see README.md beside this file.
+/// Result:  lower <= distance to the stock as cut by the logged sweeps <= upper. `upper` is
+///          infinite if no matter on a scan line is within `goal.limit`; `lower` is at most the
+///          limit. While the interval contains `goal.threshold`, columns that are too near are
+///          divided and recomputed; it may still contain it when the budget or the finest square is
+///          reached.
+/// Source:  the column and corner rule, see README.md.
 StockSeparation separation(std::span<const ConvexShape> shapes, const CutModel& stock,
                            const StockGoal& goal = {});
 

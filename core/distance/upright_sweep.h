@@ -4,38 +4,38 @@
 
 namespace core {
 
-/// A convex piece of a body of revolution whose axis is along Z, and a straight motion of it.
+/// A convex piece of a body of revolution with its axis along Z, and its straight motion.
 struct UprightSweep {
     ProfileElement element;
-    Vec3 from = Vec3(0.0); // of the element's origin
-    Vec3 by = Vec3(0.0);   // the motion; zero: the piece stands still
+    Vec3 from = Vec3(0.0); // position of the element's origin
+    Vec3 by = Vec3(0.0);   // displacement; zero: at rest
 };
 
-/// The distance from a piece that stands somewhere on its way to a box.
+/// The distance from a moving piece to a box.
 ///
-/// Result: bounds of the least distance over the whole motion, no farther apart than
-///         `goal.tolerance` unless `lower` is at least `goal.limit`, and the points and the time
-///         that give `upper`. A box may be flat or thin as a line.
-/// Cost:   the piece is looked at once where that decides, mostly twice, seldom ten times.
-/// Source: README.md beside this file, "Upright pieces".
+/// Result:  bounds of the least distance over the whole motion, no farther apart than
+///          `goal.tolerance` unless `lower` is at least `goal.limit`, and the points and the time
+///          that give `upper`. A box may be flat or a line.
+/// Cost:    one evaluation of the piece where that decides, mostly two, seldom ten.
+/// Source:  README.md, "Upright pieces".
 Separation separation(const UprightSweep& sweep, const Aabb& box, const SeparationGoal& goal = {});
 
-/// `lower` of the same alone.
+/// Only the lower bound.
 double distance_bound(const UprightSweep& sweep, const Aabb& box, double limit);
 
-/// What holds a shape along its path, for bounds of its distance to boxes that cost little: an
-/// upright piece of revolution where the shape has one and goes straight, a box else.
+/// Encloses a shape along its path, for cheap bounds of its distance to boxes: an upright piece of
+/// revolution if the shape has one and moves straight, otherwise a box.
 struct ShapeOutline {
-    Aabb box;              // round the whole sweep
-    bool straight = false; // the sweep holds: one or two places
-    bool exact = false;    // the sweep is the shape's own: its distances are true
+    Aabb box;              // around the whole sweep
+    bool straight = false; // `sweep` is valid: one or two places
+    bool exact = false;    // `sweep` is the shape itself: distances are exact
     UprightSweep sweep;
 };
 
 ShapeOutline outline(const ConvexShape& shape);
 
-/// A lower bound of the distance between the shape and a box; 0 when they may meet. The best one
-/// only where it may be below `limit`; where the outline is exact, the distance but for 1e-7 mm.
+/// A lower bound of the distance between the shape and a box; 0 if they may overlap. Tight only
+/// where it may be below `limit`; exact up to 1e-7 mm if the outline is exact.
 double distance_bound(const ShapeOutline& shape, const Aabb& box, double limit);
 
 } // namespace core
