@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Keeps what is reported, over all scenes, for one file of results.
+/// Collects the results of all scenes for one file.
 class Collected final : public benchmark::BenchmarkReporter {
 public:
     bool ReportContext(const Context&) override { return true; }
@@ -32,7 +32,7 @@ struct Options {
     std::string only;
 };
 
-/// Takes --out FILE and --only SCENE; the rest is Google Benchmark's.
+/// Reads --out FILE and --only SCENE; the rest goes to Google Benchmark.
 Options options(std::vector<char*>& words) {
     Options result;
     int count = static_cast<int>(words.size());

@@ -9,7 +9,7 @@
 namespace bench {
 namespace {
 
-/// A body of revolution about Z: an outline of (r, z), counter-clockwise, that begins and ends on
+/// A body of revolution about Z: an outline of (r, z), counterclockwise, that starts and ends on
 /// the axis.
 core::Mesh revolved(const std::vector<std::pair<double, double>>& outline, uint32_t facets) {
     core::Mesh mesh;
@@ -34,8 +34,8 @@ core::Mesh revolved(const std::vector<std::pair<double, double>>& outline, uint3
     return mesh;
 }
 
-/// How far the outline of the gear reaches, `turn` teeth round it: flanks straight, a quarter of
-/// the pitch to each flank, top and bottom.
+/// The radius of the gear's outline at `turn` teeth around it: straight flanks, a quarter of the
+/// pitch for each flank, top and bottom.
 double gear_radius(double turn) {
     const double root = 21.5, tip = 26.0;
     const double share = 4.0 * (turn - std::floor(turn));

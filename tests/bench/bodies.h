@@ -16,8 +16,8 @@ core::Mesh cup_mesh();
 /// A pin about Z, 70 mm long, 28 mm thick, its lower end chamfered.
 core::Mesh pin_mesh();
 
-/// A lump as castings and scans of living things are: a ball of some 50 mm with bumps of three
-/// sizes. `seed` turns the bumps about.
+/// A lump like a casting or an organic scan: a ball of about 50 mm with bumps of three sizes.
+/// `seed` varies the bumps.
 core::Mesh lump_mesh(double seed);
 
 /// A spur gear about Z: 24 teeth, 52 mm across, 12 mm thick.

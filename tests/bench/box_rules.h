@@ -6,7 +6,7 @@
 
 namespace bench {
 
-/// A search by the device's own volumes, so that what is asked of spheres is asked of them as well.
+/// A search with the device's own volumes, for comparison with spheres.
 class BoxRules {
 public:
     using Pair = hwsim::SearchPair;

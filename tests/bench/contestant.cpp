@@ -10,7 +10,7 @@ namespace {
 
 using MakeEngine = std::unique_ptr<core::DistanceEngine> (*)();
 
-/// Our engines; the last one is the one that has to be faster than all others.
+/// Our engines; the last one must be faster than all others.
 constexpr MakeEngine engines[] = {
     core::paper_engine,
     core::fast_engine,
@@ -28,7 +28,7 @@ struct Pair {
     core::PointBody a, b;
 };
 
-/// A query along a path: the pair of the previous pose is the first guess.
+/// A query along a path: the pair of the previous pose is the initial guess.
 Query follower(std::shared_ptr<const Pair> pair) {
     const auto last = std::make_shared<std::optional<core::PointPair>>();
     return [pair = std::move(pair), last](const auto& a_from_b, const auto& goal) {

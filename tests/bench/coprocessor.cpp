@@ -1,6 +1,6 @@
-// The tables of hwsim/README.md: what a device of so many parts does, in its own cycles, so that
-// they are the same on every machine. With --speed how fast the emulator runs on this one; with
-// --volumes what the paper's spheres would do (a minute).
+// Prints the tables of hwsim/README.md: the performance of devices of various sizes in their own
+// cycles, so that the tables are the same on every machine. With --speed the speed of the emulator
+// on this machine; with --volumes the comparison with the paper's spheres (one minute).
 
 #include <ctime>
 #include <string_view>
@@ -15,10 +15,10 @@ using Scene = bench::MachiningScene;
 using hwsim::DeviceConfig;
 
 struct Measured {
-    double cycles = 0.0;  // from permit to permit, the FIFO being kept full
-    double latency = 0.0; // from push to permit of a segment that is alone
-    double nodes = 0.0, pairs = 0.0, hits = 0.0, lines = 0.0; // a segment
-    double speed = 0.0; // cycles of the device in a second of this processor
+    double cycles = 0.0;  // from permit to permit, with a full FIFO
+    double latency = 0.0; // from push to permit of a single segment
+    double nodes = 0.0, pairs = 0.0, hits = 0.0, lines = 0.0; // per segment
+    double speed = 0.0; // cycles of the device per second on this processor
 };
 
 using hwsim::Counter;
@@ -48,7 +48,7 @@ struct Bench {
     }
     uint64_t cycle() const { return device.state.cycle; }
 
-    /// Cycles a segment from the first push to the last permit.
+    /// Cycles per segment from the first push to the last permit.
     double run() {
         const uint64_t before = cycle();
         for (const hwsim::PathSegment& s : segments) push(driver, s).value();
@@ -89,7 +89,7 @@ Measured measured(const Scene& scene, const DeviceConfig& config, uint32_t leaf_
     return result;
 }
 
-/// One row: a name, then cycles a segment in each scene.
+/// One row: a name, then cycles per segment in each scene.
 template <typename Value>
 void row(const std::string& name, const std::vector<Scene>& scenes, const DeviceConfig& config,
          uint32_t leaf_size, const Value& value) {
@@ -141,10 +141,11 @@ void memory_table(const std::vector<Scene>& scenes) {
     }
 }
 
-/// Nanoseconds to the memory and for a line: what a board has, whatever the device's clock.
+/// Memory latency and time per line in nanoseconds: given by the board, whatever the clock of the
+/// device.
 constexpr uint32_t memory_ns = 300, line_ns = 20;
 
-/// A device whose memory's times are given in nanoseconds.
+/// A device with memory times in nanoseconds.
 DeviceConfig clocked(uint32_t elements, uint32_t clock_mhz) {
     const auto cycles = [clock_mhz](uint32_t ns) { return (ns * clock_mhz + 999) / 1000; };
     DeviceConfig config = bench_config();
@@ -155,7 +156,7 @@ DeviceConfig clocked(uint32_t elements, uint32_t clock_mhz) {
     return config;
 }
 
-/// Million segments a second in each scene, by elements and clock.
+/// Million segments per second in each scene, by elements and clock.
 void clock_table(const std::vector<Scene>& scenes) {
     constexpr std::array<uint32_t, 4> clocks{50, 100, 150, 200};
     fmt::print("\n| elements: {}", scenes[0].name);

@@ -21,7 +21,7 @@ struct Task {
     std::vector<CutterSweep> sweeps;
 };
 
-/// How much memory the process holds now, MB.
+/// The resident memory of the process, MB.
 double resident() {
     std::ifstream file("/proc/self/statm");
     double pages = 0.0;
@@ -57,7 +57,7 @@ void measure(const std::string& name, const Task& task, double h, WithColumns co
                name, h, blocks / m.cpu, blocks / m.wall, resident() - before, m.removed);
 }
 
-/// The envelope itself, by search among all moves near a line along Z.
+/// The exact envelope, by search among all moves near a line along Z.
 double envelope(const Task& task, double x, double y, double below) {
     double lowest = below;
     for (const CutterSweep& s : task.sweeps) {
@@ -105,7 +105,7 @@ Task raster(const RevolvedProfile& flutes, size_t most = ~size_t{0}) {
     return task;
 }
 
-/// Helical bores of many turns, in chords no farther than 0.0025 mm from the arc.
+/// Helical bores of many turns, in chords within 0.0025 mm of the arc.
 Task helices() {
     constexpr double chord_error = 0.0025, radius = 6.0;
     const auto cutter =

@@ -7,7 +7,7 @@
 namespace bench {
 namespace {
 
-/// The points of a body in a scene of Embree's, as geometry of our own: its own points answer no
+/// The points of a body in an Embree scene, as user geometry, because Embree's own points answer no
 /// point queries. Built on one thread.
 class Scene {
 public:
@@ -48,7 +48,7 @@ public:
 
 private:
     struct Point {
-        float x, y, z, unused; // 16 bytes, as Embree has its own
+        float x, y, z, unused; // 16 bytes, as in Embree
     };
 
     static void bound(const RTCBoundsFunctionArguments* asked) {
@@ -56,7 +56,7 @@ private:
         *asked->bounds_o = {p.x, p.y, p.z, 0.0f, p.x, p.y, p.z, 0.0f};
     }
 
-    /// Shrinks the query to the point it has met, if that is nearer.
+    /// Shrinks the query to the point that was hit, if it is nearer.
     static bool shrink_to(RTCPointQueryFunctionArguments* found) {
         const Point& p = static_cast<const Point*>(found->userPtr)[found->primID];
         RTCPointQuery& query = *found->query;

@@ -11,11 +11,11 @@ struct UnitStages {
     uint32_t pair = hwsim::PairUnit::latency;
 };
 
-/// The cycles of a device with one element of one thread, which nobody makes wait. A step of a
-/// thread takes a cycle; a unit as many more as it has stages; a line that is not in the cache the
-/// memory's latency and four more: to ask, to be granted, to enter the memory, to come back.
+/// The cycles of a device with one element of one thread that never waits for others. A step of a
+/// thread takes one cycle, a unit as many more as it has stages. A line that is not in the cache
+/// takes the latency of the memory plus four cycles: request, grant, entering the memory, return.
 ///
-/// With the device's own units that is what the emulator counts, cycle for cycle.
+/// With the device's own units this is exactly what the emulator counts.
 struct LoneThread {
     hwsim::LineCache nodes, records;
     UnitStages stages;

@@ -12,7 +12,7 @@ constexpr const char* compiler = __VERSION__;
 constexpr const char* compiler = "g++ " __VERSION__;
 #endif
 
-/// The text behind the colon of the first line of a file that begins with `key`.
+/// The text after the colon in the first line of a file that starts with `key`.
 std::string value_in(const std::string& file, const std::string& key) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {

@@ -6,8 +6,8 @@
 
 namespace bench {
 
-/// What the results were measured on and with, as name and value: processor, cores, compiler,
-/// vector instructions, versions of the peers.
+/// The environment of the measurements as names and values: processor, cores, compiler, vector
+/// instructions, versions of the libraries.
 std::vector<std::pair<std::string, std::string>> machine();
 
 } // namespace bench

@@ -8,7 +8,7 @@
 
 namespace bench {
 
-/// A tool over a stock, and where it goes.
+/// A tool above a stock, and its path.
 struct MachiningScene {
     const char* name;
     core::RevolvedProfile body;
@@ -17,12 +17,11 @@ struct MachiningScene {
     double keep = 1.0;                        // mm
 };
 
-/// What the tables of hwsim/README.md are made of, at h = 0.5.
+/// The scenes of the tables in hwsim/README.md, at h = 0.5.
 ///
-/// facing:    a holder 1.2 mm over a flat face, in steps of 0.5 mm
-/// pocket:    a collar of 25 mm in a round pocket of 29 mm, a millimetre from its wall nearly all
-///            round
-/// finishing: a slim shank above a ball that finishes a wavy surface, over what is finished already
+/// facing:    a holder 1.2 mm above a flat face, in steps of 0.5 mm
+/// pocket:    a collar of 25 mm in a round pocket of 29 mm, 1 mm from its wall almost all around
+/// finishing: a slim shank above a ball that finishes a wavy surface, above the finished part
 std::vector<MachiningScene> machining_scenes();
 
 } // namespace bench

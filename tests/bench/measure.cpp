@@ -12,10 +12,10 @@ namespace bench {
 namespace {
 
 constexpr double most_pairs_tried = 2e8;
-constexpr double least_seconds = 0.01; // that a repetition takes
-constexpr size_t stretch = 50;         // poses in a row that even the slowest go along a path
+constexpr double least_seconds = 0.01; // per repetition
+constexpr size_t stretch = 50; // consecutive poses that even the slowest engine follows on a path
 
-/// A contestant with the two bodies of the scene taken in.
+/// An engine with the structures of the scene's two bodies.
 struct Ready {
     const Contestant* contestant;
     Prepared prepared;
@@ -28,7 +28,7 @@ double seconds_of(const Function& function) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Asks a contestant, and does not go on with a wrong answer. Gives the time it took.
+/// Runs a query and stops on a wrong result. Returns the time it took.
 double checked(const Ready& ready, const std::string& name, const Pose& pose,
                const core::PairGoal& goal, double truth) {
     double answer = 0.0;
@@ -44,7 +44,7 @@ double checked(const Ready& ready, const std::string& name, const Pose& pose,
     return seconds;
 }
 
-/// The distance that all have to find.
+/// The distance that all must find.
 double truth_of(const Bodies& bodies, const Query& exact, const Pose& pose, double limit) {
     const double truth = exact(pose.a_from_b, {});
     const double pairs =
@@ -61,8 +61,7 @@ double truth_of(const Bodies& bodies, const Query& exact, const Pose& pose, doub
     return truth;
 }
 
-/// How often something that takes this long is repeated: the quick ones often, as they are hit
-/// hardest by noise.
+/// The number of repetitions for a duration: more for fast queries, which suffer most from noise.
 int repetitions_of(double seconds) {
     return seconds < 0.02 ? 15 : seconds < 0.5 ? 7 : seconds < 2.0 ? 3 : 1;
 }
@@ -75,7 +74,7 @@ benchmark::internal::Benchmark* registered(const std::string& name, double secon
         ->Repetitions(repetitions_of(seconds));
 }
 
-/// A query repeated at one pose: caches are warm, and branches have been seen before.
+/// A query repeated at one pose: caches and branch predictors are warm.
 double register_pose(const Ready& ready, const Row& row, const Pose& pose, double truth) {
     const std::string name = row.name + "/" + pose.name + "/" + ready.contestant->name;
     const double seconds = checked(ready, name, pose, row.goal, truth);
@@ -87,7 +86,7 @@ double register_pose(const Ready& ready, const Row& row, const Pose& pose, doubl
     return seconds;
 }
 
-/// All poses one after the other, so that each finds the caches as another one left them.
+/// All poses in turn, so that each finds the caches as another one left them.
 void register_in_turn(const Ready& ready, const Row& row, double seconds) {
     const auto run = [&query = ready.prepared.cold, row](benchmark::State& state) {
         for (auto step : state)
@@ -115,7 +114,7 @@ void register_build(const Scene& scene, const Bodies& bodies, const std::vector<
         const auto run = [&build, &points = bodies.a](benchmark::State& state) {
             for (auto step : state) {
                 std::shared_ptr<const void> built = build(points);
-                state.PauseTiming(); // taking it apart is not building
+                state.PauseTiming(); // destruction is not part of building
                 built.reset();
                 state.ResumeTiming();
             }
@@ -126,13 +125,13 @@ void register_build(const Scene& scene, const Bodies& bodies, const std::vector<
     }
 }
 
-/// The number of the pose that comes `i`th for one who goes along `count` poses: stretches spread
-/// evenly over the path.
+/// The number of the `i`th pose for an engine that follows `count` poses: stretches spread evenly
+/// over the path.
 size_t on_path(size_t path_size, size_t count, size_t i) {
     return i / stretch * stretch * (path_size / count) + i % stretch;
 }
 
-/// How many poses a contestant goes along: all, if it needs less than a second for them.
+/// The number of poses that an engine follows: all, if it needs less than a second for them.
 size_t poses_for(const Ready& ready, const std::vector<core::Transform>& path) {
     const double cold = seconds_of([&] { ready.prepared.cold(path[path.size() / 2], {}); });
     size_t count = path.size();

@@ -6,12 +6,12 @@
 
 namespace bench {
 
-/// Measures all that is asked in a scene, each contestant beside the others: their repetitions are
-/// shuffled, so that whatever else the machine does hits all alike.
+/// Measures all queries of a scene with all engines. Their repetitions are shuffled, so that other
+/// load on the machine affects all alike.
 ///
-/// Result:  to the reporter, under names ROW/POSE/CONTESTANT.
-/// Errors:  throws when a contestant gives another distance than the paper's engine, or, where the
-///          bodies are small enough, than all pairs of points tried.
+/// Result: to the reporter, under names ROW/POSE/CONTESTANT.
+/// Errors: throws when an engine gives another distance than the paper's engine or, if the bodies
+///         are small enough, than all pairs of points.
 void measure(const Scene& scene, const std::vector<Contestant>& contestants,
              benchmark::BenchmarkReporter& reporter);
 

@@ -5,7 +5,7 @@
 namespace bench {
 namespace {
 
-/// The points as nanoflann wants to read them.
+/// The points in the interface of nanoflann.
 struct Cloud {
     Points points;
 
@@ -26,12 +26,13 @@ struct IndexedCloud {
     Tree tree;
 };
 
-/// A set of results that holds the nearest point only, and nothing that is not nearer than what
-/// was found for the points asked about before.
+/// A result set with only the nearest point, starting with the best distance of earlier query
+/// points.
+/// NOLINTBEGIN(readability-identifier-naming): nanoflann requires these names
 // NOLINTBEGIN(readability-identifier-naming): nanoflann calls it by these names
 struct Nearest {
     double squared;
-    bool any; // the first will do
+    bool any; // any point will do
 
     double worstDist() const { return squared; }
     bool full() const { return true; }

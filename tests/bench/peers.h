@@ -4,13 +4,14 @@
 
 namespace bench {
 
-/// The Flexible Collision Library: each point a degenerate triangle, boxes of the kind OBBRSS.
+/// The Flexible Collision Library: each point is a degenerate triangle, bounding volumes OBBRSS.
 Contestant fcl_peer();
 
-/// A KD-tree over A; each point of B asks it for a point nearer than the best so far.
+/// A KD-tree over A; each point of B queries it for a point nearer than the best so far.
 Contestant nanoflann_peer();
 
-/// A hierarchy over A in floats; each point of B asks it for a point nearer than the best so far.
+/// A hierarchy over A in floats; each point of B queries it for a point nearer than the best so
+/// far.
 Contestant embree_peer();
 
 } // namespace bench

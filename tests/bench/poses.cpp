@@ -7,8 +7,7 @@
 namespace bench {
 namespace {
 
-/// Moves B towards A until it is `gap` away. A step by the distance that is left never goes too
-/// far.
+/// Moves B towards A until it is `gap` away. A step by the remaining distance never goes too far.
 core::Transform approached(const Query& exact, const core::Mat3& rotation,
                            const core::Vec3& direction, double gap) {
     double away = 200.0;

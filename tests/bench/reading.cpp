@@ -17,7 +17,7 @@ constexpr int line_count = 1'000'000;
 
 enum class Lines { plain, modal, numbered };
 
-/// A program of random straight moves in a file of its own.
+/// A program of random straight moves in a temporary file.
 class ProgramFile {
 public:
     explicit ProgramFile(Lines lines)
@@ -49,7 +49,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// Reads the file and carries every block out; the commands are looked at and dropped.
+/// Reads the file and runs every block; the commands are discarded.
 size_t read_through(const std::string& path, gcode::DialectId dialect, benchmark::State& bench) {
     const auto program = gcode::open_program(path);
     if (!program) {

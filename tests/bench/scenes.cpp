@@ -10,7 +10,7 @@
 namespace bench {
 namespace {
 
-/// The points, if they are as many as the targets are stated for.
+/// The points, if their number is the one for which the targets are stated.
 Points counted(Points points, size_t count) {
     if (points.size() != count)
         throw std::runtime_error(
@@ -25,7 +25,7 @@ core::PairGoal within(double limit, bool any) {
     return goal;
 }
 
-/// Two balls of 50 mm. The finer questions are asked at h = 0.5 only.
+/// Two balls of 50 mm. The special queries are measured at h = 0.5 only.
 Scene spheres(const std::string& h, double spacing, size_t count) {
     const auto rows = [h](const Query&) {
         const std::vector<Pose> generic = gap_poses(50.0, generic_direction());
@@ -44,7 +44,7 @@ Scene spheres(const std::string& h, double spacing, size_t count) {
     return {h, bodies, rows, true, path_round_a_ball()};
 }
 
-/// A holder above a stock, flat face over flat face.
+/// A holder above a stock, flat face above flat face.
 Scene flat() {
     const auto bodies = []() -> Bodies {
         return {counted(scanned(core::Box{{100.0, 100.0, 30.0}}, 0.5), 128'000),

@@ -10,12 +10,12 @@ using hwsim::Record;
 using hwsim::Reference;
 using hwsim::Side;
 
-/// How far the farthest of two ends is from a place on a line.
+/// The distance of the farther of two ends from a point on a line.
 int64_t farthest(int64_t low, int64_t high, int64_t from) {
     return std::max(std::abs(low - from), std::abs(high - from));
 }
 
-/// The squared distance from a place to the farthest point of a record, not rounded down.
+/// The squared distance from a point to the farthest point of a record, not rounded down.
 int64_t squared_reach(const Record& r, Side side, const FixedVec& from) {
     const int64_t up = farthest(r.base[2], int64_t{r.base[2]} + r.run, from[2]);
     if (side == Side::work) {
@@ -30,7 +30,7 @@ int64_t squared_reach(const Record& r, Side side, const FixedVec& from) {
     return level * level + up * up;
 }
 
-/// Walks a tree from its leaves upwards. The records of a branch stand side by side in `records_`.
+/// Traverses a tree from its leaves upwards. The records of a branch are contiguous in `records_`.
 class TreeWalk {
 public:
     TreeWalk(SphereTable& table, std::span<const hwsim::Line> memory, Side side)

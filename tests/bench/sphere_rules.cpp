@@ -10,14 +10,14 @@ namespace {
 using hwsim::Division;
 using hwsim::Reference;
 
-/// The greatest integer whose square is no more.
+/// The greatest integer whose square is at most this.
 int64_t root_down(int64_t square) {
     const int64_t root = hwsim::root_up(square);
     return root * root == square ? root : root - 1;
 }
 
-/// Whether a tool stays in the range of coordinates: its root's box over the whole way, which is
-/// what the device's first test looks at.
+/// Whether a tool stays in the range of coordinates: tests its root's box over the whole path, as
+/// the device does first.
 bool is_in_range(const hwsim::Node& header, const hwsim::Segment& segment) {
     return header.child[0].is_none()
            || hwsim::squared_gap(header.volume[0], segment.start, segment.end, hwsim::everywhere);
@@ -105,7 +105,7 @@ Sphere SphereRules::stretch(uint32_t first, uint32_t last) const {
         at.centre[axis] = static_cast<int32_t>(segment.start[axis] + part);
     }
     if (first == last || way_ == 0) return at;
-    // Middle and samples are off by half a step along each axis, together by root(3) at most.
+    // Middle and samples are off by half a step along each axis, together by at most root(3).
     constexpr int64_t rounding = 2;
     const int64_t half = (int64_t{last - first} * way_ + one - 1) >> halvings;
     at.radius = static_cast<int32_t>(half + rounding);

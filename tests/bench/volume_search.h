@@ -9,9 +9,9 @@
 
 namespace bench {
 
-/// The device's search (hwsim/search.h) with any volumes in its nodes: `Rules` says what is divided
-/// and what bounds the distance of two parts, all else is the same. Counts the time of a thread
-/// alone. The memory must be intact; the stack is as deep as it has to be.
+/// The device's search (hwsim/search.h) with any volumes in its nodes: `Rules` defines what is
+/// divided and the bound of the distance of two parts; everything else is the same. Counts the time
+/// of a thread alone. The memory must be intact; the stack is as deep as necessary.
 template <typename Rules>
 class VolumeSearch {
 public:

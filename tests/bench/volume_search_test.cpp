@@ -52,7 +52,7 @@ TEST(VolumeSearch, ByBoxesIsTheDevicesOwn) {
         }
 }
 
-/// What became of scenes.
+/// The outcomes of scenes.
 struct Tally {
     int below = 0, above = 0, zero = 0, out = 0, by_other_ways = 0;
 
@@ -63,7 +63,7 @@ struct Tally {
     }
 };
 
-/// The same distance to the step, so the same permits. Of equally near pairs it may name another.
+/// The same distance to the step, so the same permits. Of equally near pairs it may report another.
 void expect_the_same_distance(const hwsim::Scene& scene, const Answer& boxes,
                               const Answer& spheres) {
     ASSERT_EQ(spheres.stop, boxes.stop);
@@ -99,8 +99,8 @@ TEST(VolumeSearch, BySpheresWithoutARootFindsTheSameDistance) {
     expect_the_same_distances<RootlessSphereRules>(6);
 }
 
-/// That the squares may be compared instead: floor(root(d2)) - r against the best's root, and d2
-/// against the square of both.
+/// Squares may be compared instead: floor(root(d2)) - r with the best's root, and d2 with the
+/// square of both.
 TEST(RootlessSphereRules, DecidesAsTheRootDoes) {
     for (int64_t square = 0; square < 600; ++square)
         for (int64_t radii = 0; radii < 30; ++radii)
@@ -113,7 +113,7 @@ TEST(RootlessSphereRules, DecidesAsTheRootDoes) {
             }
 }
 
-/// Asks one segment of a device, and returns the cycles from its push to its permit.
+/// Submits one segment to a device and returns the cycles from its push to its permit.
 uint64_t cycles_of(hwsim::TestDevice& device, const hwsim::Segment& segment) {
     const size_t before = device.retired.size();
     device.push(segment);
@@ -177,7 +177,7 @@ TEST(SphereRound, HoldsItsRecordsAndIsNoLargerThanItMust) {
             for (const core::Vec3& p : outermost(record, side))
                 farthest = std::max(farthest, glm::length(p - centre));
         ASSERT_LE(farthest, sphere.radius + 1e-6);
-        // The rim is looked at every 5.6 degrees, and roots are rounded up twice.
+        // The rim is sampled every 5.6 degrees, and roots are rounded up twice.
         ASSERT_GE(farthest * (side == Side::work ? 1.0 : 1.0013) + 2.0, sphere.radius);
     }
 }

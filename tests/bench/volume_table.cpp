@@ -21,7 +21,7 @@ constexpr const char* name_of(Bodies bodies) {
     return bodies == Bodies::points ? "points" : "records";
 }
 
-/// Bare points, to the nearest step.
+/// Points, rounded to the nearest step.
 std::vector<Record> records_of(const std::vector<core::Vec3>& points) {
     std::vector<Record> records;
     for (const core::Vec3& p : points) {
@@ -46,7 +46,7 @@ std::vector<Record> scanned(const core::RevolvedProfile& body) {
     return records_of(points);
 }
 
-/// What stands for a scene's tool and its work.
+/// The models of a scene's tool and work.
 struct Models {
     std::vector<Record> tool, work;
 };
@@ -58,7 +58,7 @@ Models models_of(const MachiningScene& scene, Bodies bodies) {
             hwsim::posts_of(hwsim::cells_of(scene.stock)).value()};
 }
 
-/// A device with a scene in it, its spheres, and what it is asked.
+/// A device with a scene, its spheres, and the queries.
 struct Questions {
     hwsim::FunctionalDevice device;
     hwsim::Driver driver;
@@ -70,7 +70,7 @@ struct Questions {
           driver(hwsim::open_device(port_of(device)).value()) {
         const Models models = models_of(scene, bodies);
         const auto tool = load_records(driver, Side::tool, models.tool);
-        // Columns go in tile by tile, as they do in the control.
+        // Columns are loaded tile by tile, as in the control.
         const auto work = bodies == Bodies::points ? load_records(driver, Side::work, models.work)
                                                    : load_stock(driver, scene.stock);
         for (hwsim::PathSegment segment : scene.segments) {
@@ -85,12 +85,12 @@ struct Questions {
     std::span<const hwsim::Line> memory() const { return device.state.memory.lines; }
 };
 
-/// Means over the segments of a scene: what a thread does, and its cycles.
+/// Means over the segments of a scene: the work of a thread, and its cycles.
 struct Work {
     double nodes = 0.0, pairs = 0.0, lines = 0.0, cycles = 0.0;
 };
 
-/// A search, its thread, and what it did so far.
+/// A search, its thread, and its work so far.
 template <typename Rules>
 struct Contestant {
     LoneThread time;
@@ -110,8 +110,8 @@ struct Contestant {
     }
 };
 
-/// Stages of the units, of which hwsim/README.md tells ("Spheres"). Among bare points nothing has a
-/// root but the bound of a sphere.
+/// Stages of the units (see hwsim/README.md, "Spheres"). With points, only the bound of a sphere
+/// needs a root.
 LoneThread thread_of(Bodies bodies, uint32_t volume_stages) {
     UnitStages stages{.volume = volume_stages};
     if (bodies == Bodies::points) stages.pair = 3;
@@ -121,7 +121,7 @@ LoneThread thread_of(Bodies bodies, uint32_t volume_stages) {
 constexpr std::array<const char*, 3> volumes{"boxes", "spheres", "spheres, no root"};
 using Comparison = std::array<Work, volumes.size()>;
 
-/// All three searches over all questions; nothing if they do not agree.
+/// Runs all three searches over all queries; empty if they disagree.
 std::optional<Comparison> compared(const Questions& scene, Bodies bodies, bool measures) {
     const uint32_t box_stages = bodies == Bodies::points ? 4 : hwsim::BoxUnit::latency;
     Contestant<BoxRules> boxes{thread_of(bodies, box_stages)};
@@ -140,7 +140,7 @@ std::optional<Comparison> compared(const Questions& scene, Bodies bodies, bool m
     return Comparison{boxes.mean(count), spheres.mean(count), rootless.mean(count)};
 }
 
-/// How many records or points stand for tool and work.
+/// The number of records or points for tool and work.
 void print_sizes(std::span<const MachiningScene> scenes, Bodies bodies) {
     fmt::print("| {} of tool, work |", name_of(bodies));
     for (const MachiningScene& scene : scenes) {
@@ -150,7 +150,7 @@ void print_sizes(std::span<const MachiningScene> scenes, Bodies bodies) {
     fmt::print("\n");
 }
 
-/// Rows for a kind of bodies: is it allowed, and how near is it.
+/// Rows for a kind of body: permit decisions, and distances.
 bool print_rows(std::span<const MachiningScene> scenes, Bodies bodies) {
     std::array<std::string, 2 * volumes.size()> rows;
     for (const MachiningScene& scene : scenes) {

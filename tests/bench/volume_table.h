@@ -6,8 +6,8 @@
 
 namespace bench {
 
-/// Prints what a thread does and how long it takes, by boxes and by the paper's spheres, among
-/// records and among the points of scans at h = 0.5. False if two searches do not agree.
+/// Prints the work and time of a thread with boxes and with the paper's spheres, for records and
+/// for the points of scans at h = 0.5. False if two searches disagree.
 bool print_volumes(std::span<const MachiningScene> scenes);
 
 } // namespace bench
