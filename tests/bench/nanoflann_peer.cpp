@@ -28,7 +28,6 @@ struct IndexedCloud {
 
 /// A result set with only the nearest point, starting with the best distance of earlier query
 /// points.
-/// NOLINTBEGIN(readability-identifier-naming): nanoflann requires these names
 // NOLINTBEGIN(readability-identifier-naming): nanoflann calls it by these names
 struct Nearest {
     double squared;
