@@ -286,14 +286,15 @@ void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
         std::mismatch(off.begin(), off.end(), on.begin(), on.end(),
                       [](const Step& a, const Step& b) { return a.digest == b.digest; });
     if (here == off.end() && there == on.end()) {
-        note->message = "Blocks with '/' are run here; the path is the same with the switch on.";
+        note->message = "blocks with '/' are run here; the path is the same with block delete on";
         note->cure.clear();
         return;
     }
     note->severity = core::severity_of(run.setup, note->rule);
-    note->message = fmt::format("blocks with '/' are run here; with the switch on at the machine "
-                                "the path is another one from line {} on",
-                                here != off.end() ? here->line : there->line);
+    note->message =
+        fmt::format("blocks with '/' are run here; with block delete on at the machine, "
+                    "the path is different from line {} on",
+                    here != off.end() ? here->line : there->line);
 }
 
 namespace {
