@@ -388,7 +388,7 @@ InspectedValue unit(const State& state, const Dialect& dialect) {
     const bool inch = state.modal.unit == gcode::LengthUnit::inch;
     if (dialect.language != gcode::Language::siemens)
         return code(dialect, inch ? "G20" : "G21", inch ? "inch" : "mm");
-    const bool feeds_as_well = state.siemens->feeds_in_inches;
+    const bool feeds_as_well = siemens_of(state).feeds_in_inches;
     return code(dialect, inch ? (feeds_as_well ? "G700" : "G70") : "G71", inch ? "inch" : "mm");
 }
 

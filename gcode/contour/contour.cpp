@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
-#include "gcode/exec/execution.h"
-#include "gcode/exec/frame_codes.h"
 #include "gcode/language/canonical.h"
 
 namespace gcode {
@@ -221,35 +219,6 @@ std::vector<ExecutedBlock> give_up_corners(Corners& corners) {
     corners.word.reset();
     corners.asked.reset();
     return blocks;
-}
-
-core::Result<void> ask_for_corner(Execution& execution) {
-    const Word* word = execution.statement.corner;
-    if (!word) return {};
-    const double size = length_of(execution, *word);
-    if (size < 0.0)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("{}: the size of a corner must not be negative", written(*word)),
-            word->span);
-    const auto& commands = execution.result.commands;
-    const bool feeds =
-        !commands.empty() && end_of_feed(commands.back()) != nullptr && !execution.modal().cycle;
-    if (!feeds)
-        return core::fail(
-            ErrorCode::syntax,
-            fmt::format("{}: a corner must be programmed in a block with G1, G2 or G3",
-                        written(*word)),
-            word->span);
-    if (size == 0.0) return {};
-    const PlaneAxes axes = axes_of(execution.modal().plane);
-    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
-    execution.state.contour.write().corners.asked =
-        CornerWord{.kind = word->letter == 'r' ? CornerKind::rounding : CornerKind::chamfer,
-                   .size = size,
-                   .where = word->span,
-                   .written = written(*word)};
-    return {};
 }
 
 namespace {

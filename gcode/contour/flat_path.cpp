@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "gcode/exec/arcs.h"
-
 namespace gcode {
 
 double turned_angle(const FlatArc& arc, FlatPoint start, FlatPoint end) {

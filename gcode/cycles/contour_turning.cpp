@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
+#include "gcode/cycles/cycles.h"
 #include "gcode/cycles/turning_cycle.h"
 #include "gcode/exec/flow.h"
-#include "gcode/exec/motion.h"
-#include "gcode/read/parser.h"
+#include "gcode/language/language.h"
 
 namespace gcode {
 namespace {

@@ -185,13 +185,6 @@ void bore_back_to_middle(Drilling& hole) {
     hole.turn(direction);
 }
 
-void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
-    const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
-    for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})
-        if (*word) again(**word);
-    for (double& word : cycle.shift) again(word);
-}
-
 void bore_and_stop(Drilling& hole) {
     Execution& execution = hole.execution;
     const SpindleDirection direction = execution.modal().spindle;

@@ -26,7 +26,4 @@ void bore_back_to_middle(Drilling& hole);
 /// afterwards that the tool is out of the hole.
 void bore_and_stop(Drilling& hole);
 
-/// Reinterprets the stored words of a cycle in other units: LinuxCNC keeps the numbers.
-void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to);
-
 } // namespace gcode

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "core/base/result.h"
-#include "gcode/cycles/spline.h"
-#include "gcode/exec/motion.h"
+#include "gcode/contour/spline.h"
+#include "gcode/cycles/cycles.h"
 
 namespace gcode {
 

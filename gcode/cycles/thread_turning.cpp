@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
+#include "gcode/cycles/cycles.h"
 #include "gcode/cycles/threading.h"
-#include "gcode/exec/motion.h"
 
 namespace gcode {
 namespace {

@@ -1,10 +1,9 @@
-#include "gcode/exec/arcs.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include "gcode/contour/flat_path.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/language/error_rules.h"

@@ -36,6 +36,9 @@ struct Execution {
     void feed(const Position& end, double rate);
 };
 
+/// Whether the block has G53.
+bool in_machine_coordinates(const Execution& execution);
+
 /// The word that makes this block move: its motion or cycle code, else its first axis word.
 const Word& moving_word(const Execution& execution);
 
@@ -77,11 +80,6 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 void change_offsets(Execution& execution, const Offsets& offsets);
 void change_offsets(ModalState& modal, const Offsets& offsets);
 
-/// Carries out a block of codes and words, each kind in its turn.
-///
-/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
-core::Result<void> take_steps(Execution& execution);
-
 core::Result<void> check_words(Execution& execution); // words nobody uses
 core::Result<void> note_assumed_units(Execution& execution);
 core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95
@@ -107,8 +105,6 @@ core::Result<void> select_offset(Execution& execution);         // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution);     // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
 core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
-core::Result<void> act(Execution& execution);                   // G10 G28 G30 G52 G92
-core::Result<void> move(Execution& execution);                  // G0 to G3, G73 to G89, with G53
 core::Result<void> ask_for_corner(Execution& execution);        // ,R ,C
 core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
 core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
@@ -126,20 +122,12 @@ core::Result<void> set_axis_offset(Execution& execution);            // G92 to G
 core::Result<void> move_along_arc(Execution& execution);             // G2 G3
 core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
 core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
-core::Result<void> run_canned_cycle(Execution& execution);           // G73, G81 to G89
 core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
 core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
 
 /// The diameter in the control's table that a block's D word means, mm; 0 with a warning where
 /// nothing is known of it.
 core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
-
-/// G12, G13: the tool goes down in the middle, out by a half circle, round, and back to the middle,
-/// where it stays. With K and Q more circles follow, each Q larger. Where on the circle the control
-/// begins is not published and changes nothing of what is cut.
-///
-/// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
-core::Result<void> mill_circular_pocket(Execution& execution);
 
 /// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
 /// work offset; L3, L50, L52: warned of and passed over.

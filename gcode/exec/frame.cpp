@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include "core/base/file_reads.h"
+#include "gcode/language/flow_index.h"
+#include "gcode/language/language.h"
 #include "gcode/language/program_folder.h"
-#include "gcode/read/flow_index.h"
 #include "gcode/text/source.h"
 
 namespace gcode {

@@ -6,7 +6,7 @@
 
 #include "core/motion/machine.h"
 #include "gcode/contour/contour.h"
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 #include "gcode/exec/assignments.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/fanuc_parameters.h"
@@ -16,11 +16,7 @@
 #include "gcode/exec/quick_move.h"
 #include "gcode/exec/statement.h"
 #include "gcode/exec/subprogram.h"
-#include "gcode/klartext/klartext.h"
-#include "gcode/klartext/klartext_parser.h"
-#include "gcode/read/parser.h"
-#include "gcode/read/plain_words.h"
-#include "gcode/siemens/siemens.h"
+#include "gcode/language/language.h"
 #include "gcode/text/source.h"
 
 namespace gcode {
@@ -36,9 +32,9 @@ struct BeforeBlock {
     DecimalPoints points;
     RuleWatch rules;
     Shared<Tables> tables;
-    Shared<KlartextState> klartext;
     Shared<SplineState> spline;
-    Shared<SiemensState> siemens;
+    SharedLanguageState language;
+    bool speaks_iso;
     // Only of blocks that call or return.
     bool has_calls = false;
     std::vector<Frame> frames;
@@ -82,6 +78,7 @@ struct Interpreter::Scratch {
     ProgramLibrary& library;
     const Environment& environment;
     const Dialect& dialect;
+    const LanguageFunctions& language = functions_of(dialect.language);
     Block block{};
     Statement statement{};
     BlockResult result{};
@@ -111,7 +108,7 @@ struct Interpreter::Scratch {
 
 /// Who reads the program's language where it stands: a control may have two.
 Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
-    if (dialect.language != Language::siemens || !state.siemens->is_iso) return *this;
+    if (!state.speaks_iso) return *this;
     if (!iso) {
         iso_environment = std::make_unique<Environment>(environment);
         iso_environment->dialect = DialectId::siemens_iso;
@@ -127,9 +124,8 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         FEELER_TRY(const auto found, program.find_line(state.next.line));
         if (!found) return false;
         const uint32_t number = state.next.line++;
-        std::string_view text =
-            dialect.language == Language::klartext ? klartext_block(program, number) : *found;
-        if (dialect.language == Language::klartext) state.next.line = number + lines_of(text);
+        std::string_view text = language.block_at ? language.block_at(program, number) : *found;
+        if (language.lines_of) state.next.line = number + language.lines_of(text);
         if (program.windows) text = line_text.assign(text); // flow statements look at other lines
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
@@ -238,15 +234,10 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         return looked_up;
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
         || !state.modal_macros.empty()
-        || (dialect.language == Language::siemens && changes_levels_in_siemens(statement, state)))
+        || (language.changes_level && language.changes_level(statement, state)))
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
-    if (dialect.language == Language::klartext) return run_klartext(execution);
-    if (dialect.language == Language::siemens) return run_siemens(execution);
-    if (auto taken = take_steps(execution); !taken) return taken;
-    check_modal_rules(execution, before.modal);
-    if (state.siemens->is_iso) return leave_iso(execution);
-    return {};
+    return language.execute(execution, before.modal);
 }
 
 core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
@@ -279,7 +270,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
 /// Takes a line that is a straight move and nothing else; false when it is not, and nothing has
 /// changed then. Nothing can fail here, so nothing is kept to be taken back.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
-    if (dialect.language != Language::words || environment.counts_smallest_steps
+    if (!language.read_plain || environment.counts_smallest_steps
         || state.next_block >= environment.limits.blocks || asks_for_stop(state)
         || !moves_quickly(state))
         return false;
@@ -288,7 +279,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     block.clear();
     block.line = state.next.line;
     block.text = **found;
-    if (!read_plain_words(block.text, block.line, dialect, block)) return false;
+    if (!language.read_plain(block.text, block.line, dialect, block)) return false;
     begin_result(state, {state.next.source, block.line});
     if (!take_quick_move(block, state, result)) return false;
     if (dialect.decimal_points_matter) note_points(block, state, result);
@@ -300,8 +291,8 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
 
 /// Where a place of the block really is: a block may have several lines.
 core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
-    const bool several = dialect.language == Language::klartext && where.line == block.line;
-    return several ? gcode::place_in_lines(block.text, where) : where;
+    const bool several = language.position_in_file && where.line == block.line;
+    return several ? language.position_in_file(block.text, where) : where;
 }
 
 void Interpreter::Scratch::place_in_lines() {
@@ -380,6 +371,8 @@ InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;
     ModalState& modal = state.modal;
     const Dialect& rules = dialect(environment.dialect);
+    if (const auto begin = functions_of(rules.language).begin)
+        state.language = SharedLanguageState(begin());
     modal.unit = rules.unit_is_machines ? environment.machine_unit : rules.unit;
     modal.retract = dialect(environment.dialect).retract;
     Tables& tables = state.tables.write();
@@ -455,9 +448,9 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.points = state.points;
     before.rules = state.rules;
     before.tables = state.tables;
-    before.klartext = state.klartext;
     before.spline = state.spline;
-    before.siemens = state.siemens;
+    before.language = state.language;
+    before.speaks_iso = state.speaks_iso;
     before.has_calls = false;
 }
 
@@ -473,9 +466,9 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.points = before.points;
     state.rules = before.rules;
     state.tables = before.tables;
-    state.klartext = before.klartext;
     state.spline = before.spline;
-    state.siemens = before.siemens;
+    state.language = before.language;
+    state.speaks_iso = before.speaks_iso;
 }
 
 void restore_calls(InterpreterState& state, const BeforeBlock& before) {

@@ -10,6 +10,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "gcode/exec/frame.h"
+#include "gcode/exec/language_state.h"
 #include "gcode/exec/rules.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/parameters.h"
@@ -20,8 +21,6 @@ namespace gcode {
 
 struct Contour;
 struct Environment;
-struct KlartextState;
-struct SiemensState;
 struct SplineState;
 
 /// Whether and how a program came to its end.
@@ -64,9 +63,9 @@ struct InterpreterState {
     Shared<Parameters> parameters;
     Shared<Tables> tables;
     Shared<Contour> contour; // blocks on their way through cutter radius compensation
-    Shared<KlartextState> klartext;
     Shared<SplineState> spline;
-    Shared<SiemensState> siemens;
+    SharedLanguageState language;
+    bool speaks_iso = false; // Siemens: ISO codes since G291
     LoopWatch watch;
     RuleWatch rules;
 

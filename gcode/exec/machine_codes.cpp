@@ -189,4 +189,23 @@ core::Result<void> probe(Execution& execution) {
     return {};
 }
 
+core::Result<void> stop(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
+    if (!entry) return {};
+    switch (entry->code->tenths) {
+    case tenths(1):
+        execution.emit(OptionalStop{});
+        break;
+    case tenths(2):
+    case tenths(30):
+        execution.state.ending = Ending::program_end;
+        execution.emit(ProgramEnd{});
+        break;
+    default:
+        execution.emit(ProgramStop{});
+        break; // M0, M60
+    }
+    return {};
+}
+
 } // namespace gcode

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "gcode/cycles/rs274_cycles.h"
 #include "gcode/exec/execution.h"
 
 namespace gcode {
@@ -176,6 +175,18 @@ core::Result<void> select_plane(Execution& execution) {
     execution.emit(SelectPlane{plane});
     return {};
 }
+
+namespace {
+
+/// LinuxCNC keeps the numbers of a cycle when the units change, so they count in the new ones.
+void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
+    const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
+    for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})
+        if (*word) again(**word);
+    for (double& word : cycle.shift) again(word);
+}
+
+} // namespace
 
 core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);

@@ -1,5 +1,3 @@
-#include "gcode/exec/motion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
-#include "gcode/cycles/spline.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 
@@ -15,17 +12,6 @@ namespace gcode {
 namespace {
 
 using core::ErrorCode;
-
-bool in_machine_coordinates(const Execution& execution) {
-    const CodeWord* action = execution.statement.of(ModalGroup::action);
-    return action && action->code->tenths == tenths(53);
-}
-
-bool is_straight(std::optional<MotionCode> motion) {
-    return motion == tenths(0) || motion == tenths(1);
-}
-
-bool is_arc(std::optional<MotionCode> motion) { return motion == tenths(2) || motion == tenths(3); }
 
 /// Whether the words of the plane are a radius and an angle (G16).
 bool moves_by_radius_and_angle(const Execution& execution) {
@@ -35,200 +21,6 @@ bool moves_by_radius_and_angle(const Execution& execution) {
     return !in_machine_coordinates(execution)
            && (execution.statement.word(axis_letters[axes.first])
                || execution.statement.word(axis_letters[axes.second]));
-}
-
-/// Where a control goes on with a feed of its own, the first feed without F takes that.
-void assume_feed(Execution& execution) {
-    ModalState& modal = execution.modal();
-    const double assumed = execution.dialect.assumed_feed;
-    if (modal.feed || assumed == 0.0 || modal.feed_mode != FeedMode::per_minute) return;
-    const Word& mover = moving_word(execution);
-    execution.result.warnings.push_back(
-        {Severity::warning, mover.span,
-         fmt::format("{}: no feed rate: no F word has been programmed yet; Grbl 1.1 stops here "
-                     "(error 22), older versions use {:g} mm/min, which is assumed",
-                     written(mover), assumed),
-         "no-feed", "Program F before the first feed move."});
-    modal.feed = assumed;
-}
-
-core::Result<void> move_straight(Execution& execution, bool rapid) {
-    if (!rapid) assume_feed(execution);
-    FEELER_TRY(const Position end, target_of(execution));
-    if (rapid) {
-        execution.traverse(end);
-        return {};
-    }
-    const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;
-    const std::optional<double> way =
-        needs_way ? way_between(execution.modal().position, end) : std::nullopt;
-    FEELER_TRY(const double rate, feed_rate(execution, way));
-    execution.feed(end, rate);
-    return {};
-}
-
-/// A motion code without a place to go to, where that is a move to where the machine stands.
-bool stands_alone(const Execution& execution) {
-    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
-    return execution.dialect.motion_codes_move && motion
-           && (is_straight(motion->code->tenths) || is_arc(motion->code->tenths));
-}
-
-/// G2 alone, of which nobody knows where it leads.
-core::Result<void> refuse_lone_arc(const Execution& execution) {
-    const Statement& statement = execution.statement;
-    const CodeWord* motion = statement.of(ModalGroup::motion);
-    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->tenths)) return {};
-    for (const char letter : {'I', 'J', 'K', 'R'})
-        if (statement.word(letter)) return {};
-    return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} has no centre: add I, J or K, or the radius as R; if no arc "
-                                  "is intended here, remove the code",
-                                  written(*motion->word)),
-                      motion->word->span);
-}
-
-/// Whether the block has words that make the active motion move.
-bool has_motion_words(const Execution& execution) {
-    const Statement& statement = execution.statement;
-    if (!statement.has_axis_word() && stands_alone(execution)) return true;
-    if (statement.taker_of_axis_words()) return false;
-    if (statement.has_axis_word()) return true;
-    if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
-    const ModalState& modal = execution.modal();
-    const bool arc = !modal.cycle && is_arc(modal.motion);
-    return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
-}
-
-/// Whether a motion code is for its block only: G5, G5.1, G5.3, G70 to G72.
-bool acts_once(int code) {
-    return code == tenths(5) || code == tenths(5, 1) || code == tenths(5, 3)
-           || (code >= tenths(70) && code < tenths(73));
-}
-
-/// Begins with a motion code, or goes on with none.
-void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
-    std::optional<MotionCode>& active = state.modal.motion;
-    if (active == tenths(5, 2) && motion != active) state.spline.write().gathering = {};
-    active = motion;
-}
-
-/// Another cycle begins with words of its own, but counts from the same level.
-void forget_words(CannedCycle& cycle) {
-    CannedCycle fresh;
-    fresh.initial_level = cycle.initial_level;
-    cycle = fresh;
-}
-
-/// Codes that other ones may not share a block with, even without axis words.
-bool wants_axes_alone(const CodeWord& taker) {
-    constexpr int codes[] = {tenths(10), tenths(28), tenths(30), tenths(52), tenths(92)};
-    return std::find(std::begin(codes), std::end(codes), taker.code->tenths) != std::end(codes);
-}
-
-/// G0 to G3 and the cycles become modal, even when another code takes the axis words.
-core::Result<void> set_motion_mode(Execution& execution) {
-    const Statement& statement = execution.statement;
-    ModalState& modal = execution.modal();
-    const CodeWord* taker = statement.taker_of_axis_words();
-    const CodeWord* cycle = statement.of(ModalGroup::cycle);
-    const CodeWord* motion = statement.of(ModalGroup::motion);
-    const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
-    const bool homes = taker && taker->code->tenths != tenths(4)
-                       && (statement.has_axis_word() || wants_axes_alone(*taker));
-    if (mover && homes && execution.dialect.axis_words_serve_one_code)
-        return core::fail(
-            ErrorCode::syntax,
-            fmt::format("{} and {} both use the axis words of this block: split it into two blocks",
-                        written(*taker->word), written(*mover->word)),
-            mover->word->span);
-    if (motion && !acts_once(motion->code->tenths)) {
-        set_motion(execution.state, motion->code->tenths);
-        modal.cycle.reset();
-    }
-    if (!cycle) return {};
-    if (execution.dialect.cycles_are_motions && !motion) set_motion(execution.state, {});
-    if (cycle->code->tenths == tenths(80)) {
-        modal.cycle.reset();
-        return {};
-    }
-    const int code = cycle->code->tenths;
-    if (!modal.cycle)
-        modal.cycle = CannedCycle{};
-    else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
-        forget_words(*modal.cycle);
-    else if (modal.cycle->code != code)
-        modal.cycle->shift = {};
-    modal.cycle->code = cycle->code->tenths;
-    return {};
-}
-
-/// Before the first motion code: the one that the control begins with.
-core::Result<void> move_without_mode(Execution& execution) {
-    for (const Word& word : execution.block.words) {
-        if (axis_letters.find(word.letter) == std::string_view::npos) continue;
-        if (!execution.dialect.begins_with_g0)
-            return core::fail(ErrorCode::missing_value,
-                              fmt::format("{}: no motion code is active; program G0, G1, G2 or G3",
-                                          written(word)),
-                              word.span);
-        execution.warn(
-            word.span,
-            fmt::format(
-                "{}: no motion code is active; G0, the power-on default of the control, is assumed",
-                written(word)));
-        execution.modal().motion = tenths(0);
-        return move_straight(execution, true);
-    }
-    return {};
-}
-
-/// RS274/NGC 3.5.14: G53 is for this block, and goes with G0 and G1 only. On Fanuc controls it is a
-/// rapid whatever the motion code, and under G91 it is passed over.
-core::Result<void> move_to_machine_place(Execution& execution) {
-    ModalState& modal = execution.modal();
-    const CodeWord* action = execution.statement.of(ModalGroup::action);
-    const bool incremental = modal.distance == DistanceMode::incremental;
-    if (execution.dialect.machine_move_needs_g90 && incremental)
-        return core::fail(ErrorCode::unsupported,
-                          "G53 with G91 stops some controls and is ignored by others: use G90",
-                          action->word->span);
-    if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
-    if (modal.cycle || !is_straight(modal.motion))
-        return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
-    return move_straight(execution, modal.motion == tenths(0));
-}
-
-/// G53 in a block that does not move.
-core::Result<void> refuse_lone_machine_place(const Execution& execution) {
-    if (!execution.dialect.machine_move_needs_motion || !in_machine_coordinates(execution))
-        return {};
-    return core::fail(ErrorCode::missing_value,
-                      "G53 applies to its own block only, and this block has no move: add G0 or G1 "
-                      "and a position",
-                      execution.statement.of(ModalGroup::action)->word->span);
-}
-
-core::Result<void> act_once(Execution& execution, int code) {
-    if (code >= tenths(70)) return turn_contour(execution);
-    return code == tenths(5, 3) ? finish_spline(execution) : follow_spline(execution);
-}
-
-core::Result<void> move_as_modes_say(Execution& execution) {
-    const ModalState& modal = execution.modal();
-    const CodeWord* motion = execution.statement.of(ModalGroup::motion);
-    if (motion && acts_once(motion->code->tenths)) return act_once(execution, motion->code->tenths);
-    const bool threads = modal.cycle && modal.cycle->code == tenths(76);
-    if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
-    if (modal.cycle) return run_canned_cycle(execution);
-    if (!modal.motion) return move_without_mode(execution);
-    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
-    if (is_arc(modal.motion)) {
-        assume_feed(execution);
-        return move_along_arc(execution);
-    }
-    if (modal.motion == tenths(5, 2)) return gather_control_point(execution);
-    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace
@@ -243,6 +35,11 @@ void Execution::feed(const Position& end, double rate) {
     modal().position = end;
     modal().leaves_contour = false;
     emit(StraightFeed{end, rate});
+}
+
+bool in_machine_coordinates(const Execution& execution) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    return action && action->code->tenths == tenths(53);
 }
 
 const Word& moving_word(const Execution& execution) {
@@ -359,19 +156,6 @@ core::Result<Position> target_of(const Execution& execution) {
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
     return target;
-}
-
-core::Result<void> move(Execution& execution) {
-    if (auto set = set_motion_mode(execution); !set) return set;
-    if (auto checked = refuse_lone_arc(execution); !checked) return checked;
-    const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
-    if (!has_motion_words(execution) && !cycle_words) return refuse_lone_machine_place(execution);
-    if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
-    if (auto taken = take_polar_words(execution); !taken) return taken;
-    warn_of_axis_left_out(execution);
-    if (auto moved = move_as_modes_say(execution); !moved) return moved;
-    forget_place_before_rotation(execution);
-    return {};
 }
 
 namespace {

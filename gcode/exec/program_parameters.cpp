@@ -6,8 +6,6 @@
 
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/linuxcnc_parameters.h"
-#include "gcode/siemens/siemens.h"
-#include "gcode/siemens/siemens_flow.h"
 
 namespace gcode {
 namespace {
@@ -186,7 +184,9 @@ std::optional<Value> system_parameter(const InterpreterState& state, const Envir
 
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       std::string_view name) {
-    if (is_siemens(environment)) return siemens_variable(state, name);
+    if (const auto variable = functions_of(dialect(environment.dialect).language).variable)
+        return variable(state, name);
+    if (is_siemens(environment)) return std::nullopt;
     if (is_fanuc(environment)) return std::nullopt;
     return linuxcnc_parameter(state, environment, name);
 }
@@ -196,6 +196,12 @@ core::Result<bool> set_system_parameter(InterpreterState& state, const Environme
     if (is_siemens(environment)) return false;
     if (is_fanuc(environment)) return set_fanuc_parameter(state, environment, number, value, where);
     return set_linuxcnc_parameter(state, environment, number, value, where);
+}
+
+double held_as(SiemensType type, double value) {
+    if (type == SiemensType::whole) return std::round(value);
+    if (type == SiemensType::truth) return value != 0.0 ? 1.0 : 0.0;
+    return value;
 }
 
 } // namespace gcode

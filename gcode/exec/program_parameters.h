@@ -56,4 +56,7 @@ core::Result<bool> set_system_parameter(InterpreterState& state, const Environme
 /// Takes the parameters of the environment over into the state before the first block.
 void load_parameters(InterpreterState& state, const Environment& environment);
 
+/// A value as a variable of a type holds it.
+double held_as(SiemensType type, double value);
+
 } // namespace gcode

@@ -2,7 +2,6 @@
 
 #include "gcode/contour/contour.h"
 #include "gcode/language/codes.h"
-#include "gcode/siemens/siemens_state.h"
 
 namespace gcode {
 namespace {
@@ -59,7 +58,7 @@ bool moves_quickly(const InterpreterState& state) {
            && modal.compensation == Side::none && modal.feed_mode == FeedMode::per_minute
            && !modal.diameter_mode && (modal.unit_said || state.said_unit) && !transforms.polar
            && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
-           && state.contour->is_idle() && !state.siemens->is_iso;
+           && state.contour->is_idle() && !state.speaks_iso;
 }
 
 bool take_quick_move(const Block& block, InterpreterState& state, BlockResult& result) {

@@ -1,27 +1,16 @@
+#include "gcode/exec/state_digest.h"
+
 #include "gcode/contour/contour.h"
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 #include "gcode/exec/interpreter.h"
-#include "gcode/klartext/klartext_state.h"
-#include "gcode/siemens/siemens_state.h"
-#include "gcode/text/digest.h"
 
 namespace gcode {
 namespace {
-
-template <typename T>
-uint64_t number_of(T value) {
-    return static_cast<uint64_t>(static_cast<int64_t>(value));
-}
 
 template <typename Id>
 void add_id(Digest& digest, const std::optional<Id>& id) {
     digest.add(uint64_t{id.has_value()});
     if (id) digest.add(number_of(core::value_of(*id)));
-}
-
-template <typename Values>
-void add_all(Digest& digest, const Values& values) {
-    for (const auto& value : values) digest.add(value);
 }
 
 void add(Digest& digest, const Offsets& offsets) {
@@ -134,6 +123,8 @@ void add(Digest& digest, const Place& place) {
     digest.add(number_of(place.line));
 }
 
+} // namespace
+
 void add(Digest& digest, const Frame& frame) {
     add(digest, frame.called_from);
     add(digest, frame.begin);
@@ -160,6 +151,8 @@ void add(Digest& digest, const Frame& frame) {
     if (*frame.saved) add(digest, **frame.saved);
 }
 
+namespace {
+
 void add(Digest& digest, const Tables& tables) {
     for (const WorkOffset& offset : tables.work) {
         add_all(digest, offset.origin);
@@ -175,85 +168,6 @@ void add(Digest& digest, const Tables& tables) {
     }
 }
 
-void add(Digest& digest, const DefinedCycle& cycle) {
-    digest.add(number_of(cycle.number));
-    for (const double value : {cycle.clearance,   cycle.depth,       cycle.feed,
-                               cycle.peck,        cycle.surface,     cycle.second_clearance,
-                               cycle.dwell_above, cycle.dwell_below, cycle.retract_feed,
-                               cycle.decrement,   cycle.breaks,      cycle.least_peck,
-                               cycle.break_back,  cycle.break_every, cycle.stop_above,
-                               cycle.stop_below,  cycle.start_depth, cycle.disengage,
-                               cycle.pitch,       cycle.infeed,      cycle.diameter})
-        digest.add(value);
-}
-
-void add(Digest& digest, const Transforms& transforms) {
-    for (const auto kind : transforms.order) digest.add(number_of(int(kind)));
-    add_all(digest, transforms.shift);
-    for (const bool mirrored : transforms.mirrored) digest.add(uint64_t{mirrored});
-    digest.add(transforms.turn_deg);
-    digest.add(transforms.scale);
-}
-
-void add(Digest& digest, const KlartextState& klartext) {
-    add_all(digest, klartext.pole);
-    digest.add(uint64_t{klartext.direction.has_value()});
-    if (klartext.direction) add_all(digest, *klartext.direction);
-    digest.add(uint64_t{klartext.corner.has_value()});
-    if (klartext.corner) {
-        for (const Position* place : {&klartext.corner->point, &klartext.corner->end})
-            add_all(digest, *place);
-        add_all(digest, klartext.corner->centre);
-        digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
-    }
-    add(digest, klartext.cycle);
-    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)));
-    digest.add(klartext.call_feed);
-    add(digest, klartext.transforms);
-}
-
-void add(Digest& digest, const SiemensDrilling& cycle) {
-    digest.add(number_of(cycle.number));
-    for (const double value : {cycle.retract,
-                               cycle.reference,
-                               cycle.safety,
-                               cycle.bottom,
-                               cycle.dwell_below,
-                               cycle.first_depth,
-                               cycle.degression,
-                               cycle.dwell_above,
-                               cycle.feed_factor,
-                               double(cycle.clears_chips),
-                               cycle.least_peck,
-                               cycle.break_back,
-                               cycle.dwell_final,
-                               cycle.near,
-                               cycle.pitch,
-                               cycle.speed_in,
-                               cycle.speed_out,
-                               double(cycle.direction_after),
-                               cycle.feed_in,
-                               cycle.feed_out,
-                               double(cycle.direction)})
-        digest.add(value);
-    add_all(digest, cycle.aside);
-}
-
-void add(Digest& digest, const SiemensState& siemens) {
-    add_all(digest, siemens.pole);
-    digest.add(siemens.radius);
-    digest.add(siemens.angle_deg);
-    digest.add(uint64_t{siemens.modal_cycle.has_value()});
-    if (siemens.modal_cycle) add(digest, *siemens.modal_cycle);
-    digest.add(uint64_t{siemens.modal_call.has_value()});
-    if (siemens.modal_call) add(digest, *siemens.modal_call);
-    digest.add(number_of(siemens.edge));
-    digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
-                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.follows_tool)
-                         + 16 * int(siemens.is_iso)));
-    for (const std::string& name : siemens.tool_names) digest.add(name);
-}
-
 } // namespace
 
 uint64_t digest_of(const InterpreterState& state) {
@@ -263,7 +177,7 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
                          + 8 * int(state.ending) + 64 * int(state.said_time)
                          + 128 * int(state.points.present) + 256 * int(state.points.missing)
-                         + 512 * int(state.points.said)));
+                         + 512 * int(state.points.said) + 1024 * int(state.speaks_iso)));
     for (const Frame& frame : state.frames) add(digest, frame);
     for (const ModalMacro& macro : state.modal_macros) {
         digest.add(macro.name);
@@ -278,9 +192,8 @@ uint64_t digest_of(const InterpreterState& state) {
     add_all(digest, state.said);
     digest.add(state.parameters->digest());
     add(digest, *state.tables);
-    add(digest, *state.klartext);
     add(digest, *state.spline);
-    add(digest, *state.siemens);
+    if (const LanguageState* own = state.language.get()) own->add_to(digest);
     return digest.value();
 }
 

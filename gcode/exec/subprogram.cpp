@@ -11,7 +11,7 @@
 #include "gcode/exec/modes.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/codes.h"
-#include "gcode/read/flow_index.h"
+#include "gcode/language/flow_index.h"
 #include "gcode/text/source.h"
 
 namespace gcode {

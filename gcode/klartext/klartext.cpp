@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/state_digest.h"
+#include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
+#include "gcode/language/language.h"
 
 namespace gcode {
 namespace {
@@ -40,10 +43,10 @@ core::Result<void> take_feed(Execution& execution) {
     const CommandKind kind = execution.block.command.kind;
     if (kind == rounding || kind == chamfer) return {}; // it applies to the corner only
     if (const Word* word = execution.statement.word('E')) {
-        if (!execution.state.klartext->call_feed)
+        if (!klartext_of(execution.state).call_feed)
             return core::fail(ErrorCode::missing_value,
                               "FAUTO: no TOOL CALL with F has been programmed yet", word->span);
-        execution.modal().feed = execution.state.klartext->call_feed;
+        execution.modal().feed = klartext_of(execution.state).call_feed;
     }
     return set_feed(execution);
 }
@@ -87,7 +90,7 @@ bool is_motion(CommandKind kind) {
 /// M99 calls once; M89 calls after each motion from its own on, until M99 or another cycle.
 core::Result<void> call_cycle(Execution& execution) {
     const Command& command = execution.block.command;
-    KlartextState& klartext = execution.state.klartext.write();
+    KlartextState& klartext = writable_klartext(execution.state);
     if (command.calls_from_here) klartext.calls_after_motions = true;
     const bool moves = is_motion(command.kind)
                        && (command.kind != straight || execution.statement.has_axis_word());
@@ -99,7 +102,7 @@ core::Result<void> call_cycle(Execution& execution) {
 
 } // namespace
 
-core::Result<void> run_klartext(Execution& execution) {
+core::Result<void> run_klartext(Execution& execution, const ModalState&) {
     const Command& command = execution.block.command;
     warn_of_m_codes(execution);
     const bool late_spindle = ends_block(execution, ModalGroup::spindle, tenths(5));
@@ -112,7 +115,7 @@ core::Result<void> run_klartext(Execution& execution) {
         if (auto done = set_coolant(execution); !done) return done;
     if (auto done = run_statement(execution); !done) return done;
     const bool calls = command.calls_cycle || command.calls_from_here
-                       || execution.state.klartext->calls_after_motions;
+                       || klartext_of(execution.state).calls_after_motions;
     if (calls)
         if (auto done = call_cycle(execution); !done) return done;
     if (late_spindle)
@@ -223,7 +226,7 @@ core::Result<void> call_klartext_tool(Execution& execution) {
             return refuse_statement(execution, "DL without a tool in the spindle");
         use_length(execution, value_of(*execution.modal().tool), *longer);
     }
-    if (statement.word('F')) execution.state.klartext.write().call_feed = execution.modal().feed;
+    if (statement.word('F')) writable_klartext(execution.state).call_feed = execution.modal().feed;
     return set_speed(execution);
 }
 
@@ -274,5 +277,63 @@ core::Result<void> read_system_datum(Execution& execution) {
                                                     place[axis].value_or(0.0));
     return {};
 }
+
+namespace {
+
+void add(Digest& digest, const DefinedCycle& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.clearance,   cycle.depth,       cycle.feed,
+                               cycle.peck,        cycle.surface,     cycle.second_clearance,
+                               cycle.dwell_above, cycle.dwell_below, cycle.retract_feed,
+                               cycle.decrement,   cycle.breaks,      cycle.least_peck,
+                               cycle.break_back,  cycle.break_every, cycle.stop_above,
+                               cycle.stop_below,  cycle.start_depth, cycle.disengage,
+                               cycle.pitch,       cycle.infeed,      cycle.diameter})
+        digest.add(value);
+}
+
+void add(Digest& digest, const Transforms& transforms) {
+    for (const auto kind : transforms.order) digest.add(number_of(int(kind)));
+    add_all(digest, transforms.shift);
+    for (const bool mirrored : transforms.mirrored) digest.add(uint64_t{mirrored});
+    digest.add(transforms.turn_deg);
+    digest.add(transforms.scale);
+}
+
+} // namespace
+
+void add(Digest& digest, const KlartextState& klartext) {
+    add_all(digest, klartext.pole);
+    digest.add(uint64_t{klartext.direction.has_value()});
+    if (klartext.direction) add_all(digest, *klartext.direction);
+    digest.add(uint64_t{klartext.corner.has_value()});
+    if (klartext.corner) {
+        for (const Position* place : {&klartext.corner->point, &klartext.corner->end})
+            add_all(digest, *place);
+        add_all(digest, klartext.corner->centre);
+        digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
+    }
+    add(digest, klartext.cycle);
+    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)));
+    digest.add(klartext.call_feed);
+    add(digest, klartext.transforms);
+}
+
+namespace {
+
+std::shared_ptr<LanguageState> begin_klartext() {
+    return std::make_shared<StateOf<KlartextState>>();
+}
+
+} // namespace
+
+const LanguageFunctions klartext_language = {.parse = parse_klartext,
+                                             .index = klartext_index,
+                                             .execute = run_klartext,
+                                             .run_flow = run_klartext_flow,
+                                             .begin = begin_klartext,
+                                             .block_at = klartext_block,
+                                             .lines_of = lines_of,
+                                             .position_in_file = place_in_lines};
 
 } // namespace gcode

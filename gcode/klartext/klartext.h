@@ -6,9 +6,14 @@
 
 namespace gcode {
 
+struct LanguageFunctions;
+
+/// Heidenhain Klartext.
+extern const LanguageFunctions klartext_language;
+
 /// Runs a block of Klartext: the codes that act before its statement, the statement, then the codes
 /// that act after it.
-core::Result<void> run_klartext(Execution& execution);
+core::Result<void> run_klartext(Execution& execution, const ModalState& before);
 
 // The statements.
 core::Result<void> move_in_klartext(Execution& execution);     // L LP CC C CP CR CT CTP

@@ -326,7 +326,7 @@ core::Result<void> define_cycle(Execution& execution) {
     default:
         break;
     }
-    KlartextState& klartext = execution.state.klartext.write();
+    KlartextState& klartext = writable_klartext(execution.state);
     klartext.calls_after_motions = false;
     if (number != 1)
         klartext.cycle = new_cycle(execution, number);
@@ -338,7 +338,7 @@ core::Result<void> define_cycle(Execution& execution) {
 }
 
 core::Result<void> call_defined_cycle(Execution& execution) {
-    const DefinedCycle cycle = execution.state.klartext->cycle;
+    const DefinedCycle cycle = klartext_of(execution.state).cycle;
     if (cycle.number == 0)
         return refuse_statement(execution,
                                 "there is no cycle to call: no CYCL DEF has been programmed yet");
@@ -407,7 +407,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
 } // namespace
 
 core::Result<void> run_pattern(Execution& execution) {
-    DefinedCycle cycle = execution.state.klartext->cycle;
+    DefinedCycle cycle = klartext_of(execution.state).cycle;
     if (cycle.number < 200)
         return refuse_statement(execution, "there is no cycle for the pattern to repeat: program "
                                            "the CYCL DEF of a cycle from 200 on first");
@@ -428,7 +428,7 @@ core::Result<void> run_pattern(Execution& execution) {
         over[axes.first] = places[i][0];
         over[axes.second] = places[i][1];
         execution.traverse(over);
-        DefinedCycle& called = execution.state.klartext.write().cycle;
+        DefinedCycle& called = writable_klartext(execution.state).cycle;
         called = cycle;
         if (!high && i + 1 < places.size()) called.second_clearance = 0.0;
         if (auto done = call_defined_cycle(execution); !done) return done;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/klartext/klartext.h"
-#include "gcode/read/flow_index.h"
+#include "gcode/language/flow_index.h"
 
 namespace gcode {
 namespace {

@@ -42,7 +42,7 @@ core::Mat3 linear_of(const Transforms& transforms, Kind kind, const PlaneAxes& a
 
 /// Activates the transformations. A shift alone is the local offset and needs no frame.
 void use_transforms(Execution& execution) {
-    const Transforms& transforms = execution.state.klartext->transforms;
+    const Transforms& transforms = klartext_of(execution.state).transforms;
     const PlaneAxes axes = axes_of(execution.modal().plane);
     Offsets offsets = execution.modal().offsets;
     ProgramFrame frame;
@@ -120,7 +120,7 @@ core::Result<void> change_coordinates(Execution& execution) {
     const Command& command = execution.block.command;
     if (command.number == 19) return tilt(execution);
     if (command.part == 0) return {};
-    Transforms transforms = execution.state.klartext->transforms;
+    Transforms transforms = klartext_of(execution.state).transforms;
     switch (command.number) {
     case 7:
         shift(execution, transforms);
@@ -135,8 +135,8 @@ core::Result<void> change_coordinates(Execution& execution) {
         if (auto done = scale(execution, transforms); !done) return done;
         break;
     }
-    if (transforms == execution.state.klartext->transforms) return {};
-    execution.state.klartext.write().transforms = transforms;
+    if (transforms == klartext_of(execution.state).transforms) return {};
+    writable_klartext(execution.state).transforms = transforms;
     use_transforms(execution);
     return {};
 }

@@ -5,7 +5,6 @@
 
 #include "core/base/units.h"
 #include "gcode/contour/flat_path.h"
-#include "gcode/exec/arcs.h"
 #include "gcode/klartext/klartext.h"
 #include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
@@ -30,7 +29,7 @@ PlaneAxes plane_of(const Execution& execution) { return axes_of(execution.modal(
 
 /// The position to which incremental words refer.
 Position base_of(const Execution& execution) {
-    const auto& corner = execution.state.klartext->corner;
+    const auto& corner = klartext_of(execution.state).corner;
     return corner ? corner->point : execution.modal().position;
 }
 
@@ -46,7 +45,7 @@ core::Result<PlanePoint> known_point(const Execution& execution, const Position&
 }
 
 core::Result<PlanePoint> known_pole(const Execution& execution) {
-    const auto& pole = execution.state.klartext->pole;
+    const auto& pole = klartext_of(execution.state).pole;
     if (!pole[0] || !pole[1]) return refuse_statement(execution, "no CC has been programmed yet");
     return PlanePoint{*pole[0], *pole[1]};
 }
@@ -175,7 +174,7 @@ core::Result<PathElement> tangent(Execution& execution) {
     } else {
         FEELER_TRY(contour.end, klartext_target(execution));
     }
-    const auto& direction = execution.state.klartext->direction;
+    const auto& direction = klartext_of(execution.state).direction;
     if (!direction)
         return refuse_statement(execution,
                                 "there is no previous move in the plane to continue tangentially");
@@ -223,7 +222,7 @@ core::Result<PathElement> contour_of(Execution& execution) {
 void remember_direction(Execution& execution, const Position& start, const PathElement& contour,
                         const Position& end) {
     const PlaneAxes axes = plane_of(execution);
-    KlartextState& klartext = execution.state.klartext.write();
+    KlartextState& klartext = writable_klartext(execution.state);
     const auto known = [&](const Position& place) {
         return place[axes.first] && place[axes.second];
     };
@@ -275,7 +274,7 @@ core::Result<void> set_pole(Execution& execution) {
             fmt::format("{}: arcs outside the working plane are not supported yet: use short lines",
                         written(*word)));
     const Position base = base_of(execution);
-    std::array<std::optional<double>, 2> pole = execution.state.klartext->pole;
+    std::array<std::optional<double>, 2> pole = klartext_of(execution.state).pole;
     const size_t plane_axes[] = {axes.first, axes.second};
     const bool here =
         !statement.word(axis_letters[axes.first]) && !statement.word(axis_letters[axes.second]);
@@ -290,7 +289,7 @@ core::Result<void> set_pole(Execution& execution) {
         else
             pole[i] = from ? std::optional(*from + value) : std::nullopt;
     }
-    execution.state.klartext.write().pole = pole;
+    writable_klartext(execution.state).pole = pole;
     return {};
 }
 
@@ -305,7 +304,7 @@ core::Result<void> move_in_klartext(Execution& execution) {
     if (still) return {};
     const Position start = execution.modal().position;
     FEELER_TRY(PathElement contour, contour_of(execution));
-    execution.state.klartext.write().corner.reset();
+    writable_klartext(execution.state).corner.reset();
     FEELER_TRY(contour.end,
                end_before_corner(execution, contour.end, contour.centre, contour.turn));
     if (auto done = go_along(execution, contour); !done) return done;
@@ -382,10 +381,10 @@ core::Result<std::optional<CornerSide>> motion_ahead(Execution& execution, const
                                                      const CornerSide& before) {
     InterpreterState ahead = execution.state;
     ahead.modal.position = end;
-    ahead.klartext.write().looks_ahead = true;
-    ahead.klartext.write().corner.reset();
+    writable_klartext(ahead).looks_ahead = true;
+    writable_klartext(ahead).corner.reset();
     if (has_length(before))
-        ahead.klartext.write().direction = plane_point(heading_at(before, before.end));
+        writable_klartext(ahead).direction = plane_point(heading_at(before, before.end));
     Interpreter interpreter(execution.library, execution.environment);
     const PlaneAxes axes = axes_of(execution.modal().plane);
     for (int count = 0; count < most_blocks_ahead; ++count) {
@@ -455,7 +454,7 @@ core::Result<Position> lay_corner(Execution& execution, const Block& block, cons
         corner.centre = plane_point(cut.arc->centre);
         corner.turn = cut.arc->turns;
     }
-    execution.state.klartext.write().corner = corner;
+    writable_klartext(execution.state).corner = corner;
     return from;
 }
 
@@ -463,7 +462,7 @@ core::Result<Position> lay_corner(Execution& execution, const Block& block, cons
 
 core::Result<Position> end_before_corner(Execution& execution, const Position& end,
                                          const PlanePoint& centre, int turn) {
-    if (execution.state.klartext->looks_ahead) return end;
+    if (klartext_of(execution.state).looks_ahead) return end;
     FEELER_TRY(const std::optional<Block> block, corner_behind(execution));
     if (!block) return end;
     FEELER_TRY(const double corner_size, size_of_corner(execution, *block));
@@ -482,7 +481,7 @@ core::Result<Position> end_before_corner(Execution& execution, const Position& e
 
 /// RND, CHF: makes the corner that end_before_corner has stored.
 core::Result<void> make_corner(Execution& execution) {
-    const KlartextState& before = *execution.state.klartext;
+    const KlartextState& before = klartext_of(execution.state);
     if (before.looks_ahead || !before.corner || before.corner->is_done) return {};
     const Corner corner = *before.corner;
     std::optional<double> feed = execution.modal().feed;
@@ -499,7 +498,7 @@ core::Result<void> make_corner(Execution& execution) {
                                .turns = corner.turn,
                                .feed = *feed});
     }
-    KlartextState& klartext = execution.state.klartext.write();
+    KlartextState& klartext = writable_klartext(execution.state);
     klartext.corner->is_done = true;
     // CT continues in the direction of the motion into which the rounding leads.
     klartext.direction = corner.direction;

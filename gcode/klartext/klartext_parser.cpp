@@ -7,8 +7,8 @@
 
 #include "gcode/klartext/klartext_reader.h"
 #include "gcode/language/expression_parser.h"
+#include "gcode/language/flow_index.h"
 #include "gcode/language/modal_state.h"
-#include "gcode/read/flow_index.h"
 #include "gcode/text/program_text.h"
 #include "gcode/text/source.h"
 

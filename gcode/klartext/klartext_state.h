@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "gcode/language/modal_state.h"
+#include "gcode/exec/interpreter.h"
 
 namespace gcode {
 
@@ -78,5 +78,14 @@ struct KlartextState {
 
     bool operator==(const KlartextState&) const = default;
 };
+
+void add(Digest& digest, const KlartextState& state);
+
+inline const KlartextState& klartext_of(const InterpreterState& state) {
+    return state.language.as<KlartextState>();
+}
+inline KlartextState& writable_klartext(InterpreterState& state) {
+    return state.language.write<KlartextState>();
+}
 
 } // namespace gcode

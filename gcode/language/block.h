@@ -54,9 +54,6 @@ struct SiemensKeyword {
     constexpr bool operator<(const SiemensKeyword& other) const { return name < other.name; }
 };
 
-/// The keyword of a name in capitals; null when it is none.
-const SiemensKeyword* siemens_keyword(std::string_view name);
-
 struct SiemensKeywordUse {
     const SiemensKeyword* keyword;
     core::SourceSpan span;

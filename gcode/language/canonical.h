@@ -121,6 +121,12 @@ bool is_motion(const CanonicalCommand& command);
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);
 
+/// G54 to G59.3, P1 and on, or G500 without an offset.
+std::string name_of_offset(size_t index);
+
+/// XY, ZX, YZ, UV, WU or VW.
+std::string_view name_of(Plane plane);
+
 enum class Severity : uint8_t { note, warning };
 
 /// Something a person should know about a block that does not stop the program.

@@ -5,7 +5,7 @@
 
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
-#include "gcode/exec/arcs.h"
+#include "gcode/contour/flat_path.h"
 #include "gcode/language/environment.h"
 
 namespace gcode {

@@ -30,18 +30,6 @@ std::string place(const Position& position) {
 
 } // namespace
 
-std::string_view name_of(Plane plane) {
-    constexpr std::string_view names[] = {"XY", "ZX", "YZ", "UV", "WU", "VW"};
-    return names[static_cast<size_t>(plane)];
-}
-
-std::string name_of_offset(size_t index) {
-    if (index == no_work_offset) return "G500";
-    if (index < 6) return fmt::format("G{}", 54 + index);
-    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
-    return fmt::format("P{}", index - plain_offset_count + 1);
-}
-
 namespace {
 
 std::string_view name_of(core::SpindleDirection direction) {

@@ -10,12 +10,6 @@ namespace gcode {
 /// are rounded to a millionth; unknown coordinates are left out.
 std::string to_text(const CanonicalCommand& command);
 
-/// G54 to G59.3, P1 and up, or G500 without an offset.
-std::string name_of_offset(size_t index);
-
-/// XY, ZX, YZ, UV, WU or VW.
-std::string_view name_of(Plane plane);
-
 /// The commands of a program, one on each line after its line number, then the warnings of each
 /// block and the error that stopped it: the format of golden files.
 std::string to_text(const Run& run);

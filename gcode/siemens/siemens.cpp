@@ -7,7 +7,10 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/flow.h"
+#include "gcode/exec/state_digest.h"
+#include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
+#include "gcode/siemens/siemens_parser.h"
 
 namespace gcode {
 namespace {
@@ -75,13 +78,13 @@ core::Result<void> note_keywords(Execution& execution) {
             say_so(use.keyword->text);
             break;
         case transformation:
-            execution.state.siemens.write().follows_tool = true;
+            writable_siemens(execution.state).follows_tool = true;
             say_so("not modelled: rotary axes are followed in program coordinates, without the "
                    "machine's moves that keep the tip in place");
             break;
         case transformation_off:
-            if (execution.state.siemens->follows_tool)
-                execution.state.siemens.write().follows_tool = false;
+            if (siemens_of(execution.state).follows_tool)
+                writable_siemens(execution.state).follows_tool = false;
             break;
         case diameters:
             execution.modal().diameter_mode = true;
@@ -127,13 +130,13 @@ core::Result<void> act_in_siemens(Execution& execution) {
 /// MCALL alone, with a cycle, or with a program.
 core::Result<void> set_modal_call(Execution& execution) {
     if (!execution.block.siemens.is_modal_call) return {};
-    SiemensState& siemens = execution.state.siemens.write();
+    SiemensState& siemens = writable_siemens(execution.state);
     siemens.modal_cycle.reset();
     siemens.modal_call.reset();
     if (execution.block.siemens.name.empty()) return {};
     FEELER_TRY(Frame frame, called_frame(flow_step_of(execution)));
     frame.modal_macro = 1;
-    execution.state.siemens.write().modal_call = std::move(frame);
+    writable_siemens(execution.state).modal_call = std::move(frame);
     return {};
 }
 
@@ -156,7 +159,7 @@ bool has_moved(const Execution& execution) {
 
 /// Runs the modal call of MCALL after each block with a move.
 core::Result<void> call_modal(Execution& execution) {
-    const SiemensState& siemens = *execution.state.siemens;
+    const SiemensState& siemens = siemens_of(execution.state);
     if (!siemens.modal_cycle && !siemens.modal_call) return {};
     if (execution.block.siemens.is_modal_call || execution.result.is_cycle || !has_moved(execution))
         return {};
@@ -198,7 +201,7 @@ core::Result<void> switch_language(Execution& execution) {
                               "G291 while TRANS, ROT, SCALE or MIRROR is active is not supported "
                               "yet: cancel them with TRANS first",
                               entry.word->span);
-        execution.state.siemens.write().is_iso = true;
+        execution.state.speaks_iso = true;
     }
     return {};
 }
@@ -228,7 +231,7 @@ FlowStep flow_step_of(Execution& execution) {
 
 bool changes_levels_in_siemens(const Statement& statement, const InterpreterState& state) {
     return (state.frames.size() > 1 && statement.of(ModalGroup::stopping))
-           || state.siemens->modal_call.has_value();
+           || siemens_of(state).modal_call.has_value();
 }
 
 void turn_siemens_spindle(Execution& execution, int code) {
@@ -241,30 +244,16 @@ void turn_siemens_spindle(Execution& execution, int code) {
     execution.emit(Spindle{modal.spindle, stopped ? 0.0 : modal.speed});
 }
 
-core::Result<void> run_siemens(Execution& execution) {
+core::Result<void> run_siemens(Execution& execution, const ModalState&) {
     for (const SiemensStep step : siemens_steps)
         if (auto done = step(execution); !done) return done;
-    return {};
-}
-
-core::Result<void> leave_iso(Execution& execution) {
-    if (!execution.statement.of(ModalGroup::other)) return {};
-    for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->letter != 'G' || entry.code->tenths != tenths(290)) continue;
-        if (!execution.state.siemens->is_iso)
-            return core::fail(ErrorCode::unsupported,
-                              "G290: with the dialect siemens-iso the whole program is in the ISO "
-                              "language; select the dialect siemens, in which G291 switches to ISO",
-                              entry.word->span);
-        execution.state.siemens.write().is_iso = false;
-    }
     return {};
 }
 
 std::optional<Value> siemens_variable(const InterpreterState& state, std::string_view name) {
     const ModalState& modal = state.modal;
     if (name == "$p_toolno" || name == "$p_tool")
-        return Value(name == "$p_tool" ? state.siemens->edge
+        return Value(name == "$p_tool" ? siemens_of(state).edge
                      : modal.tool      ? value_of(*modal.tool)
                                        : 0);
     if (name == "$p_f") return Value(from_mm(modal.feed.value_or(0.0), modal.unit));
@@ -296,10 +285,10 @@ int number_of_name(Execution& execution, const SiemensArgument& name) {
     const char* end = name.text.data() + name.text.size();
     const auto read = std::from_chars(name.text.data(), end, number);
     if (read.ec == std::errc() && read.ptr == end && number >= 0) return number;
-    const auto& known = execution.state.siemens->tool_names;
+    const auto& known = siemens_of(execution.state).tool_names;
     const auto found = std::find(known.begin(), known.end(), name.text);
     if (found != known.end()) return static_cast<int>(found - known.begin()) + 1;
-    auto& names = execution.state.siemens.write().tool_names;
+    auto& names = writable_siemens(execution.state).tool_names;
     names.emplace_back(name.text);
     number = static_cast<int>(names.size());
     execution.warn(name.span,
@@ -313,7 +302,7 @@ int number_of_name(Execution& execution, const SiemensArgument& name) {
 /// Applies the length of the active edge along the normal of the plane.
 void use_length(Execution& execution, core::SourceSpan where) {
     ModalState& modal = execution.modal();
-    const int edge = execution.state.siemens->edge;
+    const int edge = siemens_of(execution.state).edge;
     const int tool = modal.tool ? value_of(*modal.tool) : 0;
     Offsets offsets = modal.offsets;
     offsets.tool = {};
@@ -347,7 +336,7 @@ void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
     // MD20270 as delivered: the first edge is active after a tool change.
     const Word* edge = execution.statement.word('D');
-    execution.state.siemens.write().edge = 1;
+    writable_siemens(execution.state).edge = 1;
     if (!edge) use_length(execution, where);
 }
 
@@ -355,7 +344,7 @@ core::Result<void> select(Execution& execution, int number, core::SourceSpan whe
     execution.modal().selected_tool = ToolNumber(number);
     execution.column = where.column;
     execution.emit(SelectTool{ToolNumber(number)});
-    if (execution.state.siemens->changes_with_t) change(execution, where, true);
+    if (siemens_of(execution.state).changes_with_t) change(execution, where, true);
     return {};
 }
 
@@ -377,9 +366,9 @@ core::Result<void> use_siemens_tool(Execution& execution) {
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word has been programmed yet",
                           entry->word->span);
-    if (!execution.state.siemens->changes_with_m6)
-        execution.state.siemens.write().changes_with_m6 = true;
-    if (execution.state.siemens->changes_with_t) return {};
+    if (!siemens_of(execution.state).changes_with_m6)
+        writable_siemens(execution.state).changes_with_m6 = true;
+    if (siemens_of(execution.state).changes_with_t) return {};
     change(execution, entry->word->span, true);
     return {};
 }
@@ -390,7 +379,7 @@ core::Result<void> use_siemens_edge(Execution& execution) {
     FEELER_TRY(const int edge, whole_number(*word, 0, 32000));
     execution.column = word->span.column;
     const ModalState& modal = execution.modal();
-    const SiemensState& siemens = *execution.state.siemens;
+    const SiemensState& siemens = siemens_of(execution.state);
     // MD22550: on a machine without M6, T changes the tool.
     const bool with_t = edge > 0 && !siemens.changes_with_m6 && !siemens.changes_with_t
                         && modal.selected_tool && !modal.tool;
@@ -399,10 +388,10 @@ core::Result<void> use_siemens_edge(Execution& execution) {
                        "no M6 before this D: the tool is assumed to be changed by T alone, which "
                        "depends on the machine data of the control",
                        Severity::note);
-        execution.state.siemens.write().changes_with_t = true;
+        writable_siemens(execution.state).changes_with_t = true;
         change(execution, word->span, false);
     }
-    execution.state.siemens.write().edge = edge;
+    writable_siemens(execution.state).edge = edge;
     use_length(execution, word->span);
     return {};
 }
@@ -417,16 +406,75 @@ core::Result<void> set_siemens_radius(Execution& execution) {
                      without,           execution.state,       execution.result,  execution.column};
     if (auto done = set_cutter_radius(shared); !done) return done;
     if (!entry || execution.modal().compensation == Side::none) return {};
-    if (execution.state.siemens->edge == 0)
+    if (siemens_of(execution.state).edge == 0)
         execution.warn(entry->word->span,
                        fmt::format("{}: D0 is active, so the control has no radius to compensate; "
                                    "the tool radius is used",
                                    written(*entry->word)));
-    const core::Mat3& linear = execution.state.siemens->frame.linear;
+    const core::Mat3& linear = siemens_of(execution.state).frame.linear;
     const auto first = static_cast<int>(axes_of(execution.modal().plane).first);
     const double stretch = glm::length(linear[first]);
     execution.modal().compensation_radius /= stretch;
     return {};
 }
+
+namespace {
+
+void add(Digest& digest, const SiemensDrilling& cycle) {
+    digest.add(number_of(cycle.number));
+    for (const double value : {cycle.retract,
+                               cycle.reference,
+                               cycle.safety,
+                               cycle.bottom,
+                               cycle.dwell_below,
+                               cycle.first_depth,
+                               cycle.degression,
+                               cycle.dwell_above,
+                               cycle.feed_factor,
+                               double(cycle.clears_chips),
+                               cycle.least_peck,
+                               cycle.break_back,
+                               cycle.dwell_final,
+                               cycle.near,
+                               cycle.pitch,
+                               cycle.speed_in,
+                               cycle.speed_out,
+                               double(cycle.direction_after),
+                               cycle.feed_in,
+                               cycle.feed_out,
+                               double(cycle.direction)})
+        digest.add(value);
+    add_all(digest, cycle.aside);
+}
+
+} // namespace
+
+void add(Digest& digest, const SiemensState& siemens) {
+    add_all(digest, siemens.pole);
+    digest.add(siemens.radius);
+    digest.add(siemens.angle_deg);
+    digest.add(uint64_t{siemens.modal_cycle.has_value()});
+    if (siemens.modal_cycle) add(digest, *siemens.modal_cycle);
+    digest.add(uint64_t{siemens.modal_call.has_value()});
+    if (siemens.modal_call) add(digest, *siemens.modal_call);
+    digest.add(number_of(siemens.edge));
+    digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
+                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.follows_tool)));
+    for (const std::string& name : siemens.tool_names) digest.add(name);
+}
+
+namespace {
+
+std::shared_ptr<LanguageState> begin_siemens() { return std::make_shared<StateOf<SiemensState>>(); }
+
+} // namespace
+
+const LanguageFunctions siemens_language = {.parse = parse_siemens,
+                                            .index = siemens_index,
+                                            .execute = run_siemens,
+                                            .run_flow = run_siemens_flow,
+                                            .begin = begin_siemens,
+                                            .changes_level = changes_levels_in_siemens,
+                                            .variable = siemens_variable};
 
 } // namespace gcode

@@ -7,13 +7,13 @@
 
 namespace gcode {
 
-/// Runs a block of native Siemens that is not a flow statement.
-core::Result<void> run_siemens(Execution& execution);
+struct LanguageFunctions;
 
-/// G290 after G291: the program continues in native Siemens.
-///
-/// Errors: unsupported if the program started in the ISO language.
-core::Result<void> leave_iso(Execution& execution);
+/// Native Siemens, SINUMERIK 840D.
+extern const LanguageFunctions siemens_language;
+
+/// Runs a block of native Siemens that is not a flow statement.
+core::Result<void> run_siemens(Execution& execution, const ModalState& before);
 
 /// Whether the call level may change in this block.
 bool changes_levels_in_siemens(const Statement& statement, const InterpreterState& state);

@@ -241,7 +241,7 @@ core::Result<void> run_hole_cycle(Execution& execution, const SiemensKeywordUse&
     if (use.keyword->action != SiemensAction::drill) return run_siemens_holes(execution, use);
     FEELER_TRY(const SiemensDrilling cycle, drilling_of(execution, use));
     if (execution.block.siemens.is_modal_call) {
-        execution.state.siemens.write().modal_cycle = cycle;
+        writable_siemens(execution.state).modal_cycle = cycle;
         return {};
     }
     return drill_here(execution, cycle);

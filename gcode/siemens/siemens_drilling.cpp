@@ -260,7 +260,7 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                                       "number from 1 to {}, but is {:.12g}",
                                       use.keyword->name, most_holes, count),
                           use.span);
-    const std::optional<SiemensDrilling> cycle = execution.state.siemens->modal_cycle;
+    const std::optional<SiemensDrilling> cycle = siemens_of(execution.state).modal_cycle;
     if (!cycle)
         execution.warn(use.span, fmt::format("{}: no drilling cycle is active (MCALL), so the tool "
                                              "moves to the positions without drilling",

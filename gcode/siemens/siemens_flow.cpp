@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "gcode/language/flow_index.h"
+#include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
-#include "gcode/read/flow_index.h"
-#include "gcode/read/parser.h"
 #include "gcode/text/source.h"
 
 namespace gcode {
@@ -270,12 +270,6 @@ ProgramLines lines_around(const FlowIndex& index, uint32_t line) {
         if (mark.line > line && lines.end == UINT32_MAX) lines.end = mark.line;
     }
     return lines;
-}
-
-double held_as(SiemensType type, double value) {
-    if (type == SiemensType::whole) return std::round(value);
-    if (type == SiemensType::truth) return value != 0.0 ? 1.0 : 0.0;
-    return value;
 }
 
 core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument) {

@@ -28,7 +28,4 @@ core::Result<void> declare_variables(const FlowStep& step);
 /// The value of an argument.
 core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument);
 
-/// Converts a value to the type of a variable.
-double held_as(SiemensType type, double value);
-
 } // namespace gcode

@@ -65,7 +65,7 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
 
 /// Activates the frame. A shift alone is the local offset and needs no frame.
 void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues& others) {
-    execution.state.siemens.write().frame = frame;
+    writable_siemens(execution.state).frame = frame;
     Offsets offsets = execution.modal().offsets;
     offsets.local = others;
     const bool shifts_alone = frame.linear == core::Mat3(1.0);
@@ -102,7 +102,7 @@ core::Result<void> change_siemens_frame(Execution& execution) {
         AxisValues others = adds ? execution.modal().offsets.local : AxisValues{};
         others[0] = others[1] = others[2] = 0.0;
         FEELER_TRY(const ProgramFrame step, step_of(execution, action, others));
-        ProgramFrame frame = adds ? execution.state.siemens->frame : ProgramFrame{};
+        ProgramFrame frame = adds ? siemens_of(execution.state).frame : ProgramFrame{};
         frame.shift += frame.linear * step.shift;
         frame.linear = frame.linear * step.linear;
         const core::Vec3& tool_axis = frame.linear[2];

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
-#include "gcode/exec/arcs.h"
+#include "gcode/contour/flat_path.h"
+#include "gcode/iso/iso.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/siemens/siemens.h"
 
@@ -89,7 +90,7 @@ core::Result<Position> polar_target(Execution& execution) {
     if (statement.word(axis_letters[axes.first]) || statement.word(axis_letters[axes.second]))
         return refuse(execution, "use either RP= and AP= or the axes of the plane, not both",
                       ErrorCode::syntax);
-    SiemensState& siemens = execution.state.siemens.write();
+    SiemensState& siemens = writable_siemens(execution.state);
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
     const auto take = [&](const Word* word, std::optional<double>& value, double scale) {
         if (!word) return;
@@ -135,7 +136,7 @@ core::Result<void> move_polar(Execution& execution) {
         return refuse(execution, "RP= and AP= can only be used with G0 to G3", ErrorCode::syntax);
     const Word* word = execution.statement.word('P');
     const int turns = word ? static_cast<int>(std::clamp(word->value, 1.0, 1000.0)) : 1;
-    return go_along_arc(execution, end, execution.state.siemens->pole,
+    return go_along_arc(execution, end, siemens_of(execution.state).pole,
                         motion == tenths(2) ? -turns : turns);
 }
 
@@ -297,7 +298,7 @@ void remember_direction(Execution& execution, const Position& start) {
 }
 
 core::Result<void> check_scaled_arc(const Execution& execution) {
-    const ProgramFrame& frame = execution.state.siemens->frame;
+    const ProgramFrame& frame = siemens_of(execution.state).frame;
     const PlaneAxes axes = axes_of(execution.modal().plane);
     if (!execution.modal().offsets.has_frame || axes.first > 2) return {};
     const double first = glm::length(frame.linear[static_cast<int>(axes.first)]);
@@ -367,7 +368,7 @@ core::Result<void> set_pole(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
-    SiemensState& siemens = execution.state.siemens.write();
+    SiemensState& siemens = writable_siemens(execution.state);
     const int code = entry.code->tenths / 10;
     std::array<double, 2> pole{};
     const size_t plane_axes[] = {axes.first, axes.second};

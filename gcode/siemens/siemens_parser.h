@@ -2,7 +2,7 @@
 
 #include "gcode/language/block.h"
 #include "gcode/language/dialect.h"
-#include "gcode/read/flow_index.h"
+#include "gcode/language/flow_index.h"
 
 namespace gcode {
 

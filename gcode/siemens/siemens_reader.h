@@ -12,6 +12,9 @@ namespace gcode {
 /// variables with a leading `$`.
 std::string siemens_name_at(const Lexer& lexer);
 
+/// The keyword with a name in upper case; null if there is none.
+const SiemensKeyword* siemens_keyword(std::string_view name);
+
 /// A block of native Siemens while it is parsed.
 struct SiemensReader {
     Lexer lexer;

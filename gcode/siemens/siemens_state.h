@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gcode/exec/frame.h"
-#include "gcode/language/modal_state.h"
+#include "gcode/exec/interpreter.h"
 
 namespace gcode {
 
@@ -55,10 +54,18 @@ struct SiemensState {
     bool changes_with_m6 = false;
     bool feeds_in_inches = false; // G700
     bool follows_tool = false;    // TRAORI
-    bool is_iso = false;          // G291
     std::vector<std::string> tool_names;
 
     bool operator==(const SiemensState&) const = default;
 };
+
+void add(Digest& digest, const SiemensState& state);
+
+inline const SiemensState& siemens_of(const InterpreterState& state) {
+    return state.language.as<SiemensState>();
+}
+inline SiemensState& writable_siemens(InterpreterState& state) {
+    return state.language.write<SiemensState>();
+}
 
 } // namespace gcode

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "gcode/lower/trace.h"
 #include "gcode/siemens/siemens.h"
 
 namespace gcode {
@@ -73,7 +72,7 @@ core::Result<void> set_siemens_feed(Execution& execution) {
         modal.unit = inch ? LengthUnit::inch : LengthUnit::mm;
         modal.unit_said = true;
         if (code == tenths(700) || code == tenths(710))
-            execution.state.siemens.write().feeds_in_inches = code == tenths(700);
+            writable_siemens(execution.state).feeds_in_inches = code == tenths(700);
     }
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* word = execution.statement.word('F');
@@ -83,7 +82,7 @@ core::Result<void> set_siemens_feed(Execution& execution) {
                           fmt::format("{}: a feed rate must not be negative", written(*word)),
                           word->span);
     const LengthUnit unit =
-        execution.state.siemens->feeds_in_inches ? LengthUnit::inch : LengthUnit::mm;
+        siemens_of(execution.state).feeds_in_inches ? LengthUnit::inch : LengthUnit::mm;
     modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
     return {};
 }

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/exec/checkpoints.h"
+#include "tests/gcode/checkpoints.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 #include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gcode/read/parser.h"
+#include "gcode/language/language.h"
 
 namespace gcode {
 namespace {

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/read/parser.h"
-#include "gcode/read/plain_words.h"
+#include "gcode/iso/plain_words.h"
+#include "gcode/language/language.h"
 
 namespace gcode {
 namespace {

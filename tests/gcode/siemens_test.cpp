@@ -252,7 +252,7 @@ TEST(SiemensState, IsAsBeforeTheBlockAtFaultAndCopiesAgree) {
     InterpreterState other = state;
     other.siemens.write().edge = 2;
     EXPECT_NE(digest_of(state), digest_of(other));
-    EXPECT_EQ(state.siemens->edge, 1);
+    EXPECT_EQ(siemens_of(state).edge, 1);
 }
 
 TEST(SiemensRecognition, SeesNativePrograms) {

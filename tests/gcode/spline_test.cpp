@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 #include "tests/support/reference.h"
 
 namespace gcode {

@@ -10,9 +10,6 @@
 
 namespace gcode {
 
-struct Dialect;
-struct Program;
-
 /// A flow statement and where it stands.
 struct FlowMark {
     FlowKind kind = FlowKind::none;
@@ -62,9 +59,5 @@ std::optional<double> take_block_number(Lexer& lexer);
 
 /// The name of a label that is written as a number: 5, or 5.5.
 std::string label_of(double number);
-
-/// Looks through all lines, or those before the first that is not to be had. What cannot be read is
-/// left out: it is an error when it is run.
-FlowIndex index_of(const Program& program, const Dialect& dialect);
 
 } // namespace gcode

@@ -1,11 +1,11 @@
-#include "gcode/read/flow_parser.h"
+#include "gcode/iso/flow_parser.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "gcode/language/expression_parser.h"
-#include "gcode/read/flow_index.h"
+#include "gcode/language/flow_index.h"
 
 namespace gcode {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "gcode/language/codes.h"
+#include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
-#include "gcode/read/parser.h"
 #include "gcode/text/source.h"
 
 namespace gcode {

@@ -1,4 +1,4 @@
-#include "gcode/read/plain_words.h"
+#include "gcode/iso/plain_words.h"
 
 #include "gcode/language/lexer.h"
 

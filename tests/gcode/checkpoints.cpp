@@ -1,11 +1,11 @@
-#include "gcode/exec/checkpoints.h"
+#include "tests/gcode/checkpoints.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "gcode/contour/contour.h"
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 #include "gcode/klartext/klartext_state.h"
 #include "gcode/siemens/siemens_state.h"
 
@@ -47,7 +47,7 @@ size_t memory_of(const InterpreterState& state, const InterpreterState* before) 
     if (!before || !state.parameters.is_shared_with(before->parameters))
         bytes += memory_of(*state.parameters);
     if (!before || !state.tables.is_shared_with(before->tables)) bytes += memory_of(*state.tables);
-    if (!before || !state.klartext.is_shared_with(before->klartext)) bytes += sizeof(KlartextState);
+    if (!before || !state.language.is_shared_with(before->language)) bytes += sizeof(KlartextState);
     return bytes;
 }
 

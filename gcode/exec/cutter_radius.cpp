@@ -6,6 +6,7 @@
 
 #include "gcode/contour/contour.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
 
 namespace gcode {
 namespace {
@@ -210,6 +211,36 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
     modal.compensation_radius = diameter / 2.0 / stretch;
     modal.turning_orientation = orientation;
+    return {};
+}
+
+core::Result<void> ask_for_corner(Execution& execution) {
+    const Word* word = execution.statement.corner;
+    if (!word) return {};
+    const double size = length_of(execution, *word);
+    if (size < 0.0)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: the size of a corner must not be negative", written(*word)),
+            word->span);
+    const auto& commands = execution.result.commands;
+    const bool feeds = !commands.empty() && !execution.modal().cycle
+                       && (std::holds_alternative<StraightFeed>(commands.back())
+                           || std::holds_alternative<ArcFeed>(commands.back()));
+    if (!feeds)
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("{}: a corner must be programmed in a block with G1, G2 or G3",
+                        written(*word)),
+            word->span);
+    if (size == 0.0) return {};
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    if (auto checked = check_arc_in_frame(execution, axes); !checked) return checked;
+    execution.state.contour.write().corners.asked =
+        CornerWord{.kind = word->letter == 'r' ? CornerKind::rounding : CornerKind::chamfer,
+                   .size = size,
+                   .where = word->span,
+                   .written = written(*word)};
     return {};
 }
 

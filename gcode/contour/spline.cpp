@@ -1,4 +1,4 @@
-#include "gcode/cycles/spline.h"
+#include "gcode/contour/spline.h"
 
 #include <algorithm>
 #include <cmath>

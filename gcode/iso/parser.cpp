@@ -1,5 +1,3 @@
-#include "gcode/read/parser.h"
-
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -8,12 +6,11 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/program_parameters.h"
-#include "gcode/klartext/klartext_parser.h"
+#include "gcode/iso/flow_parser.h"
+#include "gcode/iso/iso.h"
+#include "gcode/iso/plain_words.h"
 #include "gcode/language/expression_parser.h"
 #include "gcode/language/lexer.h"
-#include "gcode/read/flow_parser.h"
-#include "gcode/read/plain_words.h"
-#include "gcode/siemens/siemens_parser.h"
 
 namespace gcode {
 
@@ -276,33 +273,11 @@ private:
 
 } // namespace
 
-void Block::clear() {
-    words.clear();
-    comments.clear();
-    assignments.clear();
-    pool.clear();
-    flow.arguments.clear();
-    flow = Flow{.arguments = std::move(flow.arguments)};
-    command = {};
-    block_delete.reset();
-    tape_mark = false;
-    is_program_name = false;
-    kept_words.reset();
-    has_message = false;
-}
-
-core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,
-                              Block& block) {
-    block.clear();
-    block.line = line;
-    block.text = text;
-    if (dialect.language == Language::words) {
-        if (read_plain_words(text, line, dialect, block)) return {};
-        block.words.clear();
-        return LineParser(text, line, dialect, block).parse();
-    }
-    if (dialect.language == Language::klartext) return parse_klartext(text, line, dialect, block);
-    return parse_siemens(text, line, dialect, block);
+core::Result<void> parse_iso(std::string_view text, uint32_t line, const Dialect& dialect,
+                             Block& block) {
+    if (read_plain_words(text, line, dialect, block)) return {};
+    block.words.clear();
+    return LineParser(text, line, dialect, block).parse();
 }
 
 namespace {

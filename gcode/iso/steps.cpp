@@ -6,8 +6,20 @@
 
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/rules.h"
+#include "gcode/iso/iso.h"
+#include "gcode/iso/plain_words.h"
+#include "gcode/language/flow_index.h"
+#include "gcode/language/language.h"
 
 namespace gcode {
+
+const LanguageFunctions iso_language = {.parse = parse_iso,
+                                        .index = iso_index,
+                                        .execute = execute_iso,
+                                        .run_flow = run_iso_flow,
+                                        .read_plain = read_plain_words};
+
 namespace {
 
 constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
@@ -109,6 +121,17 @@ constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
 
 } // namespace
 
+namespace {
+
+/// G290 after G291: the program goes on in native Siemens.
+core::Result<void> leave_iso(Execution& execution) {
+    if (!execution.statement.of(ModalGroup::other)) return {};
+    for (const CodeWord& entry : execution.statement.codes())
+        if (entry.code->letter == 'G' && entry.code->tenths == tenths(290))
+            execution.state.speaks_iso = false;
+    return {};
+}
+
 core::Result<void> take_steps(Execution& execution) {
     const Statement& statement = execution.statement;
     const bool only_moves =
@@ -119,6 +142,14 @@ core::Result<void> take_steps(Execution& execution) {
         if (step.concerns(execution))
             if (auto done = step.take(execution); !done) return done;
     return {};
+}
+
+} // namespace
+
+core::Result<void> execute_iso(Execution& execution, const ModalState& before) {
+    if (auto taken = take_steps(execution); !taken) return taken;
+    check_modal_rules(execution, before);
+    return execution.state.speaks_iso ? leave_iso(execution) : core::Result<void>{};
 }
 
 core::Result<void> act(Execution& execution) {
@@ -156,25 +187,6 @@ core::Result<void> act(Execution& execution) {
     default:
         return {}; // G4 and G53 have steps of their own
     }
-}
-
-core::Result<void> stop(Execution& execution) {
-    const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
-    if (!entry) return {};
-    switch (entry->code->tenths) {
-    case tenths(1):
-        execution.emit(OptionalStop{});
-        break;
-    case tenths(2):
-    case tenths(30):
-        execution.state.ending = Ending::program_end;
-        execution.emit(ProgramEnd{});
-        break;
-    default:
-        execution.emit(ProgramStop{});
-        break; // M0, M60
-    }
-    return {};
 }
 
 } // namespace gcode

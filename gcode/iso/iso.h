@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+
+#include "gcode/exec/execution.h"
+#include "gcode/exec/flow.h"
+
+namespace gcode {
+
+struct FlowIndex;
+struct LanguageFunctions;
+
+/// The language of ISO 6983: letters with numbers, with the macros of LinuxCNC and Fanuc.
+extern const LanguageFunctions iso_language;
+
+core::Result<void> parse_iso(std::string_view text, uint32_t line, const Dialect& dialect,
+                             Block& block);
+
+FlowIndex iso_index(const Program& program, const Dialect& dialect);
+
+core::Result<void> run_iso_flow(const FlowStep& step);
+
+/// Carries out a block of codes and words, each kind in its turn, and checks the rules on modes.
+///
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
+core::Result<void> execute_iso(Execution& execution, const ModalState& before);
+
+core::Result<void> act(Execution& execution);  // G10 G28 G30 G52 G92
+core::Result<void> move(Execution& execution); // G0 to G3, G73 to G89, with G53
+
+} // namespace gcode
