@@ -368,7 +368,7 @@ std::string code_text(int tenths) {
 InspectedValue motion(const State& state, const Dialect& dialect) {
     if (state.modal.cycle) return code(dialect, code_text(state.modal.cycle->code), "cycle");
     if (!state.modal.motion) return {std::nullopt, "none"};
-    const int tenths = *state.modal.motion;
+    const int tenths = tenths_of(*state.modal.motion);
     const char* meaning = tenths == 0    ? "rapid"
                           : tenths == 10 ? "feed"
                           : tenths == 20 ? "arc clockwise"

@@ -107,7 +107,7 @@ core::Result<void> mill_circular_pocket(Execution& execution) {
     middle[0] = target[0];
     middle[1] = target[1];
     if (middle != execution.modal().position) {
-        if (execution.modal().motion == tenths(0))
+        if (execution.modal().motion == MotionCode::rapid)
             execution.traverse(middle);
         else
             execution.feed(middle, pocket.feed);

@@ -143,17 +143,18 @@ core::Result<void> emit_move(Execution& execution, const TurningMove& move) {
     Position end = modal.position;
     end[0] = move.end.x, end[2] = move.end.z;
     if (move.rapid) {
-        modal.motion = tenths(0);
+        modal.motion = MotionCode::rapid;
         execution.traverse(end);
         return {};
     }
     FEELER_TRY(const double rate, feed_rate(execution, way_between(modal.position, end)));
-    modal.motion = tenths(1);
+    modal.motion = MotionCode::straight;
     if (!move.arc) {
         execution.feed(end, rate);
         return {};
     }
-    modal.motion = tenths(move.arc->counterclockwise ? 3 : 2);
+    modal.motion =
+        move.arc->counterclockwise ? MotionCode::arc_counterclockwise : MotionCode::arc_clockwise;
     execution.emit(ArcFeed{end,
                            Plane::zx,
                            {move.arc->centre.z, move.arc->centre.x},
@@ -178,7 +179,7 @@ core::Result<void> turn_contour(Execution& execution) {
                           mover.span);
     execution.result.is_cycle = true;
     execution.traverse(start);
-    execution.modal().motion = tenths(0);
+    execution.modal().motion = MotionCode::rapid;
     Tracing tracing{execution, execution.state};
     if (auto entered = tracing.enter(); !entered) return entered;
     if (auto followed = tracing.follow(); !followed) return followed;

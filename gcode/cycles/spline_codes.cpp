@@ -149,7 +149,7 @@ core::Result<void> finish_spline(Execution& execution) {
                 "{} takes no axis words: program the last control point in the block before it",
                 written(mover)),
             mover.span);
-    if (modal.motion != tenths(5, 2))
+    if (modal.motion != MotionCode::spline_control_point)
         return core::fail(
             ErrorCode::syntax,
             fmt::format("{} ends a curve, but none was started with G5.2", written(mover)),

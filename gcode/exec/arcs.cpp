@@ -150,7 +150,7 @@ core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const P
 
 core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes,
                                const Position& end) {
-    const bool clockwise = execution.modal().motion == tenths(2);
+    const bool clockwise = execution.modal().motion == MotionCode::arc_clockwise;
     SeenArc arc{.where = moving_word(execution).span,
                 .code = clockwise ? "G2" : "G3",
                 .clockwise = clockwise,

@@ -1,6 +1,7 @@
 #include "gcode/exec/interpreter.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -63,7 +64,7 @@ using core::ErrorCode;
 /// Whether a flow statement goes to another level of calls.
 bool changes_level(FlowKind kind) {
     return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
-           || kind == FlowKind::call_program || kind >= FlowKind::for_loop;
+           || kind == FlowKind::call_program || is_siemens_statement(kind);
 }
 
 /// Whether a line is skipped without a look at its words: they may be of another machine.
@@ -363,7 +364,15 @@ core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
 
 InterpreterState::InterpreterState() = default;
 
-bool InterpreterState::operator==(const InterpreterState&) const = default;
+bool continue_alike(const InterpreterState& a, const InterpreterState& b) {
+    const auto deciding = [](const InterpreterState& state) {
+        return std::tie(state.modal, state.next, state.next_block, state.tape_open, state.said_unit,
+                        state.said_home, state.said_time, state.points, state.ending, state.frames,
+                        state.modal_macros, state.said, state.parameters, state.tables,
+                        state.contour, state.spline, state.language, state.speaks_iso);
+    };
+    return deciding(a) == deciding(b);
+}
 
 bool holds_blocks_back(const InterpreterState& state) { return !state.contour->is_idle(); }
 

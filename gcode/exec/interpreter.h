@@ -32,8 +32,6 @@ enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text
 /// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
 struct LoopWatch {
     uint64_t jumps = 0, next_note = 1, noted = 0;
-
-    bool operator==(const LoopWatch&) const { return true; }
 };
 
 /// Whether a program writes lengths with a decimal point, without one, or now so and now so.
@@ -68,9 +66,11 @@ struct InterpreterState {
     bool speaks_iso = false; // Siemens: ISO codes since G291
     LoopWatch watch;
     RuleWatch rules;
-
-    bool operator==(const InterpreterState& other) const;
 };
+
+/// Whether a program goes on in the same way from two states: all of them is equal but what the
+/// rules and the search for endless loops remember.
+bool continue_alike(const InterpreterState& a, const InterpreterState& b);
 
 /// Whether blocks wait for later ones, for cutter radius compensation or a corner.
 bool holds_blocks_back(const InterpreterState& state);

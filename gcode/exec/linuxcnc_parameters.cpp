@@ -71,7 +71,7 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
 /// The motion code in tenths as #<_motion_mode> has it.
 double motion_mode(const ModalState& modal) {
     if (modal.cycle) return modal.cycle->code;
-    return modal.motion.value_or(tenths(80));
+    return modal.motion ? tenths_of(*modal.motion) : tenths(80);
 }
 
 double coordinate_system(const ModalState& modal) {

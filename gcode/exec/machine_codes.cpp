@@ -146,7 +146,7 @@ core::Result<void> feed_with_spindle(Execution& execution) {
             fmt::format("{} needs a K word, the distance per revolution of the spindle",
                         written(mover)),
             mover.span);
-    const bool back_again = modal.motion == tenths(33, 1);
+    const bool back_again = modal.motion == MotionCode::rigid_tap;
     if (back_again && modal.spindle == core::SpindleDirection::stopped)
         return core::fail(ErrorCode::missing_value,
                           "G33.1: the spindle is stopped: start it with M3 or M4 first",
@@ -172,7 +172,7 @@ core::Result<void> probe(Execution& execution) {
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: the probe move is too short", written(mover)),
                           mover.span);
-    const int kind = *modal.motion % 10;
+    const int kind = tenths_of(*modal.motion) % 10;
     execution.warn(mover.span,
                    fmt::format("{}: where the probe makes contact is unknown; the whole move is "
                                "checked, and the program continues from its end point",

@@ -461,7 +461,7 @@ Value fanuc_mode(const InterpreterState& state, int group) {
     const ModalState& modal = state.modal;
     switch (group) {
     case 1:
-        return modal.motion ? Value(*modal.motion / 10.0) : Value(0.0);
+        return modal.motion ? Value(tenths_of(*modal.motion) / 10.0) : Value(0.0);
     case 2:
         return plane_code(modal.plane);
     case 3:

@@ -6,8 +6,8 @@
 namespace gcode {
 namespace {
 
-constexpr MotionCode rapid = tenths(0);
-constexpr MotionCode straight = tenths(1);
+constexpr MotionCode rapid = MotionCode::rapid;
+constexpr MotionCode straight = MotionCode::straight;
 
 /// The index of an axis by its letter; axis_count for a letter that is none.
 constexpr std::array<uint8_t, 26> axes_by_letter = [] {
@@ -54,9 +54,9 @@ struct Move {
 bool moves_quickly(const InterpreterState& state) {
     const ModalState& modal = state.modal;
     const ProgramTransforms& transforms = modal.transforms;
-    return (modal.motion == rapid || modal.motion == straight) && !modal.cycle
-           && modal.compensation == Side::none && modal.feed_mode == FeedMode::per_minute
-           && !modal.diameter_mode && (modal.unit_said || state.said_unit) && !transforms.polar
+    return is_straight(modal.motion) && !modal.cycle && modal.compensation == Side::none
+           && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode
+           && (modal.unit_said || state.said_unit) && !transforms.polar
            && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
            && state.contour->is_idle() && !state.speaks_iso;
 }

@@ -14,8 +14,6 @@ namespace {
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
-constexpr MotionCode arc_codes_end = 30; // G0 to G3; later ones are cycles and the like
-
 bool is_feed(const CanonicalCommand& command) {
     return std::holds_alternative<StraightFeed>(command) || std::holds_alternative<ArcFeed>(command)
            || std::holds_alternative<ThreadFeed>(command);
@@ -113,7 +111,7 @@ private:
 
     void add_feed() {
         const ModalState& modal = at_.after;
-        if (at_.motion) need(fmt::format("G{}", *at_.motion / 10));
+        if (at_.motion) need(fmt::format("G{}", tenths_of(*at_.motion) / 10));
         if (lacks(&ModalState::feed_mode))
             need(fmt::format("G{}", modal.feed_mode == FeedMode::inverse_time ? 93
                                     : modal.feed_mode == FeedMode::per_turn   ? 95
@@ -159,8 +157,8 @@ std::optional<Meeting> meet(ProgramLibrary& library, const Environment& environm
         const auto other = second.next(alone);
         const bool parted = !other || !*other || (*other)->line != line;
         const auto& active = whole.modal.motion;
-        const bool goes_on = active && *active <= arc_codes_end && active == meeting.before.motion
-                             && active != alone.modal.motion;
+        const bool goes_on = (is_straight(active) || is_arc(active))
+                             && active == meeting.before.motion && active != alone.modal.motion;
         if (!motion && goes_on && goes_on_moving(**block)) meeting.motion = motion = active;
         if (!is_feed_block && !parted) continue;
         meeting.after = whole.modal;

@@ -20,7 +20,6 @@ struct RuleWatch {
     bool waits() const {
         return lacks_length || length_cancelled || offset_is_fresh || increments_stay;
     }
-    bool operator==(const RuleWatch&) const { return true; }
 };
 
 /// Warns of what a control accepts and a machinist regrets, as far as the program, the tool table

@@ -83,14 +83,27 @@ void add(Digest& digest, const SplineState& spline) {
 }
 
 void add_modes(Digest& digest, const ModalState& modal) {
-    for (const int mode :
-         {int(modal.unit),          int(modal.unit_said),      modal.motion.value_or(-1),
-          int(modal.plane),         int(modal.distance),       int(modal.arc_distance),
-          int(modal.feed_mode),     int(modal.retract),        int(modal.path),
-          int(modal.compensation),  int(modal.leaves_contour), int(modal.diameter_mode),
-          int(modal.surface_speed), int(modal.feed_override),  int(modal.speed_override),
-          int(modal.adaptive_feed), int(modal.feed_hold),      int(modal.spindle),
-          int(modal.mist),          int(modal.flood),          modal.turning_orientation})
+    for (const int mode : {int(modal.unit),
+                           int(modal.unit_said),
+                           modal.motion ? tenths_of(*modal.motion) : -1,
+                           int(modal.plane),
+                           int(modal.distance),
+                           int(modal.arc_distance),
+                           int(modal.feed_mode),
+                           int(modal.retract),
+                           int(modal.path),
+                           int(modal.compensation),
+                           int(modal.leaves_contour),
+                           int(modal.diameter_mode),
+                           int(modal.surface_speed),
+                           int(modal.feed_override),
+                           int(modal.speed_override),
+                           int(modal.adaptive_feed),
+                           int(modal.feed_hold),
+                           int(modal.spindle),
+                           int(modal.mist),
+                           int(modal.flood),
+                           modal.turning_orientation})
         digest.add(number_of(mode));
     for (const double value :
          {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,

@@ -20,7 +20,7 @@ constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R are often 
 const Code* going_on(const Execution& execution) {
     const ModalState& modal = execution.modal();
     if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);
-    if (modal.motion) return find_code('G', *modal.motion / 10.0, execution.dialect.id);
+    if (modal.motion) return find_code('G', tenths_of(*modal.motion) / 10.0, execution.dialect.id);
     return nullptr;
 }
 
@@ -137,7 +137,7 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target) 
     if (!angle) return {};
     using core::ErrorCode;
     const ModalState& modal = execution.modal();
-    if (modal.cycle || (modal.motion != tenths(0) && modal.motion != tenths(1)))
+    if (modal.cycle || !is_straight(modal.motion))
         return tl::unexpected(
             refusal(*angle, ErrorCode::syntax, "an angle can only be used with G0 or G1"));
     const PlaneAxes axes = axes_of(modal.plane);

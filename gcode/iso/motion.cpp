@@ -13,12 +13,6 @@ namespace {
 
 using core::ErrorCode;
 
-bool is_straight(std::optional<MotionCode> motion) {
-    return motion == tenths(0) || motion == tenths(1);
-}
-
-bool is_arc(std::optional<MotionCode> motion) { return motion == tenths(2) || motion == tenths(3); }
-
 /// Where a control goes on with a feed of its own, the first feed without F takes that.
 void assume_feed(Execution& execution) {
     ModalState& modal = execution.modal();
@@ -53,14 +47,15 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
 bool stands_alone(const Execution& execution) {
     const CodeWord* motion = execution.statement.of(ModalGroup::motion);
     return execution.dialect.motion_codes_move && motion
-           && (is_straight(motion->code->tenths) || is_arc(motion->code->tenths));
+           && (is_straight(motion->code->motion()) || is_arc(motion->code->motion()));
 }
 
 /// G2 alone, of which nobody knows where it leads.
 core::Result<void> refuse_lone_arc(const Execution& execution) {
     const Statement& statement = execution.statement;
     const CodeWord* motion = statement.of(ModalGroup::motion);
-    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->tenths)) return {};
+    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->motion()))
+        return {};
     for (const char letter : {'I', 'J', 'K', 'R'})
         if (statement.word(letter)) return {};
     return core::fail(ErrorCode::missing_value,
@@ -91,7 +86,8 @@ bool acts_once(int code) {
 /// Begins with a motion code, or goes on with none.
 void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     std::optional<MotionCode>& active = state.modal.motion;
-    if (active == tenths(5, 2) && motion != active) state.spline.write().gathering = {};
+    if (active == MotionCode::spline_control_point && motion != active)
+        state.spline.write().gathering = {};
     active = motion;
 }
 
@@ -125,7 +121,7 @@ core::Result<void> set_motion_mode(Execution& execution) {
                         written(*taker->word), written(*mover->word)),
             mover->word->span);
     if (motion && !acts_once(motion->code->tenths)) {
-        set_motion(execution.state, motion->code->tenths);
+        set_motion(execution.state, motion->code->motion());
         modal.cycle.reset();
     }
     if (!cycle) return {};
@@ -159,7 +155,7 @@ core::Result<void> move_without_mode(Execution& execution) {
             fmt::format(
                 "{}: no motion code is active; G0, the power-on default of the control, is assumed",
                 written(word)));
-        execution.modal().motion = tenths(0);
+        execution.modal().motion = MotionCode::rapid;
         return move_straight(execution, true);
     }
     return {};
@@ -178,7 +174,7 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
     if (modal.cycle || !is_straight(modal.motion))
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
-    return move_straight(execution, modal.motion == tenths(0));
+    return move_straight(execution, modal.motion == MotionCode::rapid);
 }
 
 /// G53 in a block that does not move.
@@ -204,13 +200,14 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return move_without_mode(execution);
-    if (is_straight(modal.motion)) return move_straight(execution, modal.motion == tenths(0));
+    if (is_straight(modal.motion))
+        return move_straight(execution, modal.motion == MotionCode::rapid);
     if (is_arc(modal.motion)) {
         assume_feed(execution);
         return move_along_arc(execution);
     }
-    if (modal.motion == tenths(5, 2)) return gather_control_point(execution);
-    return modal.motion < tenths(38) ? feed_with_spindle(execution) : probe(execution);
+    if (modal.motion == MotionCode::spline_control_point) return gather_control_point(execution);
+    return tenths_of(*modal.motion) < tenths(38) ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace

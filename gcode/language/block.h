@@ -187,6 +187,11 @@ enum class FlowKind : uint8_t {
     give_back,   // RET
 };
 
+/// Whether a kind is a flow statement of native Siemens other than a jump.
+constexpr bool is_siemens_statement(FlowKind kind) {
+    return kind >= FlowKind::for_loop && kind <= FlowKind::give_back;
+}
+
 /// The flow statement of a line. It stands alone on its line but for a block number and comments;
 /// behind IF..THEN stand assignments.
 struct Flow {

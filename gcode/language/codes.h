@@ -54,6 +54,7 @@ struct Code {
     int last = 0;             // of several codes in a row that are one, the last, in tenths
 
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }
+    MotionCode motion() const { return static_cast<MotionCode>(tenths); }
     constexpr int last_tenths() const { return last ? last : tenths; }
     bool uses_axes() const { return words.starts_with("XYZ"); }
 };

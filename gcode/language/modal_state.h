@@ -169,8 +169,30 @@ enum class Plane : uint8_t { xy, zx, yz, uv, wu, vw };                // G17 G18
 enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G61.1, G64
 enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
 
-/// What a block without a motion code goes on with: the code in tenths, 10 for G1, 385 for G38.5.
-using MotionCode = int;
+/// The motion that a block without a motion code continues. The value is the code in tenths, which
+/// tenths_of gives; codes without a name here, such as those of probing, have theirs as well.
+enum class MotionCode : int {
+    rapid = 0,                 // G0
+    straight = 10,             // G1
+    arc_clockwise = 20,        // G2
+    arc_counterclockwise = 30, // G3
+    spline_control_point = 52, // G5.2
+    spindle_feed = 330,        // G33
+    rigid_tap = 331,           // G33.1
+    compensated_tap = 630,     // G63 of Siemens
+    tap_in = 3310,             // G331 of Siemens
+    tap_out = 3320,            // G332 of Siemens
+    arc_through_point = 9010,  // CIP of Siemens, a keyword
+    tangent_arc = 9020,        // CT of Siemens, a keyword
+};
+
+constexpr int tenths_of(MotionCode motion) { return static_cast<int>(motion); }
+constexpr bool is_straight(std::optional<MotionCode> motion) {
+    return motion == MotionCode::rapid || motion == MotionCode::straight;
+}
+constexpr bool is_arc(std::optional<MotionCode> motion) {
+    return motion == MotionCode::arc_clockwise || motion == MotionCode::arc_counterclockwise;
+}
 
 /// The only place where program units become mm.
 constexpr double to_mm(double programmed, LengthUnit unit) {

@@ -16,8 +16,8 @@ using core::ErrorCode;
 using Point = std::array<double, 2>;
 
 // Modal motions that are started by keywords, not G codes.
-constexpr MotionCode by_point = 9010;   // CIP
-constexpr MotionCode by_tangent = 9020; // CT
+constexpr MotionCode by_point = MotionCode::arc_through_point;
+constexpr MotionCode by_tangent = MotionCode::tangent_arc;
 
 tl::unexpected<core::Error> refuse(const Execution& execution, std::string_view why,
                                    ErrorCode code = ErrorCode::invalid_value) {
@@ -73,7 +73,7 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
 }
 
 core::Result<void> go_straight(Execution& execution, const Position& end) {
-    if (execution.modal().motion == tenths(0)) {
+    if (execution.modal().motion == MotionCode::rapid) {
         execution.traverse(end);
         return {};
     }
@@ -131,13 +131,13 @@ core::Result<Position> polar_target(Execution& execution) {
 core::Result<void> move_polar(Execution& execution) {
     FEELER_TRY(const Position end, polar_target(execution));
     const auto motion = execution.modal().motion;
-    if (motion == tenths(0) || motion == tenths(1)) return go_straight(execution, end);
-    if (motion != tenths(2) && motion != tenths(3))
+    if (is_straight(motion)) return go_straight(execution, end);
+    if (!is_arc(motion))
         return refuse(execution, "RP= and AP= can only be used with G0 to G3", ErrorCode::syntax);
     const Word* word = execution.statement.word('P');
     const int turns = word ? static_cast<int>(std::clamp(word->value, 1.0, 1000.0)) : 1;
     return go_along_arc(execution, end, siemens_of(execution.state).pole,
-                        motion == tenths(2) ? -turns : turns);
+                        motion == MotionCode::arc_clockwise ? -turns : turns);
 }
 
 const Word* between_word(const Execution& execution, size_t axis) {
@@ -215,7 +215,7 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
     const double angle = opening.value / core::degrees_per_radian;
     if (!(opening.value > 0.0 && opening.value < 360.0))
         return refuse(execution, "AR= must be between 0 and 360 degrees");
-    const double sign = modal.motion == tenths(2) ? -1.0 : 1.0;
+    const double sign = modal.motion == MotionCode::arc_clockwise ? -1.0 : 1.0;
     FEELER_TRY(Position end, target_of(execution));
     FEELER_TRY(const Point from, plane_point(execution, modal.position));
     const Word* words[] = {statement.word("IJK"[axes.first]), statement.word("IJK"[axes.second])};
@@ -313,17 +313,17 @@ core::Result<void> check_scaled_arc(const Execution& execution) {
 core::Result<void> move_by_mode(Execution& execution) {
     const ModalState& modal = execution.modal();
     const Statement& statement = execution.statement;
-    const MotionCode motion = modal.motion.value_or(tenths(1));
-    const bool arc =
-        motion == tenths(2) || motion == tenths(3) || motion == by_point || motion == by_tangent;
+    const MotionCode motion = modal.motion.value_or(MotionCode::straight);
+    const bool arc = is_arc(motion) || motion == by_point || motion == by_tangent;
     if (arc)
         if (auto checked = check_scaled_arc(execution); !checked) return checked;
     if (statement.polar_radius || statement.polar_angle) return move_polar(execution);
     if (motion == by_point) return move_by_point(execution);
     if (motion == by_tangent) return move_tangentially(execution);
-    if (motion == tenths(331) || motion == tenths(332)) return read_tapping(execution);
-    if (motion == tenths(33)) return cut_thread(execution);
-    if (motion == tenths(63)) {
+    if (motion == MotionCode::tap_in || motion == MotionCode::tap_out)
+        return read_tapping(execution);
+    if (motion == MotionCode::spindle_feed) return cut_thread(execution);
+    if (motion == MotionCode::compensated_tap) {
         FEELER_TRY(const Position end, target_of(execution));
         return go_straight(execution, end);
     }
@@ -346,21 +346,22 @@ core::Result<void> move_in_siemens(Execution& execution) {
     const Statement& statement = execution.statement;
     ModalState& modal = execution.modal();
     const CodeWord* code = statement.of(ModalGroup::motion);
-    if (code) modal.motion = code->code->tenths;
+    if (code) modal.motion = code->code->motion();
     if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
     if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
     if (has_frame_words(execution) || statement.taker_of_axis_words()) return {};
-    const bool circles = modal.motion == tenths(2) || modal.motion == tenths(3);
+    const bool circles = is_arc(modal.motion);
     const bool moves =
         statement.has_axis_word()
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
-    if (!modal.motion) modal.motion = tenths(1); // as delivered: G1 is active at the start
+    if (!modal.motion)
+        modal.motion = MotionCode::straight; // as delivered: G1 is active at the start
     const Position start = modal.position;
     if (auto moved = move_by_mode(execution); !moved) return moved;
     remember_direction(execution, start);
     // G63 is not modal.
-    if (modal.motion == tenths(63)) modal.motion = tenths(1);
+    if (modal.motion == MotionCode::compensated_tap) modal.motion = MotionCode::straight;
     return {};
 }
 

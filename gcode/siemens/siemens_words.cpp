@@ -15,9 +15,12 @@ constexpr std::string_view siemens_length_letters = "XYZIJKF";
 /// Whether a word other than those of axes, modes and tools is used in its block.
 bool is_used(const Execution& execution, const Word& word) {
     const auto* motion = execution.statement.of(ModalGroup::motion);
-    const int code = motion ? motion->code->tenths : execution.modal().motion.value_or(tenths(1));
-    const bool by_point = use_of(execution, SiemensAction::arc_by_point) || code > tenths(900);
-    const bool straight = code == tenths(0) || code == tenths(1);
+    const MotionCode code =
+        motion ? motion->code->motion() : execution.modal().motion.value_or(MotionCode::straight);
+    const bool by_point = use_of(execution, SiemensAction::arc_by_point)
+                          || code == MotionCode::arc_through_point
+                          || code == MotionCode::tangent_arc;
+    const bool straight = is_straight(code);
     switch (word.letter) {
     case 'Q':
         return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn);

@@ -94,7 +94,7 @@ TEST(Interpreter, LeavesTheStateAloneOnError) {
         ASSERT_FALSE(result) << mistake;
         EXPECT_EQ(result.error().where.line, 2u) << mistake;
         EXPECT_GT(result.error().where.column, 0u) << mistake;
-        EXPECT_EQ(state, before) << mistake;
+        EXPECT_TRUE(continue_alike(state, before)) << mistake;
     }
 }
 
@@ -110,7 +110,7 @@ TEST(Interpreter, GivesTheSameAgainFromACopiedState) {
     while (state.ending == Ending::running) ASSERT_TRUE(interpreter.next(state));
     EXPECT_NE(digest_of(state), digest_of(copy));
     while (copy.ending == Ending::running) ASSERT_TRUE(interpreter.next(copy));
-    EXPECT_EQ(state, copy);
+    EXPECT_TRUE(continue_alike(state, copy));
     EXPECT_EQ(digest_of(state), digest_of(copy));
 }
 

@@ -250,7 +250,7 @@ TEST(SiemensState, IsAsBeforeTheBlockAtFaultAndCopiesAgree) {
     EXPECT_EQ(state.modal, before.run.state.modal);
     EXPECT_EQ(digest_of(state), digest_of(InterpreterState(state)));
     InterpreterState other = state;
-    other.siemens.write().edge = 2;
+    writable_siemens(other).edge = 2;
     EXPECT_NE(digest_of(state), digest_of(other));
     EXPECT_EQ(siemens_of(state).edge, 1);
 }
