@@ -181,7 +181,7 @@ core::Result<std::vector<Record>> cylinders_round(const CubeCover& cubes,
         record.run = top - record.base[2];
         if (record.run > Record::greatest_extent || record.half > Record::greatest_extent)
             return core::fail(core::ErrorCode::invalid_value,
-                              "a cube of a body is larger than the coprocessor's 256 mm");
+                              "a cube of a body is larger than the coprocessor's limit of 256 mm");
         records.push_back(record);
     }
     return records;

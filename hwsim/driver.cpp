@@ -132,7 +132,7 @@ core::Result<void> store(Driver& driver, const std::vector<AddressedLine>& lines
     for (const AddressedLine& line : lines)
         if (!store(driver, line))
             return core::fail(core::ErrorCode::unsupported,
-                              "the coprocessor's memory takes no lines any more");
+                              "the coprocessor's memory does not accept lines");
     return {};
 }
 
@@ -179,8 +179,9 @@ core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace s
     const auto free = std::find_if(driver.slots.begin(), driver.slots.end(),
                                    [](const Driver::Slot& old) { return old.is_free; });
     if (free == driver.slots.end() && driver.slots.size() == model_slots)
-        return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("the coprocessor holds no more than {} models", model_slots));
+        return core::fail(
+            core::ErrorCode::invalid_value,
+            fmt::format("the coprocessor cannot hold more than {} models", model_slots));
     if (auto stored = store(driver, lines); !stored)
         return tl::unexpected(std::move(stored).error());
     driver.space = std::move(space);
@@ -210,11 +211,10 @@ core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
     };
     if (!holds(pair.tool, Side::tool) || !holds(pair.work, Side::work))
         return core::fail(core::ErrorCode::invalid_value,
-                          "a pair to keep apart needs a model of the tool's side and one of the "
-                          "work's");
+                          "a pair needs one model of the tool side and one of the work side");
     if (!(path.sample_step > 0.0))
         return core::fail(core::ErrorCode::invalid_value,
-                          "the step from sample to sample must be a length above 0");
+                          "the distance between samples must be above 0");
     Segment entry{.sequence = driver.next_sequence,
                   .tool_slot = static_cast<uint8_t>(pair.tool),
                   .work_slot = static_cast<uint8_t>(pair.work),
@@ -231,8 +231,7 @@ core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
 
 core::Result<std::vector<Segment>> entries_of(const Driver& driver, const PathSegment& path) {
     if (path.pairs.empty())
-        return core::fail(core::ErrorCode::invalid_value,
-                          "a segment is permitted by its pairs, and this one has none");
+        return core::fail(core::ErrorCode::invalid_value, "a segment needs at least one pair");
     std::vector<Segment> entries;
     for (const PairToKeep& pair : path.pairs) {
         FEELER_TRY(const Segment entry, entry_of(driver, path, pair));
@@ -259,7 +258,7 @@ core::Result<Driver> open_device(DevicePort port) {
     if (read(driver, Register::identification) != identification_word
         || read(driver, Register::version) != version_word)
         return core::fail(core::ErrorCode::unsupported,
-                          "what answers at the port is no coprocessor of this version");
+                          "the device at the port is not a coprocessor of this version");
     write(driver, Register::control, control_reset);
     driver.space.end = read(driver, Register::lines);
     write(driver, Register::control, control_enable);

@@ -27,7 +27,7 @@ core::Result<int32_t> fixed(double length, Rounding rounding) {
     if (!(steps >= least_coordinate && steps <= greatest_coordinate))
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("a length of {} mm does not fit into the coprocessor's 24 "
-                                      "bits, which reach from {} to {} mm",
+                                      "bits, which span {} to {} mm",
                                       length, length_of(least_coordinate),
                                       length_of(greatest_coordinate)));
     return static_cast<int32_t>(steps);
@@ -36,8 +36,7 @@ core::Result<int32_t> fixed(double length, Rounding rounding) {
 core::Result<uint32_t> threshold(double distance, double sample_step) {
     if (!(distance >= 0.0) || !(sample_step >= 0.0))
         return core::fail(core::ErrorCode::invalid_value,
-                          "a distance to be kept and a step along a segment must be lengths of 0 "
-                          "or more");
+                          "a minimum distance and a step along a segment must be 0 or more");
     FEELER_TRY(const int32_t steps, fixed(std::hypot(distance, 0.5 * sample_step), Rounding::up));
     return static_cast<uint32_t>(steps);
 }

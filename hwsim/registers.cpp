@@ -69,10 +69,10 @@ core::Result<DeviceConfig> checked(const DeviceConfig& c) {
         && is_within(c.memory_queue, 4096) && is_within(c.write_queue, 4096) && c.search_limit > 0
         && c.memory_limit > 0 && is_cache(c.node_cache_lines) && is_cache(c.record_cache_lines);
     if (!good)
-        return core::fail(core::ErrorCode::invalid_value,
-                          "the coprocessor cannot be built so: sizes and times are at least 1, "
-                          "elements at most 64, threads 16, the stack 64, and caches are powers "
-                          "of two up to 16384 lines");
+        return core::fail(
+            core::ErrorCode::invalid_value,
+            "invalid coprocessor: sizes and times must be at least 1, elements at most 64, threads "
+            "at most 16, the stack at most 64, and caches powers of two up to 16384 lines");
     return c;
 }
 

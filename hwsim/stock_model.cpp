@@ -14,7 +14,7 @@ core::Result<LineRun> taken(ModelWriter& writer, uint32_t count) {
     if (!run)
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the models do not fit into the coprocessor's memory of {} "
-                                      "lines; a larger mesh size makes fewer",
+                                      "lines; use a larger mesh size",
                                       writer.space->end));
     writer.runs.push_back(*run);
     return *run;
@@ -93,11 +93,11 @@ core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records,
                               uint32_t leaf_size) {
     if (records.empty() || leaf_size < 1 || leaf_size > Reference::most_records)
         return core::fail(core::ErrorCode::invalid_value,
-                          "a model needs at least one record, and leaves of 1 to 32 of them");
+                          "a model needs at least one record, and leaves of 1 to 32 records");
     if (!std::all_of(records.begin(), records.end(), fits))
         return core::fail(core::ErrorCode::invalid_value,
-                          "a model reaches beyond the coprocessor's range of 2048 mm, or a part "
-                          "of it is larger than 256 mm");
+                          "a model extends beyond the coprocessor's range of 2048 mm, or a part of "
+                          "it is larger than 256 mm");
     return subtree(writer, records, leaf_size);
 }
 

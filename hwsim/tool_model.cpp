@@ -88,7 +88,7 @@ core::Result<Record> cylinder(double low, double high, double radius) {
     FEELER_TRY(const int32_t r, fixed(radius + model_safety, Rounding::up));
     if (z1 - z0 > Record::greatest_extent || r > Record::greatest_extent)
         return core::fail(core::ErrorCode::invalid_value,
-                          "a part of a tool is larger than the coprocessor's 256 mm");
+                          "a part of a tool is larger than the coprocessor's limit of 256 mm");
     return Record{{0, 0, z0}, z1 - z0, r};
 }
 
@@ -116,7 +116,7 @@ core::Result<std::vector<Record>> cylinders_round(const core::RevolvedProfile& p
     constexpr int most_halvings = 12;
     if (profile.empty() || !(tolerance > 0.0))
         return core::fail(core::ErrorCode::invalid_value,
-                          "a tool's model needs pieces, and a tolerance above 0");
+                          "a tool model needs at least one piece and a tolerance above 0");
     std::vector<Record> records;
     for (const ProfileElement& element : profile.elements) {
         const Outline outline(element);

@@ -20,12 +20,12 @@ struct GpuMesh {
     void draw_lines() const;
 };
 
-/// Meshes that were drawn of late.
+/// Recently drawn meshes.
 class GpuMeshes {
 public:
-    /// The mesh on the card, brought there if need be.
+    /// The mesh on the graphics card, uploaded if needed.
     const GpuMesh& of(const SharedMesh& mesh);
-    /// To be called after each picture: gives back what has not been drawn for a while.
+    /// Call after each picture: frees meshes that were not drawn for a while.
     void end_picture();
 
 private:
@@ -33,22 +33,22 @@ private:
     uint64_t picture_ = 0;
 };
 
-/// Draws what is solid: bodies, stock, faces of a section.
+/// Draws solids: bodies, stock, section faces.
 class BodyPass {
 public:
     static core::Result<BodyPass> make();
 
     void draw_opaque(const ViewFrame& frame);
-    /// The depths of what is opaque, and nothing else.
+    /// Draws only the depths of opaque bodies.
     void draw_depths(const ViewFrame& frame);
-    /// What is seen through, the farthest first. Needs what is opaque to be there.
+    /// Draws transparent bodies, the farthest first. Call after draw_opaque().
     void draw_glass(const ViewFrame& frame);
-    /// A ball of so many pixels that nothing hides.
+    /// Draws a ball of this size in pixels over everything.
     void draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, Color color);
     void end_picture() { meshes_.end_picture(); }
 
 private:
-    /// A body or the stock, as it is drawn.
+    /// A body or the stock with its drawing state.
     struct Item {
         const Body* body = nullptr; // null: the stock
         core::Transform pose;
@@ -67,7 +67,7 @@ private:
     void draw_edges(const ViewFrame& frame, const Item& item);
     void draw_cap(const ViewFrame& frame, const Item& item);
     template <typename Act>
-    /// `whole`: of a stock every triangle, not what is drawn in their place.
+    /// `whole`: every triangle of the stock, not the simplified mesh.
     void for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole = false);
 
     ShaderProgram faces_, edges_, caps_;
@@ -76,13 +76,13 @@ private:
     SharedMesh ball_;
 };
 
-/// Works out how dark it is in corners and hollows, from the depths of what is opaque.
+/// Computes ambient occlusion in corners and hollows from the depths of opaque bodies.
 class HollowPass {
 public:
     static core::Result<HollowPass> make();
 
-    /// A texture over the whole picture, 1 where nothing darkens; 0 if the card has no room for it.
-    /// At half the picture's size.
+    /// A texture of half the size of the picture, 1 where nothing darkens; 0 if the card has no
+    /// memory for it.
     unsigned draw(const ViewFrame& frame, BodyPass& bodies);
 
 private:

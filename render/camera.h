@@ -13,8 +13,8 @@ using core::Vec3;
 using Vec2 = glm::dvec2;
 using Mat4 = glm::dmat4;
 
-/// The size of a picture, pixels. Places in it are (x, y) from its upper left corner; the middle of
-/// the first pixel is (0.5, 0.5).
+/// The size of a picture, pixels. Positions in it are (x, y) from its upper left corner; the centre
+/// of the first pixel is (0.5, 0.5).
 struct Viewport {
     int width = 1, height = 1;
 
@@ -26,19 +26,19 @@ enum class Projection : uint8_t { perspective, orthographic };
 /// Keys 0 to 6, in this order.
 enum class StandardView : uint8_t { iso, top, front, right, back, left, bottom };
 
-/// Where the eye stands and looks. Frame: that of what is drawn, Z upwards.
+/// Position and direction of the view. Frame: the scene's, Z up.
 struct Camera {
-    Vec3 target = Vec3(0.0);             // what it looks at and turns about
+    Vec3 target = Vec3(0.0);             // centre of the view and of rotation
     double distance = 400.0;             // from the eye to the target, mm
-    double yaw = -0.7853981633974483;    // where the eye stands round Z, from +X towards +Y
-    double pitch = 0.6154797086703873;   // how far above the XY plane it stands, -90..90 degrees
-    double view_angle = 0.5235987755983; // of the picture's height
+    double yaw = -0.7853981633974483;    // of the eye around Z, from +X towards +Y
+    double pitch = 0.6154797086703873;   // of the eye above the XY plane, -90..90 degrees
+    double view_angle = 0.5235987755983; // over the height of the picture
     Projection projection = Projection::perspective;
 
     bool operator==(const Camera&) const = default;
 };
 
-/// The directions of the picture, of length 1.
+/// The directions of the picture, unit length.
 struct CameraAxes {
     Vec3 right, up, backward; // backward: from the target to the eye
 };
@@ -46,58 +46,59 @@ struct CameraAxes {
 CameraAxes axes(const Camera& camera);
 Vec3 eye(const Camera& camera);
 
-/// Frame of the view: the eye at the origin looks along -Z, Y is up in the picture.
+/// Frame of the view: the eye is at the origin and looks along -Z; Y is up in the picture.
 Mat4 view_from_scene(const Camera& camera);
 
-/// OpenGL's clip coordinates; near and far planes hold all of `content`.
+/// OpenGL clip coordinates; the near and far planes enclose `content`.
 Mat4 clip_from_view(const Camera& camera, const Viewport& viewport, const Aabb& content);
 
-/// Millimetres that a pixel covers at a point.
+/// The size of a pixel at a point, mm.
 double pixel_size(const Camera& camera, const Viewport& viewport, const Vec3& at);
 
-/// A half line; `direction` has length 1.
+/// A half line; `direction` has unit length.
 struct Ray {
     Vec3 origin = Vec3(0.0);
     Vec3 direction = Vec3(0.0, 0.0, -1.0);
 };
 
-/// What is seen at a place of the picture.
+/// The ray through a position in the picture.
 Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& place);
 
-/// Where a point is seen, and how far from the eye along the view, mm; empty behind the eye.
+/// The position of a point in the picture and its depth along the view, mm; empty if it is behind
+/// the eye.
 struct Projected {
     Vec2 place;
     double depth = 0.0;
 };
 std::optional<Projected> project(const Camera& camera, const Viewport& viewport, const Vec3& point);
 
-/// The point under a place of the picture in the plane across the view through `level`.
+/// The point under a position in the picture, in the plane across the view through `level`.
 Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& place,
                  const Vec3& level);
 
-/// Turns the eye about the target by a drag of so many pixels; the picture's height is half a turn.
+/// Rotates the eye about the target by a drag in pixels; the height of the picture is half a turn.
 Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag);
 
-/// The same about another point, which stays where it is seen.
+/// The same about another point, which stays in place in the picture.
 Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag, const Vec3& pivot);
 
-/// Moves so that what is seen at the depth of `level` follows a drag from `from` to `to`.
+/// Moves so that a point at the depth of `level` follows a drag from `from` to `to`.
 Camera panned(const Camera& camera, const Viewport& viewport, const Vec2& from, const Vec2& to,
               const Vec3& level);
 
-/// Goes nearer (factor below 1) or farther; the point under the cursor stays there. `at` is that
-/// point where something was hit; without it the one at the target's depth counts.
+/// Moves closer (factor below 1) or farther; the point under the cursor stays in place. `at` is
+/// that point if a surface was hit; otherwise the depth of the target is used.
 Camera zoomed(const Camera& camera, const Viewport& viewport, const Vec2& cursor, double factor,
               std::optional<Vec3> at = {});
 
-/// The same target and distance, seen from a standard side.
+/// The same target and distance from a standard direction.
 Camera seen_from(const Camera& camera, StandardView view);
 
-/// The same directions, with the whole box in the picture, `margin` of its height free all round.
+/// The same direction, with the whole box in the picture and a border of `margin` of its height.
 Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box,
                double margin = 0.06);
 
-/// A view on the way from one to the other, for soft changes: `a` at 0, `b` at 1.
+/// A view between two, for animation: `a` at 0, `b` at 1.
 Camera between(const Camera& a, const Camera& b, double share);
 
 } // namespace render

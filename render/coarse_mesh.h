@@ -6,8 +6,8 @@
 
 namespace render {
 
-/// A mesh of at most about so many triangles that shows what is to be seen of others, edges and
-/// tints included, and fewer where nothing is lost by that.
+/// One mesh with about `triangles` triangles at most that shows the visible parts of several, edges
+/// and tints included; with fewer if that loses nothing.
 TriangleMesh coarse(std::span<const TriangleMesh* const> parts, size_t triangles);
 
 } // namespace render

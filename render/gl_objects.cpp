@@ -34,7 +34,7 @@ core::Result<void> compile(const Shader& shader, const std::string& text) {
     glGetShaderInfoLog(shader.id, static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<size_t>(length));
     return core::fail(core::ErrorCode::unsupported,
-                      fmt::format("the graphics driver does not take a shader: {}", log));
+                      fmt::format("the graphics driver rejects a shader: {}", log));
 }
 
 } // namespace
@@ -67,7 +67,7 @@ core::Result<GlProgram> link_program(const std::string& vertex, const std::strin
     glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
     if (ok == 0)
         return core::fail(core::ErrorCode::unsupported,
-                          "the graphics driver does not link a shader program");
+                          "the graphics driver cannot link a shader program");
     return program;
 }
 

@@ -9,6 +9,7 @@ namespace render {
 
 /// An OpenGL object that is given back at its end. `Kind` says how it is made and deleted.
 template <typename Kind>
+/// An OpenGL object that is deleted at the end of its life. `Kind` creates and deletes it.
 class GlObject {
 public:
     GlObject() = default;
@@ -67,9 +68,9 @@ using GlRenderbuffer = GlObject<GlRenderbufferKind>;
 using GlFramebuffer = GlObject<GlFramebufferKind>;
 using GlProgram = GlObject<GlProgramKind>;
 
-/// A program from the text of its shaders.
+/// A program from the sources of its shaders.
 ///
-/// Errors: unsupported, with what the compiler says.
+/// Errors:  unsupported, with the message of the compiler.
 core::Result<GlProgram> link_program(const std::string& vertex, const std::string& fragment);
 
 } // namespace render

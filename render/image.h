@@ -9,7 +9,7 @@
 
 namespace render {
 
-/// A picture: RGBA, rows from the top.
+/// An RGBA picture, rows from the top.
 struct Image {
     int width = 0, height = 0;
     std::vector<uint8_t> rgba;
@@ -22,19 +22,19 @@ struct Image {
 };
 
 core::Result<void> write_png(const Image& image, const std::filesystem::path& path);
-/// The bytes of a JPEG file. `quality`: 1 to 100. What is seen through shows as if it covered.
+/// The bytes of a JPEG file. `quality`: 1 to 100. Transparency is ignored.
 std::string jpeg_bytes(const Image& image, int quality);
 
 core::Result<Image> read_png(const std::filesystem::path& path);
 
-/// Half as large both ways, each pixel the mean of four: how pictures with smooth edges are made.
+/// Half the size, each pixel the mean of four: used for anti-aliasing.
 Image halved(const Image& image);
 
-/// How two pictures differ.
+/// The difference of two pictures.
 struct ImageDifference {
     bool same_size = false;
     double mean = 0.0;      // of all channels, 0..255
-    double different = 0.0; // share of pixels with a channel farther apart than the tolerance
+    double different = 0.0; // fraction of pixels with a channel beyond the tolerance
 };
 
 ImageDifference difference(const Image& a, const Image& b, int tolerance = 12);

@@ -10,10 +10,10 @@
 
 namespace render {
 
-/// Pieces of a path on the graphics card, in textures of as many points as every card takes.
+/// Pieces of a path on the graphics card, in textures of a size that every card supports.
 class GpuLines {
 public:
-    static constexpr size_t chunk = 65535; // pieces to a texture
+    static constexpr size_t chunk = 65535; // pieces per texture
 
     void fill(std::span<const PathPoint> points);
     /// Draws the pieces that end at points first .. last - 1 with the program in use.
@@ -30,31 +30,31 @@ private:
     GlVertexArray no_attributes_;
 };
 
-/// The path with fewer points: none that was left out is farther than `tolerance` from the piece
-/// that passes it by. Pieces become one only if they are of one state and both rapids or not; it
-/// belongs to the last of their blocks.
+/// The path with fewer points; every removed point is within `tolerance` of the new path. Pieces
+/// are merged only if they have the same state and both or neither are rapids; the result belongs
+/// to the last of their blocks.
 std::vector<PathPoint> simplified(const std::vector<PathPoint>& points, double tolerance);
 
-/// Points first .. last - 1 of a path, whose pieces are drawn.
+/// Points first .. last - 1 of a path.
 struct PathRange {
     size_t first = 0, last = 0;
 
     bool operator==(const PathRange&) const = default;
 };
 
-/// The stretches of a path that may be seen in a picture, in order, those side by side as one.
+/// The ranges of a path that may be visible in a picture, in order, adjacent ones merged.
 std::vector<PathRange> visible_ranges(const ToolPath& path, const Mat4& clip_from_scene);
 
-/// Millimetres that a pixel covers where the path is nearest to the eye.
+/// The size of a pixel where the path is nearest to the eye, mm.
 double nearest_pixel(const ToolPath& path, const Camera& camera, const Viewport& viewport);
 
-/// Draws the path, and lines that nothing hides.
+/// Draws the path, and lines on top of everything.
 class LinePass {
 public:
     static core::Result<LinePass> make();
 
     void draw_path(const ViewFrame& frame);
-    /// A line through points over all else, with a dark seam.
+    /// A polyline over everything else, with a dark border.
     void draw_over(const ViewFrame& frame, const std::vector<Vec3>& points, Color color,
                    double pixels);
 
@@ -64,7 +64,7 @@ private:
     void draw_block(const ViewFrame& frame, uint32_t block, double wider) const;
 
     ShaderProgram lines_;
-    /// The path with fewer points, for pictures in which nobody can tell.
+    /// The path with fewer points, for pictures in which the difference is invisible.
     struct Level {
         double tolerance = 0.0; // mm
         SharedPath path;
@@ -75,7 +75,7 @@ private:
 
     SharedPath shown_;
     std::vector<Level> levels_; // the path itself first
-    GpuLines urgent_; // the pieces that are near or in violation, again: they are drawn last
+    GpuLines urgent_;           // the pieces with near misses or violations, drawn last
     GpuLines over_;
 };
 

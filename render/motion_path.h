@@ -6,19 +6,19 @@
 
 namespace render {
 
-/// What is said of the pieces of a motion.
+/// The attributes of the pieces of a motion.
 struct MotionStyle {
     uint32_t block = 0;
     ClearanceState state = ClearanceState::none;
     bool rapid = false;
 };
 
-/// Adds the way of the tool's tip over a motion, as the stock sees it.
+/// Adds the path of the tool tip over a motion. Frame: the stock's.
 ///
-/// Shape: a piece for each straight leg, so that dog-legs and chords of arcs are drawn; where the
-///        legs turn, pieces of at most 3 degrees. Of a leg whose way nobody knows only the places
-///        that are certain. The path begins anew where a motion does not start where the last one
-///        ended.
+/// Shape:   one piece for each straight leg, so dog-legs and chords of arcs are drawn; pieces of at
+///          most 3 degrees where legs rotate. Of a leg with an unknown path, only the positions
+///          that are certain. A new path begins where a motion does not start at the end of the
+///          last one.
 void append_motion(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
                    const core::Path& path, const MotionStyle& look);
 

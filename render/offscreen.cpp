@@ -17,12 +17,12 @@ core::Result<EGLDisplay> open_display() {
     if (!has_extension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS),
                        "EGL_MESA_platform_surfaceless"))
         return unsupported(
-            "no EGL that draws without a screen: install libegl-mesa0 and libgl1-mesa-dri");
+            "EGL cannot draw without a screen: install libegl-mesa0 and libgl1-mesa-dri");
     const EGLDisplay display =
         eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     EGLint major = 0, minor = 0;
     if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) != EGL_TRUE)
-        return unsupported("EGL does not start without a screen: install libgl1-mesa-dri");
+        return unsupported("EGL cannot start without a screen: install libgl1-mesa-dri");
     return display;
 }
 
@@ -47,7 +47,7 @@ struct Offscreen::Context {
 core::Result<Offscreen> Offscreen::make() {
     FEELER_TRY(const EGLDisplay display, open_display());
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE)
-        return unsupported("EGL has no OpenGL: install libgl1-mesa-dri");
+        return unsupported("EGL does not support OpenGL: install libgl1-mesa-dri");
     const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
@@ -64,7 +64,8 @@ core::Result<Offscreen> Offscreen::make() {
     context->display = display;
     context->context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
     if (context->context == EGL_NO_CONTEXT)
-        return unsupported("EGL makes no OpenGL 3.3 context: install a newer libgl1-mesa-dri");
+        return unsupported(
+            "EGL cannot create an OpenGL 3.3 context: install a newer libgl1-mesa-dri");
     Offscreen offscreen(std::move(context));
     FEELER_TRY([[maybe_unused]] const bool current,
                offscreen.make_current().map([] { return true; }));

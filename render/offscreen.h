@@ -6,14 +6,14 @@
 
 namespace render {
 
-/// An OpenGL 3.3 core context without a window or a screen; current for the thread that made it
-/// until it ends.
+/// An OpenGL 3.3 core context without a window or screen; current in the thread that creates it,
+/// until it is destroyed.
 class Offscreen {
 public:
-    /// Errors: unsupported, saying what is missing and which package has it.
+    /// Errors: unsupported, naming what is missing and the package to install.
     static core::Result<Offscreen> make();
 
-    /// Makes it current again, after another context was.
+    /// Makes it current again after another context.
     core::Result<void> make_current();
 
 private:

@@ -6,28 +6,28 @@
 
 namespace render {
 
-/// A colour as screens have it: sRGB, and how much it covers.
+/// An sRGB colour with opacity.
 struct Color {
     uint8_t r = 0, g = 0, b = 0, a = 255;
 
     bool operator==(const Color&) const = default;
 };
 
-/// The channels as shares 0..1, as OpenGL and user interfaces want them.
+/// The channels as 0..1, for OpenGL and user interfaces.
 constexpr std::array<float, 4> shares(Color c) {
     return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F,
             static_cast<float>(c.b) / 255.0F, static_cast<float>(c.a) / 255.0F};
 }
 
-/// The colour with another cover, 0..1.
+/// The colour with another opacity, 0..1.
 Color with_alpha(Color color, double alpha);
 
-/// A mixture: `a` at share 0, `b` at share 1.
+/// A mixture: `a` at 0, `b` at 1.
 Color mixed(Color a, Color b, double share);
 
 enum class ColorScheme : uint8_t { dark, light };
 
-/// What a colour is for.
+/// The uses of colours.
 enum class Role : uint8_t {
     background,
     panel,
@@ -52,24 +52,24 @@ enum class Role : uint8_t {
     machine,
     part,
     edge,    // feature edges of bodies
-    rapid,   // rapids whose clearance is not known
-    current, // the block at which the program stands
+    rapid,   // rapids with unknown clearance
+    current, // the current block
     section  // hatching of a cut face
 };
 constexpr size_t role_count = static_cast<size_t>(Role::section) + 1;
 
 Color color(ColorScheme theme, Role role);
 
-/// How a clearance stands to its allowance; `none` as long as nobody knows it.
+/// A clearance compared with its allowance; `none` while it is unknown.
 enum class ClearanceState : uint8_t { none, clear, near, violation };
 
 /// violation: less than the allowance. near: up to twice the allowance.
 ClearanceState clearance_state(std::optional<double> clearance, double allowance);
 
-/// The colour that stands for a state, in lists, on the path and on the timeline.
+/// The colour of a state in lists, on the path and on the timeline.
 Color state_color(ColorScheme theme, ClearanceState state);
 
-/// The colour of a clearance in mm by the state that it is in.
+/// The colour of a clearance in mm by its state.
 inline Color clearance_color(ColorScheme theme, std::optional<double> clearance, double allowance) {
     return state_color(theme, clearance_state(clearance, allowance));
 }

@@ -16,7 +16,7 @@ struct SurfaceHit {
 
 struct StockHit {
     SurfaceHit at;
-    std::optional<uint32_t> block; // that cut there; empty: raw stock, or the face of a section
+    std::optional<uint32_t> block; // that cut there; empty: raw stock or a section face
 };
 
 struct BodyHit {
@@ -26,13 +26,12 @@ struct BodyHit {
 
 struct PathHit {
     uint32_t block = 0;
-    size_t point = 0; // index of the piece's end
+    size_t point = 0; // index of the end of the piece
     Vec3 place = Vec3(0.0);
     double pixels = 0.0; // from the cursor
 };
 
-/// What lies under the cursor: at most one of stock and body, the nearer; and the path, if it is
-/// not hidden by these.
+/// What is under the cursor: the nearer one of stock and body, and the path unless they hide it.
 struct Pick {
     std::optional<StockHit> stock;
     std::optional<BodyHit> body;
@@ -42,19 +41,18 @@ struct Pick {
     std::optional<SurfaceHit> surface() const;
 };
 
-/// The nearest triangle that faces the ray's origin and is not cut away.
+/// The nearest triangle that faces the ray's origin and is not cut away by the section.
 std::optional<SurfaceHit> pick_mesh(const TriangleMesh& mesh, const Ray& ray,
                                     const std::optional<SectionPlane>& section = {},
                                     size_t* triangle = nullptr);
 
 std::optional<StockHit> pick_stock(const Scene& scene, const Ray& ray);
 
-/// The nearest visible body; one that is seen through is looked through, unless `through_glass` is
-/// false.
+/// The nearest visible body; transparent ones are skipped unless `through_glass` is false.
 std::optional<BodyHit> pick_body(const Scene& scene, const Ray& ray, bool through_glass = true);
 
-/// The piece of the path that is seen nearest to the cursor, up to `reach` pixels away; of several
-/// the one nearer to the eye. Pieces farther from the eye than `depth` are hidden.
+/// The piece of the path nearest to the cursor in the picture, up to `reach` pixels away; of
+/// several the one nearest to the eye. Pieces farther from the eye than `depth` are hidden.
 std::optional<PathHit> pick_path(const ToolPath& path, const Camera& camera,
                                  const Viewport& viewport, const Vec2& cursor, double reach = 6.0,
                                  double depth = core::infinity);

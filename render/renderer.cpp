@@ -63,7 +63,7 @@ core::Result<Canvas> Canvas::make(const Viewport& size, int samples) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (!complete)
         return core::fail(core::ErrorCode::unsupported,
-                          "the graphics driver has no room for a picture of that size");
+                          "the graphics driver has no memory for a picture of that size");
     return canvas;
 }
 
@@ -166,8 +166,8 @@ Renderer::~Renderer() = default;
 core::Result<Renderer> Renderer::make() {
     if (epoxy_gl_version() < 33)
         return core::fail(core::ErrorCode::unsupported,
-                          fmt::format("OpenGL 3.3 is needed, this is {}.{}: a newer graphics "
-                                      "driver or Mesa's libgl1-mesa-dri has it",
+                          fmt::format("OpenGL 3.3 is required, this is {}.{}: install a newer "
+                                      "graphics driver or Mesa's libgl1-mesa-dri",
                                       epoxy_gl_version() / 10, epoxy_gl_version() % 10));
     auto parts = std::make_unique<Parts>();
     FEELER_TRY(parts->background,

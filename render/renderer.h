@@ -10,24 +10,24 @@
 
 namespace render {
 
-/// What a scene is drawn into: a texture that a user interface can show.
+/// The target of a drawing: a texture that a user interface can show.
 ///
-/// All of it needs the context that it was made in to be current, its end too.
+/// All functions, the destructor included, need the context in which it was created.
 class Canvas {
 public:
-    /// `samples`: 1 while things move; 4 for a still picture with smooth edges.
+    /// `samples`: 1 during motion; 4 for a still picture with smooth edges.
     static core::Result<Canvas> make(const Viewport& size, int samples = 1);
 
     const Viewport& size() const { return size_; }
     int samples() const { return samples_; }
-    /// The finished picture, its first row at the bottom, as OpenGL has it.
+    /// The finished picture, its first row at the bottom as usual in OpenGL.
     unsigned texture() const { return color_.id(); }
     /// The framebuffer with that texture, so that more can be drawn over the scene.
     unsigned framebuffer() const { return framebuffer_.id(); }
 
-    /// Draws go here from now on.
+    /// Directs drawing to this canvas.
     void begin();
-    /// Brings what was drawn into the texture.
+    /// Resolves the drawing into the texture.
     void finish();
     Image pixels() const;
 
@@ -41,25 +41,25 @@ private:
 
 struct DrawOptions {
     ColorScheme theme = ColorScheme::dark;
-    double scale = 1.0;       // of lines and points, for screens with many pixels
-    bool hollows = false;     // darker corners; for pictures that stand still
+    double scale = 1.0;       // of lines and points, for high-resolution screens
+    bool hollows = false;     // ambient occlusion, for still pictures
     bool edges = true;        // lines along the edges of bodies and stock
-    bool path_on_top = false; // the path also where something hides it, faintly
+    bool path_on_top = false; // hidden parts of the path are drawn faintly
 };
 
-/// Draws scenes with OpenGL 3.3 core. What was drawn stays on the graphics card as long as scenes
-/// go on sharing it.
+/// Draws scenes with OpenGL 3.3 core. Uploaded data stays on the graphics card as long as scenes
+/// share it.
 class Renderer {
 public:
-    /// Needs a current context, whose libraries libepoxy loads.
+    /// Needs a current context, whose functions libepoxy loads.
     ///
-    /// Errors: unsupported, if the context is older than 3.3 or its compiler refuses the shaders.
+    /// Errors:  unsupported, if the context is older than 3.3 or its compiler rejects the shaders.
     static core::Result<Renderer> make();
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
-    /// The picture of a scene, in the canvas when this returns. Changes OpenGL's state.
+    /// Draws a scene into the canvas. Changes the state of OpenGL.
     void draw(const Scene& scene, const Camera& camera, const DrawOptions& options, Canvas& canvas);
 
 private:
@@ -69,8 +69,7 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// A still picture: drawn at twice the size and halved, so that edges and lines are smooth, with
-/// darker corners.
+/// A still picture with ambient occlusion, drawn at twice the size and halved for smooth edges.
 core::Result<Image> still_picture(Renderer& renderer, const Scene& scene, const Camera& camera,
                                   const DrawOptions& options, const Viewport& size);
 

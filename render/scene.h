@@ -13,60 +13,60 @@ namespace render {
 
 enum class BodyRole : uint8_t { fixture, clamp, machine, flutes, shank, holder, nose, stock, part };
 
-/// Whether a body belongs to the tool or the spindle that carries it.
+/// Whether a body belongs to the tool or the spindle.
 bool is_of_tool(BodyRole role);
 
-/// The colour that bodies of a role have.
+/// The colour of bodies of a role.
 Role color_role(BodyRole role);
 
-/// How much a role covers where nothing else is said: the holder is seen through.
+/// The default opacity of a role: the holder is transparent.
 double usual_alpha(BodyRole role);
 
-/// Something solid. Frame: the scene's is that of the stock.
+/// A solid body. The frame of the scene is that of the stock.
 struct Body {
     std::string name;
     BodyRole role = BodyRole::fixture;
     SharedMesh mesh;
     core::Transform stock_from_body = {};
     double alpha = 1.0;
-    bool highlighted = false; // one of the pair that is looked at: gets an outline in `mark`
+    bool highlighted = false; // one of the selected pair: outlined in the colour of `mark`
     ClearanceState mark = ClearanceState::none;
     bool visible = true;
 };
 
-/// The two points that are nearest to each other.
+/// The two nearest points of a pair.
 struct Witness {
     core::Vec3 a = core::Vec3(0.0), b = core::Vec3(0.0);
     ClearanceState state = ClearanceState::none;
 };
 
-/// Everything with dot(normal, p) > offset is cut away, and what is cut shows a face.
+/// Cuts away everything with dot(normal, p) > offset and shows the cut as a face.
 struct SectionPlane {
-    core::Vec3 normal = core::Vec3(0.0, 1.0, 0.0); // length 1
+    core::Vec3 normal = core::Vec3(0.0, 1.0, 0.0); // unit length
     double offset = 0.0;                           // mm
 };
 
-/// What is drawn. Frame: that of the stock, mm. A copy is cheap: what is large is shared.
+/// What is drawn. Frame: the stock's, mm. Copies are cheap: large data is shared.
 struct Scene {
     std::vector<Body> bodies;
-    std::vector<Body> ghost; // the tool where it is not: drawn as a shadow of itself
+    std::vector<Body> ghost; // the tool at another position, drawn faintly
     StockBricks stock;
     bool stock_visible = true;
     SharedPath path;
     bool path_visible = true;
-    std::optional<uint32_t> current_block; // drawn bright; later ones are drawn faint
+    std::optional<uint32_t> current_block; // drawn bright; later ones faint
     bool fade_later_blocks = true;
-    std::optional<uint32_t> hovered_block; // drawn as wide as the current one
+    std::optional<uint32_t> hovered_block; // drawn as wide as the current block
     std::optional<Witness> witness;
     std::optional<SectionPlane> section;
-    bool section_cuts_tool = false;   // else only stock and fixtures are cut
+    bool section_cuts_tool = false;   // otherwise only stock and fixtures are cut
     std::vector<core::Vec3> measured; // joined in order
 };
 
-/// The box of all that is visible, path included.
+/// The box of everything visible, path included.
 core::Aabb bounds(const Scene& scene);
 
-/// The box of stock, fixtures and path: what a first look should show; all if there are none.
+/// The box of stock, fixtures and path, for the initial view; of everything if there are none.
 core::Aabb work_bounds(const Scene& scene);
 
 /// The box of one body in the scene's frame.

@@ -6,8 +6,8 @@
 
 namespace render {
 
-/// The bodies of a set-up with their meshes, made once; where they stand is worked out for each
-/// place of the axes.
+/// The meshes of the bodies of a set-up, made once; poses are computed for each position of the
+/// axes.
 struct SetupMeshes {
     std::vector<SharedMesh> fixtures; // as in Setup::fixtures
     std::vector<SharedMesh> machine;  // as in Machine::bodies
@@ -17,29 +17,29 @@ struct SetupMeshes {
 
 SetupMeshes setup_meshes(const core::Setup& setup);
 
-/// The meshes of a tool's parts, from the flutes up.
+/// The meshes of the parts of a tool, from the flutes up.
 std::vector<SharedMesh> tool_meshes(const core::ToolAssembly& tool);
 
-/// Where a mounted body stands, seen from the stock.
+/// The pose of a mounted body relative to the stock.
 core::Transform stock_from_mount(const core::Setup& setup, const core::Mount& mount,
                                  const core::AxisValues& values);
 
-/// Fixtures that are there, and the bodies of the machine, on either side. `is_there` says of each
-/// fixture whether it is there now; empty: as at the first block.
+/// The fixtures in place and the bodies of the machine on both sides. `is_there` states which
+/// fixtures are in place; empty: as at the first block.
 std::vector<Body> setup_bodies(const core::Setup& setup, const SetupMeshes& meshes,
                                const core::AxisValues& values,
                                const std::vector<bool>& is_there = {});
 
-/// The parts of a tool in the spindle. The meshes are those of tool_meshes().
+/// The parts of a tool in the spindle. The meshes are from tool_meshes().
 std::vector<Body> tool_bodies(const core::Setup& setup, const core::ToolAssembly& tool,
                               const std::vector<SharedMesh>& meshes,
                               const core::AxisValues& values);
 
-/// Where the tip of the tool stands, seen from the stock.
+/// The position of the tool tip. Frame: the stock's.
 core::Vec3 tip_in_stock(const core::Setup& setup, double tool_length,
                         const core::AxisValues& values);
 
-/// Whether a fixture is a clamp by its name: clamps have a colour of their own.
+/// Whether a fixture is a clamp, by its name: clamps have their own colour.
 bool is_clamp(const std::string& name);
 
 } // namespace render

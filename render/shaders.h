@@ -2,7 +2,7 @@
 
 namespace render::shaders {
 
-// GLSL 3.30. What each expects is said at its text.
+// GLSL 3.30. Inputs are documented at each source.
 extern const char* const background_vertex;
 extern const char* const background_fragment;
 extern const char* const mesh_vertex;

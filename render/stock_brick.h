@@ -11,12 +11,12 @@ namespace render {
 struct StockBrick {
     static constexpr uint32_t raw = 0xFFFFFFFF;
 
-    TriangleMesh mesh;            // not closed by itself; all bricks together are
+    TriangleMesh mesh;            // open; all bricks together are closed
     std::vector<uint32_t> blocks; // triangles 2 k and 2 k + 1 were cut by blocks[k], or are raw
-    TriangleMesh drawn;           // it looks the same and has fewer triangles
+    TriangleMesh drawn;           // looks the same with fewer triangles
 };
 
-/// Those that hold any surface.
+/// The bricks that contain any surface.
 using StockBricks = std::vector<std::shared_ptr<const StockBrick>>;
 
 } // namespace render

@@ -11,51 +11,50 @@
 
 namespace render {
 
-/// A corner of the tip's path, with what is known of the piece that ends here. 20 bytes.
+/// A corner of the tip's path, with the attributes of the piece that ends here. 20 bytes.
 struct PathPoint {
     glm::vec3 place = glm::vec3(0.0F); // frame of the stock
     uint32_t block = 0;
     ClearanceState state = ClearanceState::none;
     bool rapid = false;
-    bool begins = false; // no piece ends here: the path begins anew
+    bool begins = false; // no piece ends here: a new path begins
     uint8_t spare = 0;
 
     bool operator==(const PathPoint&) const = default;
 };
 
-/// The path of a whole program, with boxes round stretches of it, so that few pieces are looked at
-/// when one of them is pointed to.
+/// The path of a whole program, with boxes around ranges of it for fast picking.
 struct ToolPath {
-    static constexpr size_t stretch = 64; // pieces to a box
-    static constexpr size_t group = 32;   // boxes to a box of the second level
+    static constexpr size_t stretch = 64; // pieces per box
+    static constexpr size_t group = 32;   // boxes per box of the second level
 
     std::vector<PathPoint> points;
     std::vector<core::Aabb> boxes;  // of the pieces that end at points stretch * i ...
-    std::vector<core::Aabb> groups; // of so many boxes
+    std::vector<core::Aabb> groups; // of `group` boxes each
     core::Aabb bounds;
 };
 
 using SharedPath = std::shared_ptr<const ToolPath>;
 
-/// Makes the boxes.
+/// Builds the boxes.
 ToolPath tool_path(std::vector<PathPoint> points);
 
-/// The points of a block: first and one past the last; both 0 when it has none. Blocks must not
-/// decrease along the path.
+/// The points of a block: first and one past the last; both 0 if it has none. Block numbers must
+/// not decrease along the path.
 std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block);
 
-/// How much of a path is near a block: so many blocks before and behind it, and as many more as it
-/// takes to see so much of the way.
+/// How much of a path is shown near a block: at least so many blocks before and after it, and more
+/// until the given length is shown.
 struct PathReach {
     uint32_t before = 30, behind = 8; // blocks
     double way_before = 150.0, way_behind = 40.0;
     size_t most = 1000; // points on either side
 };
 
-/// The part of a path near a block, whether the block moves or not.
+/// The part of a path near a block, even if the block does not move.
 ToolPath path_near(const ToolPath& path, uint32_t block, const PathReach& reach);
 
-/// The box of a block's pieces; empty when it has none.
+/// The box of the pieces of a block; empty if it has none.
 core::Aabb bounds_of_block(const ToolPath& path, uint32_t block);
 
 } // namespace render

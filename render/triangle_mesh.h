@@ -13,11 +13,11 @@
 
 namespace render {
 
-/// A corner of a drawn triangle, as it goes to the graphics card. 16 bytes.
+/// A vertex of a drawn triangle in the format of the graphics card. 16 bytes.
 struct MeshVertex {
     glm::vec3 place = glm::vec3(0.0F);
     std::array<int8_t, 3> normal{}; // times 127
-    uint8_t tint = 0;               // 0: the body's colour; 1: its second one (stock that was cut)
+    uint8_t tint = 0;               // 0: the body's colour; 1: its second colour (cut stock)
 
     bool operator==(const MeshVertex&) const = default;
 };
@@ -25,44 +25,45 @@ struct MeshVertex {
 std::array<int8_t, 3> packed_normal(const core::Vec3& normal);
 core::Vec3 unpacked_normal(const MeshVertex& vertex);
 
-/// A surface to look at. Counter-clockwise triangles face outwards.
+/// A surface for display. Counter-clockwise triangles face outwards.
 struct TriangleMesh {
     using Corners = std::array<uint32_t, 3>;
     static constexpr size_t stretch = 64;
 
     std::vector<MeshVertex> vertices;
     std::vector<Corners> triangles;
-    std::vector<std::array<glm::vec3, 2>> edges; // lines where the surface has an edge
+    std::vector<std::array<glm::vec3, 2>> edges; // feature edges
     core::Aabb bounds;
-    std::vector<core::Aabb> boxes; // of `stretch` triangles each, for picking; may be left out
-    bool closed = true;            // so that a section of it is a face
+    std::vector<core::Aabb> boxes; // of `stretch` triangles each, for picking; optional
+    bool closed = true;            // a section of it can be filled
 };
 
 using SharedMesh = std::shared_ptr<const TriangleMesh>;
 
-/// Edges sharper than this are drawn as edges, radians.
+/// Edges sharper than this are feature edges, radians.
 constexpr double crease_angle = 0.5235987755982988; // 30 degrees
 
-/// A mesh with normals: smooth over edges up to `crease`, one per face beyond; these get lines.
+/// A mesh with normals: smooth across edges up to `crease`, one per face beyond; sharper edges
+/// become feature edges.
 TriangleMesh shaded(const core::Mesh& mesh, double crease = crease_angle);
 
-/// The same mesh turned and moved, for bodies made of several.
+/// Appends a transformed mesh, for bodies made of several.
 void append(TriangleMesh& mesh, const TriangleMesh& other, const core::Transform& mesh_from_other);
 
-/// A quad of a surface on a lattice, round one of its edges: triangles 2 i and 2 i + 1 are quad i.
+/// A quad of a surface on a lattice, around one lattice edge: triangles 2 i and 2 i + 1 are quad i.
 struct LatticeQuad {
-    uint8_t axis = 0;              // of the edge
-    std::array<uint8_t, 3> node{}; // where the edge begins, below lattice_side
-    bool flat = false;             // its corners stand in the middle of cells, on one plane
+    uint8_t axis = 0;              // of the lattice edge
+    std::array<uint8_t, 3> node{}; // start of the edge, below lattice_side
+    bool flat = false;             // its corners are centres of cells, in one plane
 };
 
 constexpr size_t lattice_side = 34;
 
-/// The same surface with fewer triangles, for drawing alone: quads that lie side by side on one
-/// plane across an axis, in one colour, become rectangles. These stand out over their neighbours by
-/// a tenth of a cell, so that no gap shows where corners do not meet.
+/// The same surface with fewer triangles, for display only: adjacent quads in one plane across an
+/// axis with one colour become rectangles. These overlap their neighbours by a tenth of a cell, so
+/// that no gap shows where corners do not meet.
 ///
-/// Cost: linear in the quads.
+/// Cost:    linear in the quads.
 TriangleMesh with_large_faces(const TriangleMesh& mesh, std::span<const LatticeQuad> quads);
 
 } // namespace render

@@ -9,8 +9,7 @@
 
 namespace render {
 
-/// A program and how its values are set. Names are those in its text; a name that it does not have
-/// is passed over, as compilers drop what is not used.
+/// A program and its uniforms. Unknown names are ignored, as compilers drop unused uniforms.
 class ShaderProgram {
 public:
     static core::Result<ShaderProgram> make(const char* vertex, const char* fragment);
@@ -32,20 +31,21 @@ private:
     GlProgram program_;
 };
 
-/// What all that is drawn in a picture has in common.
+/// What all drawing of one picture shares.
 struct ViewFrame {
     const Scene& scene;
     const Camera& camera;
     const DrawOptions& options;
     Viewport viewport;
     Mat4 view_from_scene, clip_from_view;
-    unsigned hollows = 0; // texture of how dark corners are; 0: none
+    unsigned hollows = 0; // ambient occlusion texture; 0: none
 };
 
-/// How far lines are drawn in front of the surface they lie on, by so many parts of the distance.
+/// How far lines are drawn in front of the surface on which they lie, as a fraction of the
+/// distance.
 glm::vec2 nearer(const Camera& camera, double share);
 
-/// Sets the matrices of a body with this pose.
+/// Sets the matrices for a body with this pose.
 void set_view(const ShaderProgram& program, const ViewFrame& frame,
               const core::Transform& scene_from_body = {});
 

@@ -126,8 +126,8 @@ Result<Dbm> empty_dbm(const Aabb& bounds, double spacing, double memory_limit) {
     const double limit = std::min(memory_limit, most_lines * bytes_per_line);
     if (!(bytes <= limit))
         return fail(ErrorCode::invalid_value,
-                    fmt::format("a mesh size of {} mm would take {:.3g} scan lines and {:.3g} GiB "
-                                "(the limit is {:.3g} GiB); {:.2g} mm would do",
+                    fmt::format("a mesh size of {} mm needs {:.3g} scan lines and {:.3g} GiB (the "
+                                "limit is {:.3g} GiB); {:.2g} mm would do",
                                 spacing, lines_for(bounds, spacing), bytes / gib, limit / gib,
                                 fitting_spacing(bounds, spacing, limit)));
 
@@ -140,10 +140,10 @@ Result<Dbm> empty_dbm(const Aabb& bounds, double spacing, double memory_limit) {
 
 Result<Dbm> checked_not_empty(Dbm dbm) {
     if (point_count(dbm) == 0)
-        return fail(ErrorCode::invalid_value,
-                    fmt::format("the mesh size of {} mm is larger than the body, no scan line "
-                                "meets it",
-                                dbm.grid.spacing));
+        return fail(
+            ErrorCode::invalid_value,
+            fmt::format("the mesh size of {} mm is larger than the body: no scan line crosses it",
+                        dbm.grid.spacing));
     return dbm;
 }
 

@@ -169,7 +169,7 @@ Result<bool> scan_family(const Mesh& mesh, const ScanGrid& grid, double rounding
 
 Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing, double memory_limit) {
     if (mesh.triangles.empty())
-        return fail(ErrorCode::invalid_value, "the mesh holds no triangles");
+        return fail(ErrorCode::invalid_value, "the mesh has no triangles");
     const Aabb bounds = mesh.bounds();
     FEELER_TRY(Dbm dbm, empty_dbm(bounds, spacing, memory_limit));
     bool shells_overlap = false;

@@ -239,7 +239,7 @@ Result<Solid> moved(const Solid& solid, const Transform& by) {
         const auto axis = along_axis(by.rotation * up);
         if (!axis)
             return fail(ErrorCode::unsupported,
-                        "a round stock can only be turned to stand along X, Y or Z");
+                        "round stock can only be rotated so that it is parallel to X, Y or Z");
         Vec3 base = by * cylinder->base;
         if (!axis->second) base[axis->first] -= cylinder->height;
         result.shape = SolidCylinder{base, cylinder->radius, cylinder->height, axis->first};
@@ -280,9 +280,10 @@ std::string bytes_of(const StockRecord& record) {
 Result<StockRecord> stock_record(const std::string& bytes) {
     const std::string_view all = bytes;
     if (all.substr(0, magic.size()) != magic)
-        return fail(ErrorCode::syntax, "is no stock that was saved by this program");
+        return fail(ErrorCode::syntax, "is not a stock file saved by Feeler");
     constexpr size_t tail = sizeof(uint64_t);
-    const Error damaged{ErrorCode::syntax, {}, "is damaged: cut off or changed since it was saved"};
+    const Error damaged{
+        ErrorCode::syntax, {}, "is damaged: truncated or changed since it was saved"};
     if (all.size() < magic.size() + tail) return tl::unexpected(damaged);
     Reader end(all.substr(all.size() - tail));
     if (end.get<uint64_t>() != digest_of(all.substr(0, all.size() - tail)))

@@ -64,11 +64,10 @@ private:
 Result<PointBody> DistanceEngine::add(std::span<const Vec3> points, double memory_limit) {
     const double needed = bytes_per_point() * static_cast<double>(points.size());
     if (needed > memory_limit)
-        return fail(
-            ErrorCode::invalid_value,
-            fmt::format("a body of {} points would take {:.1f} GiB of memory, more than the "
-                        "{:.1f} GiB that are allowed; a larger mesh size makes fewer points",
-                        points.size(), needed / gibibyte, memory_limit / gibibyte));
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("a body of {} points needs {:.1f} GiB of memory, more than the "
+                                "limit of {:.1f} GiB; use a larger mesh size",
+                                points.size(), needed / gibibyte, memory_limit / gibibyte));
     return take_in(points);
 }
 
@@ -76,23 +75,23 @@ Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_
                                    const PairGoal& goal) const {
     if (!is_rigid(a_from_b) || (goal.end && !is_rigid(*goal.end)))
         return fail(ErrorCode::invalid_value,
-                    "the transform between the bodies is not a rotation: its columns must be at "
-                    "right angles, of length 1, and not mirror");
+                    "the transform between the bodies is not rigid: its columns must be "
+                    "orthogonal, of length 1, and right-handed");
     if (goal.end && goal.sweep != Vec3(0.0))
         return fail(ErrorCode::invalid_value,
-                    "a body either moves on by a sweep or goes to an end, not both");
+                    "give either a sweep or an end pose of the body, not both");
     if (!is_near(a_from_b.translation) || !is_near(goal.sweep)
         || (goal.end && !is_near(goal.end->translation)))
         return fail(ErrorCode::invalid_value,
-                    "the bodies are moved by a length that is no number or beyond 1e12 mm");
+                    "a translation or sweep is not a number or beyond 1e12 mm");
     if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0))
         return fail(ErrorCode::invalid_value,
-                    "the limit and the tolerance of a search must be lengths of 0 or more");
+                    "the limit and the tolerance of a search must be 0 or more");
     const size_t points_a = points_of(a), points_b = points_of(b);
     if (points_a == 0 || points_b == 0)
-        return fail(ErrorCode::invalid_value, "the engine holds no body of that number");
+        return fail(ErrorCode::invalid_value, "the engine has no body with that number");
     if (goal.first && (goal.first->a >= points_a || goal.first->b >= points_b))
-        return fail(ErrorCode::invalid_value, "the pair given names a point that is not there");
+        return fail(ErrorCode::invalid_value, "the first pair names a point that does not exist");
     return {};
 }
 

@@ -86,7 +86,7 @@ Result<StlCount> checked_binary_stl(std::string_view bytes) {
                     fmt::format("its header states {} triangles, which take {} bytes, but the file "
                                 "has {}",
                                 count, stated_length(bytes), bytes.size()));
-    if (count == 0) return fail(ErrorCode::missing_value, "there are no triangles in it");
+    if (count == 0) return fail(ErrorCode::missing_value, "it has no triangles");
     StlCount found{.triangles = count, .degenerate = 0};
     for (size_t i = 0; i < count; ++i) {
         const StlCorner a = corner_at(bytes, i, 0), b = corner_at(bytes, i, 1),
@@ -280,7 +280,7 @@ Result<bool> check_coordinates(const Mesh& mesh) {
                             fmt::format("triangle {} has a coordinate that is not finite", i + 1));
             if (glm::any(glm::greaterThan(glm::abs(p), Vec3(farthest_coordinate))))
                 return fail(ErrorCode::invalid_value,
-                            fmt::format("triangle {} lies at {} mm, more than a kilometre away",
+                            fmt::format("triangle {} is at {} mm, more than a kilometre away",
                                         i + 1, place_of(p)));
         }
     return true;
@@ -363,26 +363,23 @@ Result<bool> close(Mesh& mesh, std::vector<std::string>& repairs) {
     if (count.unbalanced > 0)
         return fail_at_edge(mesh, count.unbalanced, "edges have triangles that face both ways",
                             count.an_unbalanced_one);
-    repairs.push_back(fmt::format("{} triangles faced the other way than their neighbours and were "
-                                  "turned",
-                                  turned));
+    repairs.push_back(
+        fmt::format("{} triangles faced opposite to their neighbours and were flipped", turned));
     return true;
 }
 
 } // namespace
 
 Result<Mesh> checked_solid(Mesh mesh, std::vector<std::string>& repairs) {
-    if (mesh.triangles.empty())
-        return fail(ErrorCode::missing_value, "there are no triangles in it");
+    if (mesh.triangles.empty()) return fail(ErrorCode::missing_value, "it has no triangles");
     FEELER_TRY([[maybe_unused]] const bool in_range, check_coordinates(mesh));
     mesh = welded(mesh);
     if (const size_t dropped = drop_degenerate(mesh); dropped > 0)
-        repairs.push_back(
-            fmt::format("{} triangles that name a corner twice were left out", dropped));
+        repairs.push_back(fmt::format("{} triangles with two equal corners were removed", dropped));
     mesh = welded(mesh); // without the corners of those
     FEELER_TRY([[maybe_unused]] const bool closed, close(mesh, repairs));
     if (const size_t turned = turn_outwards(mesh); turned > 0)
-        repairs.push_back(fmt::format("{} of its shells faced inwards and were turned", turned));
+        repairs.push_back(fmt::format("{} of its shells faced inwards and were flipped", turned));
     const double longest = glm::length(mesh.bounds().size());
     if (mesh.triangles.empty() || !(signed_volume(mesh) > 1e-12 * longest * longest * longest))
         return fail(ErrorCode::invalid_value, "the mesh encloses no volume");
@@ -401,7 +398,7 @@ Result<std::string> read_bytes(const std::filesystem::path& path) {
     if (size == 0) return fail(ErrorCode::syntax, "the file is empty");
     if (size > largest_file)
         return fail(ErrorCode::unsupported,
-                    fmt::format("the file has {} bytes; meshes up to 2 GiB are read", size));
+                    fmt::format("the file has {} bytes; the limit is 2 GiB", size));
     std::optional<std::string> bytes = file_bytes(path);
     if (!bytes || bytes->size() < size) return fail(ErrorCode::io, "the file cannot be read");
     return *std::move(bytes);
@@ -423,7 +420,7 @@ Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view
     if (extension == ".off") return MeshFormat::off;
     if (extension == ".ply") return MeshFormat::ply;
     return fail(ErrorCode::unsupported,
-                fmt::format("'{}' is no mesh format that is read (stl, obj, ply, off)", extension));
+                fmt::format("'{}' is not a supported mesh format (stl, obj, ply, off)", extension));
 }
 
 /// What OpenMesh is given to read, and how much it must find there.
@@ -465,7 +462,7 @@ Result<MeshFile> read_solid(const std::filesystem::path& path) {
     FEELER_TRY(PolygonSoup soup, complete_soup(plain, format));
     MeshFile file;
     if (plain.degenerate_faces > 0)
-        file.repairs.push_back(fmt::format("{} triangles that name a corner twice were left out",
+        file.repairs.push_back(fmt::format("{} triangles with two equal corners were removed",
                                            plain.degenerate_faces));
     FEELER_TRY(Mesh triangles, triangulated(std::move(soup)));
     FEELER_TRY(file.mesh, checked_solid(std::move(triangles), file.repairs));

@@ -205,7 +205,7 @@ Result<PolygonSoup> read_soup(const std::string& bytes, MeshFormat format) {
         format == MeshFormat::stl_binary ? IO::Options::Binary : IO::Options::Default;
     try {
         if (!IO::IOManager().read(stream, extension_of(format), importer, options))
-            return fail(ErrorCode::syntax, "the file is not understood");
+            return fail(ErrorCode::syntax, "the format of the file is not valid");
     } catch (const ReadingStopped& stopped) {
         return fail(ErrorCode::syntax, stopped.why);
     } catch (const std::bad_alloc&) {

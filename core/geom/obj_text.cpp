@@ -55,7 +55,7 @@ Result<MeshText> checked_obj(std::string_view bytes) {
             ++out.faces;
         }
     }
-    if (out.faces == 0) return fail(ErrorCode::missing_value, "there are no faces in it");
+    if (out.faces == 0) return fail(ErrorCode::missing_value, "it has no faces");
     return out;
 }
 
@@ -79,7 +79,7 @@ public:
             if (!advance()) return ends_early("faces", i, out_.faces);
             FEELER_TRY([[maybe_unused]] const bool face, read_face());
         }
-        if (out_.faces == 0) return fail(ErrorCode::missing_value, "there are no faces in it");
+        if (out_.faces == 0) return fail(ErrorCode::missing_value, "it has no faces");
         return std::move(out_);
     }
 
@@ -100,8 +100,7 @@ private:
         if (!advance()) return fail(ErrorCode::syntax, "the file is empty");
         const std::string kind(words_[0]);
         if (kind != "OFF" && kind != "COFF" && kind != "NOFF" && kind != "CNOFF")
-            return fail_in_line(lines_.line(), fmt::format("'{}' is no OFF header that is "
-                                                           "understood",
+            return fail_in_line(lines_.line(), fmt::format("'{}' is not a supported OFF header",
                                                            kind.substr(0, 20)));
         if (words_.size() > 1 && words_[1] == "BINARY")
             return fail(ErrorCode::unsupported, "binary OFF is not supported");
@@ -117,7 +116,7 @@ private:
     Result<size_t> read_count(size_t place) const {
         const auto count = place < words_.size() ? integer_of(words_[place]) : std::nullopt;
         if (!count || *count < 0 || *count > most_)
-            return fail_in_line(lines_.line(), "the counts of vertices and faces are not there");
+            return fail_in_line(lines_.line(), "the counts of vertices and faces are missing");
         return static_cast<size_t>(*count);
     }
 

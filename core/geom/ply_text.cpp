@@ -65,7 +65,7 @@ public:
             if (is_face) out_.faces = element.count;
             if (is_face) break; // what follows the faces is no part of the surface
         }
-        if (out_.faces == 0) return fail(ErrorCode::missing_value, "there are no faces in it");
+        if (out_.faces == 0) return fail(ErrorCode::missing_value, "it has no faces");
         out_.text = plain_header() + points + outlines;
         return std::move(out_);
     }
@@ -87,7 +87,7 @@ private:
             const bool understood =
                 words[0] == "format" ? (has_format = read_format(words)) : read_declaration(words);
             if (!understood)
-                return fail_in_line(lines.line(), "this part of the header is not understood");
+                return fail_in_line(lines.line(), "this part of the header is not supported");
         }
         return fail_in_line(lines.line(), "the file ends without 'end_header'");
     }
@@ -152,8 +152,7 @@ private:
             }
             if (!complete)
                 return fail(ErrorCode::syntax,
-                            fmt::format("{} {} is not there, or '{}' of it is no "
-                                        "number",
+                            fmt::format("{} {} is missing, or its '{}' is not a number",
                                         element.name, i + 1, property.name));
         }
         return entry;

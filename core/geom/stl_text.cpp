@@ -24,7 +24,7 @@ public:
             }
             skip_line();
         }
-        if (out_.faces == 0) return fail(ErrorCode::missing_value, "there are no triangles in it");
+        if (out_.faces == 0) return fail(ErrorCode::missing_value, "it has no triangles");
         return std::move(out_);
     }
 
@@ -44,9 +44,8 @@ private:
     Result<bool> expect(std::string_view expected) const {
         if (equals_ignoring_case(word(), expected)) return true;
         return fail_in_line(lines_.line(),
-                            fmt::format("'{}' stands where '{}' is expected (triangle "
-                                        "{})",
-                                        word(), expected, out_.faces + 1));
+                            fmt::format("found '{}' where '{}' is expected (triangle {})", word(),
+                                        expected, out_.faces + 1));
     }
     Result<bool> expect_next(std::string_view expected) {
         if (advance()) return expect(expected);

@@ -66,7 +66,7 @@ TEST(Dbm, SaysBeforeItAllocatesWhatAFineMeshWouldTake) {
     const auto refused = scan(Box{Vec3(1000.0)}, 0.01, 1e6);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
-              "a mesh size of 0.01 mm would take 3e+10 scan lines and 2.01e+03 GiB (the limit is "
+              "a mesh size of 0.01 mm needs 3e+10 scan lines and 2.01e+03 GiB (the limit is "
               "0.000931 GiB); 16 mm would do");
     EXPECT_TRUE(scan(Box{Vec3(1000.0)}, 16.0, 1e6));
 }

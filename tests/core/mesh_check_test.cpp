@@ -62,7 +62,7 @@ TEST(MeshCheck, SaysHowManyEdgesAreOpenAndWhereOneIs) {
 TEST(MeshCheck, TurnsAMeshThatFacesInwards) {
     const auto [mesh, repairs] = check(inside_out(cube(0.0, 5.0)));
     EXPECT_EQ(signed_volume(mesh.value()), 125.0);
-    EXPECT_THAT(repairs, ElementsAre("1 of its shells faced inwards and were turned"));
+    EXPECT_THAT(repairs, ElementsAre("1 of its shells faced inwards and were flipped"));
 }
 
 TEST(MeshCheck, TurnsOnlyTheShellThatFacesInwards) {
@@ -81,7 +81,7 @@ TEST(MeshCheck, KeepsTheCavityOfAMeshThatIsInsideOutAsAWhole) {
     const Mesh hollow = together(cube(0.0, 5.0), inside_out(cube(1.0, 2.0)));
     const auto [mesh, repairs] = check(inside_out(hollow));
     EXPECT_EQ(signed_volume(mesh.value()), 125.0 - 1.0);
-    EXPECT_THAT(repairs, ElementsAre("2 of its shells faced inwards and were turned"));
+    EXPECT_THAT(repairs, ElementsAre("2 of its shells faced inwards and were flipped"));
 }
 
 TEST(MeshCheck, KeepsABodyInsideACavity) {
@@ -106,8 +106,8 @@ TEST(MeshCheck, TurnsSingleTrianglesThatFaceTheWrongWay) {
     for (const size_t i : {3u, 17u, 40u}) std::swap(mixed.triangles[i][0], mixed.triangles[i][1]);
     const auto [mesh, repairs] = check(mixed);
     EXPECT_DOUBLE_EQ(signed_volume(mesh.value()), volume);
-    EXPECT_THAT(repairs, ElementsAre("3 triangles faced the other way than their neighbours and "
-                                     "were turned"));
+    EXPECT_THAT(repairs, ElementsAre("3 triangles faced opposite to their neighbours and "
+                                     "were flipped"));
 }
 
 TEST(MeshCheck, KeepsShellsApartThatShareAnEdge) {

@@ -208,7 +208,8 @@ TEST(MeshFile, SaysWhenThereIsNoSuchFile) {
 }
 
 TEST(MeshFile, RefusesAnUnknownExtension) {
-    EXPECT_THAT(error_of("part.step", "ISO-10303-21;"), HasSubstr("'.step' is no mesh format"));
+    EXPECT_THAT(error_of("part.step", "ISO-10303-21;"),
+                HasSubstr("'.step' is not a supported mesh format"));
     EXPECT_THAT(error_of("part", "solid"), HasSubstr("no mesh format"));
 }
 
@@ -250,7 +251,7 @@ TEST(MeshFile, RefusesAnAsciiStlThatIsNotInOrder) {
     EXPECT_THAT(error_of("none.stl", "solid nothing\nendsolid nothing\n"),
                 HasSubstr("no triangles"));
     EXPECT_THAT(error_of("quad.stl", with(whole, " endloop", "vertex 1 2 3\n endloop")),
-                HasSubstr("'vertex' stands where 'endloop'"));
+                HasSubstr("found 'vertex' where 'endloop'"));
     EXPECT_THAT(error_of("noise.stl", "just some text"), HasSubstr("84 bytes"));
 }
 
@@ -297,7 +298,7 @@ TEST(MeshFile, RefusesAPlyThatIsNotInOrder) {
     const std::string whole = binary_ply(false);
     EXPECT_THAT(error_of("p.ply", whole.substr(0, whole.size() - 1)), HasSubstr("face 6"));
     const size_t body = whole.find("end_header\n") + 11;
-    EXPECT_THAT(error_of("p.ply", whole.substr(0, body + 20)), HasSubstr("vertex 2 is not there"));
+    EXPECT_THAT(error_of("p.ply", whole.substr(0, body + 20)), HasSubstr("vertex 2 is missing"));
 }
 
 TEST(MeshFile, SurvivesFilesWithDamage) {
@@ -346,7 +347,7 @@ TEST(MeshFile, SaysThatDegenerateTrianglesAreLeftOut) {
         const auto file = read("flat.stl", bytes);
         ASSERT_TRUE(file) << file.error().message;
         ASSERT_EQ(file->repairs.size(), 1u);
-        EXPECT_EQ(file->repairs[0], "1 triangles that name a corner twice were left out");
+        EXPECT_EQ(file->repairs[0], "1 triangles with two equal corners were removed");
         EXPECT_EQ(file->mesh.triangles.size(), 12u);
     }
 }

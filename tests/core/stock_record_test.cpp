@@ -126,7 +126,8 @@ TEST(StockRecord, OfARoundStockTurnsByRightAnglesOnly) {
 TEST(StockRecord, RefusesBytesThatWereChangedOrCutOff) {
     std::mt19937 rng(5);
     const std::string good = bytes_of(record_of(random_cut_box(rng, 4, 0.0).model(0.7)));
-    EXPECT_NE(stock_record("solid cube\n").error().message.find("no stock"), std::string::npos);
+    EXPECT_NE(stock_record("solid cube\n").error().message.find("not a stock file"),
+              std::string::npos);
     for (size_t length = 15; length < good.size(); length += 37)
         EXPECT_FALSE(stock_record(good.substr(0, length))) << length;
     for (int i = 0; i < 300; ++i) {
