@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/sim/setup.h"
+#include "gcode/lower/lowering.h"
+
 namespace app {
 namespace {
 

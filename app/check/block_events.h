@@ -3,8 +3,15 @@
 #include <string_view>
 #include <vector>
 
-#include "core/sim/setup.h"
-#include "gcode/lower/lowering.h"
+#include "core/motion/event.h"
+
+namespace core {
+struct Setup;
+}
+namespace gcode {
+struct BlockResult;
+struct Lowering;
+} // namespace gcode
 
 namespace app {
 

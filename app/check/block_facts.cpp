@@ -1,5 +1,7 @@
 #include "app/check/block_facts.h"
 
+#include "app/check/check_run.h"
+
 namespace app {
 namespace {
 

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "app/check/check_run.h"
+#include "core/base/ids.h"
+#include "core/sim/finding.h"
+#include "core/sim/verdict.h"
 
 namespace app {
+
+struct CheckRun;
 
 /// What conditions ask of a block, wherever it is known from: a record, or a row of a list.
 struct BlockFacts {

@@ -3,11 +3,14 @@
 #include <algorithm>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
 #include "app/check/conclusion.h"
 #include "app/check/input_file.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/coproc/device_judge.h"
 #include "app/setup/setup_file.h"
+#include "core/dbm/stock_mesh.h"
 
 namespace app {
 

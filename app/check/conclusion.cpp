@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
+#include "app/check/length_mismatch.h"
+#include "app/check/prepared_check.h"
 #include "app/setup/inference/program_survey.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"
@@ -78,9 +81,9 @@ void conclude(PreparedCheck& check, core::SimulatorState end,
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
     say_not_judged(run, check.file.not_judged);
-    run.stock = std::move(end.stock);
+    run.stock = std::make_shared<const core::CutModel>(std::move(end.stock));
     if (!run.stopped && (needs_surface || run.setup.part))
-        run.surface = core::stock_mesh(*run.stock);
+        run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
     check_part(run);
     look_at_both_switch_positions(run, *check.program, check.file.environment);
     apply_allowed_rules(run, check.file.allow_comments);
@@ -358,7 +361,8 @@ core::Colour colour_of(double deviation, double tolerance) {
 
 void check_part(CheckRun& run) {
     if (!run.setup.part || !run.surface) return;
-    run.comparison = core::compare_with_part(*run.stock, *run.surface, *run.setup.part);
+    run.comparison = std::make_shared<const core::PartComparison>(
+        core::compare_with_part(*run.stock, *run.surface, *run.setup.part));
     add_findings(run, core::Deviation::gouge);
     add_findings(run, core::Deviation::excess);
 }

@@ -4,12 +4,22 @@
 #include <string_view>
 #include <vector>
 
-#include "app/check/check_run.h"
-#include "app/check/length_mismatch.h"
-#include "app/check/prepared_check.h"
-#include "gcode/text/source.h"
+#include "core/base/result.h"
+
+namespace core {
+struct PartComparison;
+struct SimulatorState;
+} // namespace core
+namespace gcode {
+struct Environment;
+struct Program;
+} // namespace gcode
 
 namespace app {
+
+struct CheckRun;
+struct LengthMismatch;
+struct PreparedCheck;
 
 /// What can be said only of a whole run, once its last block was carried out: findings in their
 /// order, those that one cause explains made one, comments that allow rules, the part, the stock

@@ -5,6 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
+#include "core/sim/run/simulator.h"
+#include "gcode/language/canonical.h"
+
 namespace app {
 namespace {
 

@@ -1,11 +1,24 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
-#include "app/check/check_run.h"
-#include "gcode/language/canonical.h"
+#include "core/base/ids.h"
+#include "core/sim/finding.h"
+
+namespace core {
+struct BlockEvents;
+struct Setup;
+struct SimulatorState;
+} // namespace core
+namespace gcode {
+struct Warning;
+}
 
 namespace app {
+
+struct CheckRun;
 
 /// Blocks in which the tool stands lower than meant, because the control counts with a shorter
 /// length than the tool has.

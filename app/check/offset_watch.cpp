@@ -7,6 +7,8 @@
 
 #include "core/motion/kinematics.h"
 #include "core/sim/run/finding_text.h"
+#include "core/sim/run/simulator.h"
+#include "gcode/exec/interpreter.h"
 
 namespace app {
 namespace {

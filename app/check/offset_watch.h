@@ -2,10 +2,20 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
-#include "core/sim/run/simulator.h"
-#include "core/sim/setup.h"
-#include "gcode/exec/interpreter.h"
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+#include "core/sim/finding.h"
+
+namespace core {
+struct BlockEvents;
+struct Setup;
+struct SimulatorState;
+} // namespace core
+namespace gcode {
+struct InterpreterState;
+}
 
 namespace app {
 

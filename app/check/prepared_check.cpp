@@ -6,13 +6,17 @@
 
 #include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
 #include "app/check/program_runner.h"
 #include "app/setup/inference/inferred_setup.h"
+#include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
 #include "core/sim/verdict.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -93,6 +97,11 @@ core::Result<gcode::Program> read_once(const std::string& path, std::string& sha
 }
 
 } // namespace
+
+PreparedCheck::PreparedCheck() = default;
+PreparedCheck::PreparedCheck(PreparedCheck&&) noexcept = default;
+PreparedCheck& PreparedCheck::operator=(PreparedCheck&&) noexcept = default;
+PreparedCheck::~PreparedCheck() = default;
 
 core::Result<PreparedCheck> read_check(const CheckJob& job) {
     const Stopwatch reading;

@@ -5,14 +5,25 @@
 #include <vector>
 
 #include "app/check/check_run.h"
-#include "core/motion/machine.h"
-#include "gcode/text/source.h"
+#include "app/setup/setup_file.h"
+
+namespace gcode {
+struct Program;
+class ProgramLibrary;
+} // namespace gcode
 
 namespace app {
+
+struct CheckJob;
 
 /// A program and its set-up, read, completed and put in place, before the first block. The program
 /// must stay where it is while it is run.
 struct PreparedCheck {
+    PreparedCheck();
+    PreparedCheck(PreparedCheck&&) noexcept;
+    PreparedCheck& operator=(PreparedCheck&&) noexcept;
+    ~PreparedCheck();
+
     std::unique_ptr<const gcode::Program> program;
     std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms, for all who run it
     SetupFile file;                                 // its setup is in `run`

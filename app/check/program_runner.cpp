@@ -9,12 +9,50 @@
 #include <fmt/ranges.h>
 
 #include "app/check/block_events.h"
+#include "app/check/check_job.h"
+#include "app/check/prepared_check.h"
+#include "app/setup/setup_file.h"
 #include "core/sim/run/finding_text.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/restart.h"
 #include "gcode/language/error_rules.h"
 
 namespace app {
+
+/// The blocks of a length doubt as they would go if the control counted with the length that the
+/// tool has. What is found there as well does not come of the length.
+///
+/// Cost: that of the check itself, for these blocks.
+class CorrectedRun {
+public:
+    /// Begins before the first block of the doubt. Library, environment and set-up must outlive it;
+    /// the library is that of the run.
+    CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
+                 const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
+                 const LengthMismatch& doubt);
+
+    /// Runs the block that the program ran under a set-up. Does nothing any more once the cured
+    /// program has taken another way, or the set-up is another one.
+    void follow(const gcode::BlockResult& real, const core::Setup& setup);
+
+    /// Writes what was found into the doubt.
+    void end(LengthMismatch& doubt);
+
+private:
+    void put_length_on();
+
+    const core::Setup& setup_;
+    bool speed_by_hand_;
+    double length_;
+    gcode::Interpreter interpreter_;
+    gcode::InterpreterState place_;
+    gcode::Lowering lowering_;
+    core::SimulatorState state_;
+    OffsetWatch offsets_;
+    bool is_lost_ = false;
+    std::optional<core::BlockIndex> last_; // that was followed
+    std::vector<core::Finding> found_;
+};
 
 CorrectedRun::CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
                            const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
@@ -113,6 +151,12 @@ first_events(const std::function<void(const BlockVisit&)>& show) {
     });
     return found;
 }
+
+BlockRunner::BlockRunner(const PreparedCheck& check)
+    : check_(check),
+      setup_(&check.run.setup),
+      interpreter_(*check.library, check.file.environment),
+      before_(gcode::initial_state(check.file.environment)) {}
 
 std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                                                 const gcode::Lowering& lowering) const {
@@ -247,6 +291,8 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
         follow_cure(block, before);
     };
 }
+
+ProgramRunner::~ProgramRunner() = default;
 
 void ProgramRunner::let_judge(decltype(BlockRunner::judge) judge) {
     runner_.judge = std::move(judge);

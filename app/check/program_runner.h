@@ -1,15 +1,20 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "app/check/check_run.h"
 #include "app/check/length_mismatch.h"
 #include "app/check/offset_watch.h"
-#include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
-#include "gcode/lower/lowering.h"
 
 namespace app {
+
+struct CheckProgress;
 
 /// What a program stands on between two blocks.
 struct BlockContext {
@@ -20,40 +25,8 @@ struct BlockContext {
     const LengthWatch& lengths;
 };
 
-/// The blocks of a length doubt as they would go if the control counted with the length that the
-/// tool has. What is found there as well does not come of the length.
-///
-/// Cost: that of the check itself, for these blocks.
-class CorrectedRun {
-public:
-    /// Begins before the first block of the doubt. Library, environment and set-up must outlive it;
-    /// the library is that of the run.
-    CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
-                 const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
-                 const LengthMismatch& doubt);
-
-    /// Runs the block that the program ran under a set-up. Does nothing any more once the cured
-    /// program has taken another way, or the set-up is another one.
-    void follow(const gcode::BlockResult& real, const core::Setup& setup);
-
-    /// Writes what was found into the doubt.
-    void end(LengthMismatch& doubt);
-
-private:
-    void put_length_on();
-
-    const core::Setup& setup_;
-    bool speed_by_hand_;
-    double length_;
-    gcode::Interpreter interpreter_;
-    gcode::InterpreterState place_;
-    gcode::Lowering lowering_;
-    core::SimulatorState state_;
-    OffsetWatch offsets_;
-    bool is_lost_ = false;
-    std::optional<core::BlockIndex> last_; // that was followed
-    std::vector<core::Finding> found_;
-};
+class CorrectedRun;
+struct PreparedCheck;
 
 /// The error with the name of a file, unless it has one.
 core::Error named(core::Error error, const std::string& file);
@@ -80,7 +53,7 @@ struct BlockStep {
 /// the place. Refers to the check.
 class BlockRunner {
 public:
-    explicit BlockRunner(const PreparedCheck& check) : check_(check), setup_(&check.run.setup) {}
+    explicit BlockRunner(const PreparedCheck& check);
 
     // Told of a block before it is run, when the control has read it and nothing has moved.
     std::function<void(const gcode::BlockResult&, const BlockContext&)> before_block;
@@ -114,9 +87,8 @@ private:
 
     const PreparedCheck& check_;
     const core::Setup* setup_;
-    gcode::Interpreter interpreter_{*check_.library, check_.file.environment};
-    gcode::InterpreterState before_ = gcode::initial_state(check_.file.environment); // spares
-                                                                                     // allocating
+    gcode::Interpreter interpreter_;
+    gcode::InterpreterState before_; // avoids an allocation for each block
 };
 
 /// Carries a program out block by block against a set-up that is complete, and writes what comes of
@@ -125,6 +97,7 @@ class ProgramRunner {
 public:
     /// Takes the machine out of the check.
     explicit ProgramRunner(PreparedCheck& check);
+    ~ProgramRunner();
     // Its parts refer to one another.
     ProgramRunner(const ProgramRunner&) = delete;
     ProgramRunner& operator=(const ProgramRunner&) = delete;
@@ -193,7 +166,7 @@ private:
     BlockRunner runner_;
     RunState place_;
     uint32_t last_line_ = 0; // of the main program
-    std::unique_ptr<CorrectedRun> cured_ = {};
+    std::unique_ptr<CorrectedRun> cured_;
     std::vector<LengthMismatch> cures_ = {}; // what came of it, by the first blocks of doubts
     LengthMismatch followed_ = {};           // the doubt that it is about
     size_t first_to_time_ = 0;               // blocks before it have their place in time

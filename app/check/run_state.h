@@ -5,6 +5,8 @@
 #include "app/check/length_mismatch.h"
 #include "app/check/offset_watch.h"
 #include "core/sim/run/block_clock.h"
+#include "core/sim/run/simulator.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/lower/lowering.h"
 
 namespace app {

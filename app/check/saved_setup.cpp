@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_job.h"
 #include "app/check/prepared_check.h"
 #include "app/setup/setup_edits.h"
 #include "app/setup/setup_text.h"

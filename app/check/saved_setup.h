@@ -3,9 +3,11 @@
 #include <functional>
 #include <string>
 
-#include "app/check/check_run.h"
+#include "core/base/result.h"
 
 namespace app {
+
+struct CheckJob;
 
 /// The set-up of a job as a file that `check --setup` takes: the job's edits in the file that it
 /// names, or all that was inferred and edited, with what is inferred as comments.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "app/check/prepared_check.h"
 #include "app/setup/holder_library.h"
+#include "app/setup/setup_file.h"
 #include "app/setup/tools/found_tool.h"
 #include "core/sim/tool_assembly.h"
 

@@ -1,14 +1,24 @@
 #pragma once
 
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "app/check/prepared_check.h"
+#include "app/setup/setup_edits.h"
+#include "core/base/ids.h"
+#include "core/dbm/solid.h"
 #include "core/sim/tool_description.h"
 
+namespace core {
+struct Setup;
+}
+
 namespace app {
+
+struct SetupFile;
 
 /// Where a part of a set-up comes from.
 enum class SetupSource : uint8_t { file, inferred, usual, stated };

@@ -4,8 +4,11 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/dbm/stock_mesh.h"
-#include "core/dbm/stock_record.h"
+
+namespace core {
+struct CutModel;
+struct StockMesh;
+} // namespace core
 
 namespace app {
 

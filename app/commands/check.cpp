@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/conclusion.h"
 #include "app/commands/check_options.h"
 #include "app/commands/commands.h"

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/check/check_job.h"
 #include "app/commands/commands.h"
 #include "app/commands/program_arguments.h"
 #include "app/library/store/shard_number.h"

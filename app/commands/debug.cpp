@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/output.h"

@@ -11,6 +11,8 @@
 
 namespace app {
 
+struct CheckRun;
+
 /// A question about a block, as breakpoints, filters and `until` ask it: `clearance < 1 and rapid`.
 ///
 /// Comparisons (< <= > >= = == != <>, or LT LE GT GE EQ NE as controls write them, also in chains:

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_job.h"
+#include "app/check/prepared_check.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/recorded_run.h"
 #include "gcode/exec/restart.h"

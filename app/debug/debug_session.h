@@ -1,7 +1,10 @@
 #pragma once
 
+#include "app/check/check_job.h"
+#include "app/check/prepared_check.h"
 #include "app/debug/condition.h"
 #include "app/debug/recorded_run.h"
+#include "app/setup/setup_file.h"
 #include "gcode/text/source.h"
 
 namespace app {

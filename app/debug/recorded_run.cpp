@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
 #include "app/check/conclusion.h"
+#include "app/check/prepared_check.h"
 
 namespace app {
 

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "app/check/check_job.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/check/run_state.h"
 #include "app/debug/what_if.h"

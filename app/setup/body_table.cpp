@@ -6,14 +6,20 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/setup/setup_file.h"
+#include "app/setup/table_reader.h"
 #include "core/base/file_reads.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
 #include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
 #include "core/sim/clearance.h"
 
 namespace app {
+
+MeshSource BodyContext::meshes() { return {folder, file.assumptions}; }
+
 namespace {
 
 /// A body as written, in its own frame: a mesh, or a cylinder that stands on the origin.

@@ -4,13 +4,19 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "app/setup/setup_file.h"
-#include "app/setup/table_reader.h"
 #include "core/base/vec.h"
-#include "core/motion/machine.h"
+#include "core/distance/body_distance.h"
+
+namespace core {
+struct Setup;
+}
 
 namespace app {
+
+class TableReader;
+struct SetupFile;
 
 /// Where named frames stand in the machine: "machine", the work offsets, the bodies so far.
 struct Frames {
@@ -35,7 +41,7 @@ struct BodyContext {
     Frames frames;
     SetupFile& file;
 
-    MeshSource meshes() { return {folder, file.assumptions}; }
+    MeshSource meshes();
 };
 
 /// A body by its box, cylinder or mesh, and its `at` and `rotate_deg`; empty after a mistake.

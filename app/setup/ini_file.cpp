@@ -10,6 +10,8 @@
 
 #include "app/base/text.h"
 #include "core/base/units.h"
+#include "core/motion/machine.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 namespace {

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/motion/machine.h"
-#include "gcode/language/environment.h"
-#include "gcode/language/modal_state.h"
+
+namespace core {
+struct Machine;
+}
+namespace gcode {
+enum class LengthUnit : uint8_t;
+struct Environment;
+} // namespace gcode
 
 namespace app {
 

@@ -9,8 +9,10 @@
 
 #include "app/base/text.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/table_reader.h"
 #include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
+#include "gcode/language/environment.h"
 #include "gcode/language/parameters.h"
 
 namespace app {

@@ -8,18 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "app/setup/table_reader.h"
+#include "core/base/ids.h"
 #include "core/base/result.h"
-#include "gcode/language/environment.h"
+#include "core/motion/event.h"
+
+namespace gcode {
+enum class DialectId : uint8_t;
+enum class LengthUnit : uint8_t;
+struct Environment;
+} // namespace gcode
 
 namespace app {
+
+class TableReader;
 
 /// What a user says about the control that reads a program, on the command line or under [program]
 /// of a set-up. Empty where nothing was said.
 struct ProgramSettings {
     std::optional<gcode::DialectId> dialect;
     std::optional<bool> block_delete;
-    gcode::Position start{}; // machine coordinates, mm and degrees
+    core::AxisPosition start{}; // machine coordinates, mm and degrees
     std::optional<gcode::LengthUnit> machine_unit;
     std::optional<uint64_t> max_blocks;
     std::optional<bool> counts_smallest_steps; // X1000 is 1 mm on Fanuc and Haas
@@ -44,7 +52,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
 
 /// The place in a text such as `X=10,Y=-5.5,A=90` or `X10 Y-5.5`: mm and degrees; axes that are not
 /// named stay unknown. Empty when it is no such text.
-std::optional<gcode::Position> position_in(const std::string& text);
+std::optional<core::AxisPosition> position_in(const std::string& text);
 
 /// Reads `[program]` of a set-up; relative paths start from `folder`.
 ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder);

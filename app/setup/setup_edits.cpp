@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"

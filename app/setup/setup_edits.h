@@ -6,9 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "app/setup/setup_file.h"
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/dbm/solid.h"
+#include "core/sim/tool_description.h"
 
 namespace app {
+
+struct SetupFile;
 
 /// A tool as a person says that it is.
 struct StatedTool {

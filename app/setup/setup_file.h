@@ -1,20 +1,19 @@
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "app/setup/program_settings.h"
-#include "app/setup/table_reader.h"
 #include "app/setup/tools/found_tool.h"
 #include "core/base/result.h"
-#include "core/sim/finding.h"
 #include "core/sim/setup.h"
 #include "gcode/language/environment.h"
 
 namespace app {
+
+class TableReader;
+struct ProgramSettings;
 
 /// A set-up file, read and put in its place.
 struct SetupFile {
@@ -43,7 +42,8 @@ struct SetupFile {
 ///
 /// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value, a mesh that
 ///         is no solid, a tool that cannot be.
-core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over = {});
+core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over);
+core::Result<SetupFile> read_setup(const std::string& path);
 
 /// The name of the file that says what the programs of a folder are checked against.
 constexpr const char* project_file_name = "feeler.toml";

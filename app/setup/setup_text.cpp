@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/setup/setup_file.h"
 
 namespace app {
 namespace {

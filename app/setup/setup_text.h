@@ -3,11 +3,14 @@
 #include <string>
 #include <string_view>
 
-#include "app/setup/setup_file.h"
-#include "core/dbm/solid.h"
-#include "core/sim/tool_description.h"
+namespace core {
+struct Solid;
+struct ToolDescription;
+} // namespace core
 
 namespace app {
+
+struct SetupFile;
 
 /// A number as TOML has it, to the last bit; whole ones stay whole.
 std::string toml_number(double value);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "app/setup/body_table.h"
 #include "app/setup/holder_library.h"
+#include "app/setup/setup_file.h"
+#include "app/setup/table_reader.h"
 #include "core/geom/mesh_file.h"
 #include "core/geom/profile.h"
 #include "core/sim/rules/rules.h"

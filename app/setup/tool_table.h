@@ -1,8 +1,18 @@
 #pragma once
 
-#include "app/setup/body_table.h"
+#include <string>
+#include <vector>
+
+namespace core {
+struct ConeStep;
+struct ToolDescription;
+} // namespace core
 
 namespace app {
+
+class TableReader;
+struct BodyContext;
+struct SetupFile;
 
 /// Reads one `[[tool]]` into the set-up and into what the control knows of tool lengths.
 void read_tool(TableReader& table, BodyContext& context);

@@ -13,6 +13,7 @@
 #include "core/motion/machine.h"
 #include "core/sim/finding.h"
 #include "core/sim/tool_assembly.h"
+#include "core/sim/verdict.h"
 
 namespace core {
 
@@ -52,10 +53,6 @@ struct FixtureMove {
     size_t from = 0;          // the fixture that goes
     std::optional<size_t> to; // the one that takes its place; empty: it is taken away
 };
-
-/// How much a check tells of each block: of every pair of bodies; of the one that decides; or,
-/// where a bound already clears the block, of none.
-enum class Detail : uint8_t { every_pair, deciding_pair, verdict };
 
 /// Everything that does not change while a program runs. mm.
 struct Setup {

@@ -16,6 +16,10 @@ enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
 
 const char* name_of(BlockMotion motion);
 
+/// Which clearances of a block a check reports: those of every pair of bodies; that of the deciding
+/// pair; or none where a bound already clears the block.
+enum class Detail : uint8_t { every_pair, deciding_pair, verdict };
+
 /// Lengths nearer together than this are the same length, mm: an allowance that is kept to within
 /// it counts as kept. It stands far above rounding and far below anything a machine can hold.
 constexpr double resolution = 1e-6;

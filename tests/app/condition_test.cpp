@@ -5,7 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/condition.h"
+#include "core/sim/clearance.h"
+#include "core/sim/tool_assembly.h"
 
 namespace app_test {
 namespace {

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/setup/inference/stated_stock.h"
+#include "gcode/language/modal_state.h"
+#include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/setup/ini_file.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/scoped_folder.h"
 

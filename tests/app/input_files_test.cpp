@@ -8,9 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/input_file.h"
 #include "app/library/store/input_files.h"
+#include "app/setup/program_settings.h"
+#include "gcode/language/dialect.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

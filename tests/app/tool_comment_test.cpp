@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "app/setup/tools/program_tools.h"
+#include "gcode/language/modal_state.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

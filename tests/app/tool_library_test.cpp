@@ -3,6 +3,7 @@
 #include "app/report/text/text_report.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/sim/tool_assembly.h"
+#include "gcode/language/modal_state.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/debug/debug_session.h"
 #include "tests/session/walked_program.h"
 

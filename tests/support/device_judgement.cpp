@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 
 namespace test_support {

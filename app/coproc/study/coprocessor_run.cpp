@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
 #include "app/check/conclusion.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 
 namespace app {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/coproc/device_judge.h"
 #include "app/coproc/permit_timing.h"

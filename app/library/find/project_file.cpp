@@ -5,6 +5,7 @@
 
 #include "app/base/file_stamp.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
 #include "core/base/file_reads.h"
 #include "core/sim/clearance.h"

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "app/check/check_job.h"
 #include "app/library/result/batch_result.h"
 
 namespace core {

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/check/check_job.h"
 #include "app/library/result/program_result.h"
 
 namespace app {

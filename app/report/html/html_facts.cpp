@@ -13,6 +13,7 @@
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/verdict.h"
+#include "gcode/language/dialect.h"
 
 namespace app {
 namespace {

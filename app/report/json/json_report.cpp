@@ -7,6 +7,7 @@
 #include "app/base/version.h"
 #include "app/check/check_run.h"
 #include "core/sim/part_comparison.h"
+#include "gcode/language/dialect.h"
 
 namespace app {
 namespace {

@@ -9,6 +9,7 @@
 #include "app/check/check_run.h"
 #include "app/check/conclusion.h"
 #include "core/sim/verdict.h"
+#include "gcode/language/dialect.h"
 
 namespace app {
 namespace {

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "app/setup/inference/program_survey.h"
+#include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 
 namespace app {

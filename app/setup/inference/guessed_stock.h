@@ -6,6 +6,11 @@
 #include "app/setup/inference/program_survey.h"
 #include "gcode/text/source.h"
 
+namespace gcode {
+struct Environment;
+struct Program;
+} // namespace gcode
+
 namespace app {
 
 /// A rapid straight down to where no feed has cut before: nothing can have stood there.

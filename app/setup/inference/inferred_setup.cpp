@@ -9,9 +9,12 @@
 #include "app/setup/inference/program_survey.h"
 #include "app/setup/inference/stated_stock.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/dbm/solid.h"
+#include "gcode/exec/interpreter.h"
 
 namespace app {
 namespace {

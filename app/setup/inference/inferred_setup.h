@@ -2,13 +2,19 @@
 
 #include <map>
 
-#include "app/setup/inference/program_survey.h"
-#include "app/setup/setup_file.h"
 #include "app/setup/tools/found_tool.h"
-#include "gcode/exec/interpreter.h"
-#include "gcode/text/source.h"
+#include "core/base/ids.h"
+#include "core/base/result.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+struct Program;
+} // namespace gcode
 
 namespace app {
+
+struct ProgramSettings;
+struct SetupFile;
 
 /// A set-up for a program about which nothing else is known: no fixtures, a machine without limits,
 /// its zero high above the program's, all work offsets at one place.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/sim/tool_assembly.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/lower/lowering.h"
 #include "gcode/text/source.h"
 

@@ -5,13 +5,15 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "core/motion/event.h"
-#include "core/sim/tool_assembly.h"
-#include "gcode/exec/interpreter.h"
-#include "gcode/language/environment.h"
-#include "gcode/language/modal_state.h"
-#include "gcode/text/source.h"
+
+namespace gcode {
+struct Environment;
+struct Offsets;
+struct Program;
+} // namespace gcode
 
 namespace app {
 

@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/program_tools.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
 #include "gcode/language/modal_state.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -4,8 +4,11 @@
 #include <string>
 
 #include "core/base/vec.h"
-#include "gcode/language/dialect.h"
-#include "gcode/text/source.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+struct Program;
+} // namespace gcode
 
 namespace app {
 

@@ -8,8 +8,11 @@
 
 #include "app/setup/tools/found_tool.h"
 #include "app/setup/tools/tool_text.h"
-#include "gcode/language/dialect.h"
-#include "gcode/text/source.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+struct Program;
+} // namespace gcode
 
 namespace app {
 

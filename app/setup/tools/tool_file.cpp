@@ -6,6 +6,7 @@
 
 #include "app/base/text.h"
 #include "gcode/language/modal_state.h"
+#include "gcode/language/tables.h"
 
 namespace app {
 namespace {

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "gcode/language/modal_state.h"
-#include "gcode/language/tables.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+struct LengthOffset;
+} // namespace gcode
 
 namespace app {
 

@@ -14,6 +14,7 @@
 #include "app/setup/tools/tool_text.h"
 #include "core/base/file_reads.h"
 #include "core/base/result.h"
+#include "gcode/language/tables.h"
 
 namespace app {
 

@@ -5,7 +5,10 @@
 
 #include "app/setup/tools/found_tool.h"
 #include "core/base/result.h"
-#include "gcode/language/modal_state.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+}
 
 namespace app {
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "gcode/language/modal_state.h"
+
 namespace app {
 namespace {
 

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "core/sim/tool_description.h"
-#include "gcode/language/modal_state.h"
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+}
 
 namespace app {
 

@@ -2,6 +2,12 @@
 
 #include <algorithm>
 
+#include "app/check/check_run.h"
+#include "core/sim/clearance.h"
+#include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
+#include "gcode/language/canonical.h"
+
 namespace app::viewer {
 namespace {
 

@@ -6,6 +6,13 @@
 #include "app/check/block_facts.h"
 #include "render/tool_path.h"
 
+namespace core {
+struct Setup;
+}
+namespace app {
+struct CheckedBlock;
+}
+
 namespace app::viewer {
 
 /// What the panels show of a block as executed. Plain, so that it can go from thread to thread.

@@ -6,6 +6,11 @@
 #include "gcode/language/canonical.h"
 #include "render/tool_path.h"
 
+namespace core {
+struct Machine;
+struct Setup;
+} // namespace core
+
 namespace app::viewer {
 
 /// Chords of arcs are drawn within this of them, mm: less than a pixel.

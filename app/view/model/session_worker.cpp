@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "app/check/check_job.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/view/model/program_track.h"
 #include "core/motion/timing.h"

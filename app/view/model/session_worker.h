@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "app/check/check_job.h"
 #include "app/check/saved_setup.h"
 #include "app/view/model/program_track.h"
 #include "app/view/model/session_update.h"
