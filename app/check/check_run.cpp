@@ -53,7 +53,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     runner.after_block = job.after_block;
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
-        FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.place().machine.stock));
+        FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.state().machine.stock));
         runner.let_judge([&](std::span<const core::Event> block, const auto& before) {
             return device->judge(block, before);
         });
@@ -65,10 +65,10 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
-    runner.to_the_end();
+    runner.run_to_end();
     check.run.times.check = checking.seconds();
-    const std::vector<LengthMismatch> doubts = runner.length_doubts();
-    conclude(check, std::move(runner.place_to_change().machine), doubts, job.needs_surface);
+    const std::vector<LengthMismatch> mismatches = runner.length_mismatches();
+    conclude(check, std::move(runner.mutable_state().machine), mismatches, job.needs_surface);
     check.run.inputs = recorder.inputs();
     return std::move(check.run);
 }

@@ -70,7 +70,7 @@ void put_in_order(std::vector<core::Finding>& findings) {
 } // namespace
 
 void conclude(PreparedCheck& check, core::SimulatorState end,
-              const std::vector<LengthMismatch>& doubts, bool needs_surface) {
+              const std::vector<LengthMismatch>& mismatches, bool needs_surface) {
     CheckRun& run = check.run;
     run.statistics = end.statistics;
     run.points = core::point_count(end.stock.lines);
@@ -87,7 +87,7 @@ void conclude(PreparedCheck& check, core::SimulatorState end,
     check_part(run);
     look_at_both_switch_positions(run, *check.program, check.file.environment);
     apply_allowed_rules(run, check.file.allow_comments);
-    gather_consequences(run, doubts);
+    combine_consequences(run, mismatches);
 }
 
 namespace {

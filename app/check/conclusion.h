@@ -25,7 +25,7 @@ struct PreparedCheck;
 /// order, those that one cause explains made one, comments that allow rules, the part, the stock
 /// that is left.
 void conclude(PreparedCheck& check, core::SimulatorState end,
-              const std::vector<LengthMismatch>& doubts, bool needs_surface);
+              const std::vector<LengthMismatch>& mismatches, bool needs_surface);
 
 /// A name in a comment that allows a rule, in small letters, and where it begins, from 1.
 struct AllowedRule {

@@ -12,7 +12,7 @@
 namespace app {
 namespace {
 
-constexpr double wear = 1.0; // mm that a table may differ from a tool and still mean it
+constexpr double wear = 1.0; // mm between table and tool that count as tool wear
 
 bool is_cause(std::string_view rule) {
     return rule == "missing-length-offset" || rule == "length-offset-cancelled"
@@ -42,8 +42,8 @@ struct Counted {
     void take(const Other&) {}
 };
 
-/// Whether a finding can come of a tool that stands too low.
-bool may_come_of_length(const core::Finding& finding) {
+/// Whether a tool that is too low can cause a finding.
+bool can_be_caused_by_length(const core::Finding& finding) {
     if (is_cause(finding.rule) || finding.rule == "spindle-off") return false;
     if (finding.rule == "tool-change-unsafe") return false;
     return finding.rule == "over-travel" || !finding.pair[0].empty() || finding.rule == "air-cut"
@@ -53,8 +53,8 @@ bool may_come_of_length(const core::Finding& finding) {
 /// The letter of the axis that a finding about a limit begins with.
 char axis_of(const core::Finding& finding) { return finding.message.substr(0, 1)[0]; }
 
-/// Whether a finding about the program as it is and one about it with the right length are about
-/// the same thing, be it milder.
+/// Whether a finding of the program as written and one of the corrected program have the same
+/// subject, whatever their severities.
 bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
     if (!found.pair[0].empty()) return found.block == left.block && found.pair == left.pair;
     if (found.rule != left.rule) return false;
@@ -63,12 +63,13 @@ bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
     return true; // of a rule that looks at many blocks
 }
 
-/// Whether a finding is gone with the right length, as far as that was tried.
-bool is_consequence(const LengthMismatch& doubt, const core::Finding& finding) {
-    if (!finding.block || *finding.block < doubt.first || *finding.block > doubt.last) return false;
-    if (!doubt.cured_to || *finding.block > *doubt.cured_to) return false;
-    return may_come_of_length(finding)
-           && std::none_of(doubt.left.begin(), doubt.left.end(),
+/// Whether a finding does not occur with the true length, in the blocks that were run with it.
+bool is_consequence(const LengthMismatch& mismatch, const core::Finding& finding) {
+    if (!finding.block || *finding.block < mismatch.first || *finding.block > mismatch.last)
+        return false;
+    if (!mismatch.corrected_to || *finding.block > *mismatch.corrected_to) return false;
+    return can_be_caused_by_length(finding)
+           && std::none_of(mismatch.remaining.begin(), mismatch.remaining.end(),
                            [&](const auto& left) { return are_about_the_same(finding, left); });
 }
 
@@ -90,7 +91,7 @@ bool collides_in(const CheckRun& run, const core::Finding& finding) {
     return block.verdict == core::Verdict::collision;
 }
 
-/// What a wrong length leads to.
+/// What a wrong length causes.
 struct Consequences {
     std::set<core::BlockIndex> blocks;
     std::set<std::string> bodies;
@@ -109,7 +110,7 @@ struct Consequences {
     }
 };
 
-/// "The tool stands 95.000 mm lower than meant and runs into the stock in 14 blocks from ...".
+/// "The tool is 95.000 mm lower than intended and collides with the stock in 14 blocks from ...".
 std::string sentence(const CheckRun& run, const Consequences& all, double too_low) {
     const auto line = [&](core::BlockIndex block) {
         return run.blocks[core::value_of(block)].line;
@@ -119,20 +120,21 @@ std::string sentence(const CheckRun& run, const Consequences& all, double too_lo
             ? fmt::format("in line {}", line(*all.blocks.begin()))
             : fmt::format("in {} blocks from line {} to line {}", all.blocks.size(),
                           line(*all.blocks.begin()), line(*all.blocks.rbegin()));
-    return fmt::format("The tool stands {:.3f} mm lower than meant and {} {} {}.", too_low,
-                       all.collides ? "runs into" : "comes too near to", listed(all.bodies), where);
+    return fmt::format("The tool is {:.3f} mm lower than intended and {} {} {}.", too_low,
+                       all.collides ? "collides with" : "comes too close to", listed(all.bodies),
+                       where);
 }
 
-std::optional<core::Finding> cause_of(const CheckRun& run, const LengthMismatch& doubt) {
+std::optional<core::Finding> cause_of(const CheckRun& run, const LengthMismatch& mismatch) {
     for (const core::Finding& finding : run.findings)
-        if (finding.block == doubt.first && is_cause(finding.rule)) return finding;
+        if (finding.block == mismatch.first && is_cause(finding.rule)) return finding;
     return std::nullopt;
 }
 
-/// Puts the sentence into the finding of the cause; or, where that is milder than what comes of it,
-/// into the first of what comes of it.
-void tell_together(CheckRun& run, const core::Finding& cause, const Consequences& all,
-                   double too_low, std::optional<core::Finding> first) {
+/// Adds the sentence to the finding of the cause; or, if that has a lower severity than its
+/// consequences, to the first of these.
+void add_sentence(CheckRun& run, const core::Finding& cause, const Consequences& all,
+                  double too_low, std::optional<core::Finding> first) {
     if (all.blocks.empty()) return;
     const std::string what = sentence(run, all, too_low);
     const auto at = std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
@@ -143,8 +145,8 @@ void tell_together(CheckRun& run, const core::Finding& cause, const Consequences
         at->cure += " Then check again.";
         return;
     }
-    first->message += fmt::format(" It comes of the length offset: see {} in line {}. {}",
-                                  cause.rule, run.blocks[core::value_of(*cause.block)].line, what);
+    first->message += fmt::format(" Cause: the length offset, see {} in line {}. {}", cause.rule,
+                                  run.blocks[core::value_of(*cause.block)].line, what);
     first->cure = cause.cure + " Then check again.";
     run.findings.insert(at + 1, *std::move(first));
 }
@@ -157,22 +159,22 @@ void watch_length(LengthWatch& watch, const core::Setup& setup, const core::Bloc
     for (const core::Event& event : block.events)
         std::visit([&](const auto& one) { counted.take(one); }, event);
     if (counted.is_new) watch.is_open = state.watch.length_in_doubt = false;
-    if (watch.is_open) watch.doubts.back().last = block.block;
-    const bool is_told = has_cause(warnings);
-    if (!is_told && !(counted.is_new && counted.offset.number)) return;
+    if (watch.is_open) watch.mismatches.back().last = block.block;
+    const bool has_finding = has_cause(warnings);
+    if (!has_finding && !(counted.is_new && counted.offset.number)) return;
     const auto tool = counted.tool ? setup.tools.find(*counted.tool) : setup.tools.end();
     if (tool == setup.tools.end()) return;
     const double too_low = tool->second.length - counted.offset.length;
     if (too_low <= wear) return;
     state.watch.length_in_doubt = true;
-    if (!is_told) return;
-    watch.doubts.push_back({.first = block.block,
-                            .last = block.block,
-                            .too_low = too_low,
-                            .length = tool->second.length,
-                            .number = counted.offset.number,
-                            .cured_to = {},
-                            .left = {}});
+    if (!has_finding) return;
+    watch.mismatches.push_back({.first = block.block,
+                                .last = block.block,
+                                .too_low = too_low,
+                                .length = tool->second.length,
+                                .number = counted.offset.number,
+                                .corrected_to = {},
+                                .remaining = {}});
     watch.is_open = true;
 }
 
@@ -185,26 +187,26 @@ void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
     state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
 }
 
-void gather_consequences(CheckRun& run, const std::vector<LengthMismatch>& doubts) {
-    for (const LengthMismatch& doubt : doubts) {
-        const auto cause = cause_of(run, doubt);
+void combine_consequences(CheckRun& run, const std::vector<LengthMismatch>& mismatches) {
+    for (const LengthMismatch& mismatch : mismatches) {
+        const auto cause = cause_of(run, mismatch);
         if (!cause) continue;
-        const auto comes_of_it = [&](const core::Finding& finding) {
-            return is_consequence(doubt, finding);
+        const auto is_caused = [&](const core::Finding& finding) {
+            return is_consequence(mismatch, finding);
         };
         Consequences all;
         for (const core::Finding& finding : run.findings)
-            if (comes_of_it(finding)) all.take(run, finding);
+            if (is_caused(finding)) all.take(run, finding);
         std::optional<core::Finding> first;
         if (all.worst > cause->severity && !all.blocks.empty())
             first = *std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
-                return comes_of_it(other) && other.severity == all.worst
+                return is_caused(other) && other.severity == all.worst
                        && (!all.collides || collides_in(run, other));
             });
         std::copy_if(run.findings.begin(), run.findings.end(), std::back_inserter(run.taken_in),
-                     comes_of_it);
-        std::erase_if(run.findings, comes_of_it);
-        tell_together(run, *cause, all, doubt.too_low, std::move(first));
+                     is_caused);
+        std::erase_if(run.findings, is_caused);
+        add_sentence(run, *cause, all, mismatch.too_low, std::move(first));
     }
 }
 

@@ -19,99 +19,99 @@
 
 namespace app {
 
-/// The blocks of a length doubt as they would go if the control counted with the length that the
-/// tool has. What is found there as well does not come of the length.
+/// Runs the blocks of a length mismatch with the tool's true length in the control. A finding that
+/// this run has as well is not caused by the wrong length.
 ///
 /// Cost: that of the check itself, for these blocks.
 class CorrectedRun {
 public:
-    /// Begins before the first block of the doubt. Library, environment and set-up must outlive it;
-    /// the library is that of the run.
+    /// Starts before the first block of the mismatch. Library, environment and set-up must outlive
+    /// it; the library is that of the run.
     CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
-                 const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
-                 const LengthMismatch& doubt);
+                 const core::Setup& setup, bool speed_by_hand, const RunState& before,
+                 const LengthMismatch& mismatch);
 
-    /// Runs the block that the program ran under a set-up. Does nothing any more once the cured
-    /// program has taken another way, or the set-up is another one.
+    /// Runs the block that the program ran under a set-up. Does nothing once the corrected program
+    /// has taken another branch, or the set-up was replaced.
     void follow(const gcode::BlockResult& real, const core::Setup& setup);
 
-    /// Writes what was found into the doubt.
-    void end(LengthMismatch& doubt);
+    /// Writes the findings into the mismatch.
+    void end(LengthMismatch& mismatch);
 
 private:
-    void put_length_on();
+    void apply_length();
 
     const core::Setup& setup_;
     bool speed_by_hand_;
     double length_;
     gcode::Interpreter interpreter_;
-    gcode::InterpreterState place_;
+    gcode::InterpreterState control_;
     gcode::Lowering lowering_;
-    core::SimulatorState state_;
+    core::SimulatorState machine_;
     OffsetWatch offsets_;
     bool is_lost_ = false;
-    std::optional<core::BlockIndex> last_; // that was followed
+    std::optional<core::BlockIndex> last_; // that was run
     std::vector<core::Finding> found_;
 };
 
 CorrectedRun::CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environment& environment,
-                           const core::Setup& setup, bool speed_by_hand, const BlockContext& before,
-                           const LengthMismatch& doubt)
+                           const core::Setup& setup, bool speed_by_hand, const RunState& before,
+                           const LengthMismatch& mismatch)
     : setup_(setup),
       speed_by_hand_(speed_by_hand),
-      length_(doubt.length),
+      length_(mismatch.length),
       interpreter_(library, environment),
-      place_(before.at),
+      control_(before.control),
       lowering_(before.lowering),
-      state_(before.state),
+      machine_(before.machine),
       offsets_(before.offsets) {
-    if (!doubt.number) return;
-    gcode::LengthOffset& entry = place_.tables.write().lengths[*doubt.number];
+    if (!mismatch.number) return;
+    gcode::LengthOffset& entry = control_.tables.write().lengths[*mismatch.number];
     entry.length = length_;
     entry.wear = 0.0;
 }
 
-void CorrectedRun::put_length_on() {
-    const gcode::Offsets& offsets = place_.modal.offsets;
+void CorrectedRun::apply_length() {
+    const gcode::Offsets& offsets = control_.modal.offsets;
     if (offsets.tool[2] == length_) return;
-    gcode::Offsets cured = offsets;
-    cured.tool[2] = lowering_.offsets.tool[2] = length_;
-    gcode::change_offsets(place_.modal, cured);
+    gcode::Offsets corrected = offsets;
+    corrected.tool[2] = lowering_.offsets.tool[2] = length_;
+    gcode::change_offsets(control_.modal, corrected);
 }
 
 void CorrectedRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
     is_lost_ = is_lost_ || &setup != &setup_;
     if (is_lost_) return;
-    put_length_on();
-    const auto next = interpreter_.next(place_);
+    apply_length();
+    const auto next = interpreter_.next(control_);
     is_lost_ = !next || !*next || (*next)->block != real.block || (*next)->line != real.line
                || (*next)->file != real.file;
     if (is_lost_) return;
     const gcode::BlockResult& block = **next;
     const std::vector<core::Event> events = events_of(setup_, block, lowering_, speed_by_hand_);
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
-    core::BlockResult result = core::run_block(setup_, of_block, state_);
+    core::BlockResult result = core::run_block(setup_, of_block, machine_);
     is_lost_ = !result.checked;
     if (is_lost_) return;
     for (core::Finding& finding : result.findings) found_.push_back(std::move(finding));
-    watch_offsets(offsets_, setup_, place_, of_block, state_);
+    watch_offsets(offsets_, setup_, control_, of_block, machine_);
     last_ = block.block;
 }
 
-void CorrectedRun::end(LengthMismatch& doubt) {
-    const auto tool = state_.tool ? setup_.tools.find(*state_.tool) : setup_.tools.end();
+void CorrectedRun::end(LengthMismatch& mismatch) {
+    const auto tool = machine_.tool ? setup_.tools.find(*machine_.tool) : setup_.tools.end();
     if (tool != setup_.tools.end())
-        if (auto air = core::end_air(state_.watch.air, tool->second.description.diameter))
+        if (auto air = core::end_air(machine_.watch.air, tool->second.description.diameter))
             found_.push_back(*std::move(air));
     for (core::Finding& finding : implausible_offsets(offsets_, setup_))
         found_.push_back(std::move(finding));
-    doubt.cured_to = last_;
-    doubt.left = std::move(found_);
+    mismatch.corrected_to = last_;
+    mismatch.remaining = std::move(found_);
 }
 
 namespace {
 
-/// As a sentence: with a capital, but for names, and a full stop.
+/// Makes a sentence: adds the full stop, and the capital unless the text begins with a name.
 std::string as_sentence(std::string text) {
     const auto is_small = [&](size_t i) {
         return i < text.size()
@@ -130,7 +130,7 @@ core::Error named(core::Error error, const std::string& file) {
     return error;
 }
 
-core::Finding remark(const core::Setup& setup, const gcode::Warning& warning) {
+core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning) {
     core::Finding finding;
     finding.rule = warning.rule;
     finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
@@ -156,7 +156,7 @@ BlockRunner::BlockRunner(const PreparedCheck& check)
     : check_(check),
       setup_(&check.run.setup),
       interpreter_(*check.library, check.file.environment),
-      before_(gcode::initial_state(check.file.environment)) {}
+      next_(gcode::initial_state(check.file.environment)) {}
 
 std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                                                 const gcode::Lowering& lowering) const {
@@ -176,41 +176,42 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                        std::string(block.file)};
 }
 
-void BlockRunner::remark_on(const gcode::BlockResult& block, const RunState& place,
-                            std::vector<core::Finding>& findings) const {
+void BlockRunner::add_warnings(const gcode::BlockResult& block, const RunState& state,
+                               std::vector<core::Finding>& findings) const {
     for (const gcode::Warning& warning : block.warnings) {
-        // What the set-up states is stated, be it all zero.
-        const auto active = static_cast<int>(place.control.modal.offsets.active);
+        // An offset that the set-up states is set, even if it is all zeros.
+        const auto active = static_cast<int>(state.control.modal.offsets.active);
         if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
             continue;
-        core::Finding finding = remark(*setup_, warning);
+        core::Finding finding = finding_of(*setup_, warning);
         finding.block = block.block;
         if (finding.severity != core::Severity::off) findings.push_back(std::move(finding));
     }
 }
 
-core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& place) {
-    before_ = place.control;
-    const auto next = interpreter_.next(place.control);
-    if (!next) return tl::unexpected(named(next.error(), check_.program->file));
-    if (!*next) return std::nullopt;
-    const gcode::BlockResult& block = **next;
-    const gcode::Lowering lowering_before = place.lowering;
-    const std::vector<core::Event> events =
-        events_of(*setup_, block, place.lowering, check_.file.speed_by_hand);
-    const auto give_up = [&](core::Error error) {
-        place.control = before_;
-        place.lowering = lowering_before;
+core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
+    const auto failed = [&](core::Error error) {
         return tl::unexpected(named(std::move(error), check_.program->file));
     };
-    if (auto refused = refusal(block, place.lowering)) return give_up(*std::move(refused));
-    auto judged = judge ? judge(events, place.machine) : core::Judgement();
+    next_ = state.control;
+    const auto read = interpreter_.next(next_);
+    if (!read) return failed(read.error());
+    if (!*read) {
+        std::swap(state.control, next_);
+        return std::nullopt;
+    }
+    const gcode::BlockResult& block = **read;
+    gcode::Lowering lowering = state.lowering;
+    const std::vector<core::Event> events =
+        events_of(*setup_, block, lowering, check_.file.speed_by_hand);
+    if (auto refused = refusal(block, lowering)) return failed(*std::move(refused));
+    auto judged = judge ? judge(events, state.machine) : core::Judgement();
     if (!judged)
-        return give_up({judged.error().code,
-                        {.line = block.line, .column = 1},
-                        std::move(judged).error().message,
-                        std::string(block.file)});
-    for (const size_t move : fixture_moves_of(*setup_, block)) place.moves_made.insert(move);
+        return failed({judged.error().code,
+                       {.line = block.line, .column = 1},
+                       std::move(judged).error().message,
+                       std::string(block.file)});
+    for (const size_t move : fixture_moves_of(*setup_, block)) state.moves_made.insert(move);
     BlockStep step{{block.block,
                     block.line,
                     std::string(block.text),
@@ -219,16 +220,16 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& place) {
                     {}}};
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
                                      judge ? &*judged : nullptr};
-    watch_length(place.lengths, *setup_, of_block, block.warnings, place.machine);
-    if (before_block)
-        before_block(block,
-                     {before_, lowering_before, place.machine, place.offsets, place.lengths});
-    step.checked.result = core::run_block(*setup_, of_block, place.machine);
-    remark_on(block, place, step.findings);
+    watch_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
+    if (before_block) before_block(block, state);
+    std::swap(state.control, next_);
+    state.lowering = lowering;
+    step.checked.result = core::run_block(*setup_, of_block, state.machine);
+    add_warnings(block, state, step.findings);
     for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
-    watch_offsets(place.offsets, *setup_, place.control, of_block, place.machine);
-    watch_units(place.units, of_block);
-    core::add_block(place.clock, of_block, step.timed);
+    watch_offsets(state.offsets, *setup_, state.control, of_block, state.machine);
+    watch_units(state.units, of_block);
+    core::add_block(state.clock, of_block, step.timed);
     return step;
 }
 
@@ -243,20 +244,20 @@ void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering l
 
 namespace {
 
-/// Drops the pairs that no report tells of: a block keeps the one that decides or else is nearest,
-/// and those that do not keep their allowance. Findings are in the run already.
-void keep_what_tells(core::BlockResult& result) {
+/// Drops the pairs that no report shows: a block keeps the deciding or else the nearest pair, and
+/// those that are not clear. Its findings are in the run already.
+void drop_unreported(core::BlockResult& result) {
     const auto nearer = [](const core::PairClearance& a, const core::PairClearance& b) {
         return a.lower < b.lower;
     };
-    size_t told = result.deciding.value_or(0);
+    size_t shown = result.deciding.value_or(0);
     if (!result.deciding)
-        told =
+        shown =
             static_cast<size_t>(std::min_element(result.pairs.begin(), result.pairs.end(), nearer)
                                 - result.pairs.begin());
     std::vector<core::PairClearance> kept;
     for (size_t i = 0; i < result.pairs.size(); ++i) {
-        if (i != told && result.pairs[i].verdict == core::Verdict::clear) continue;
+        if (i != shown && result.pairs[i].verdict == core::Verdict::clear) continue;
         if (result.deciding == i) result.deciding = kept.size();
         kept.push_back(result.pairs[i]);
     }
@@ -266,7 +267,7 @@ void keep_what_tells(core::BlockResult& result) {
     result.findings.shrink_to_fit();
 }
 
-/// What follows from what a control stops at with an alarm; empty for what no rule has a name for.
+/// The finding for an alarm of the control; empty if no rule names it.
 std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& error) {
     core::Finding finding;
     finding.rule = gcode::rule_of(error);
@@ -286,9 +287,9 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
     : check_(check),
       run_(check.run),
       runner_(check),
-      place_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
-    runner_.before_block = [this](const gcode::BlockResult& block, const BlockContext& before) {
-        follow_cure(block, before);
+      state_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
+    runner_.before_block = [this](const gcode::BlockResult& block, const RunState& before) {
+        follow_correction(block, before);
     };
 }
 
@@ -305,8 +306,8 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     FEELER_TRY(const gcode::Restart restart,
                gcode::restart_at(*check_.library, check_.file.environment, number,
                                  run_.setup.tool_at_start));
-    place_.control = restart.state;
-    place_.lowering = gcode::initial_lowering(place_.control);
+    state_.control = restart.state;
+    state_.lowering = gcode::initial_lowering(state_.control);
     run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
                                            "that was just switched on",
                                            number));
@@ -334,9 +335,9 @@ void ProgramRunner::make_moves_before(uint32_t line) {
             made = text && *text && has_m_code(**text, *move.code);
         }
         if (!made) continue;
-        place_.moves_made.insert(i);
-        place_.machine.fixtures_there[move.from] = false;
-        if (move.to) place_.machine.fixtures_there[*move.to] = true;
+        state_.moves_made.insert(i);
+        state_.machine.fixtures_there[move.from] = false;
+        if (move.to) state_.machine.fixtures_there[*move.to] = true;
         run_.assumptions.push_back(
             fmt::format("{} has been moved, as the lines before the start say",
                         run_.setup.fixtures[move.from].name));
@@ -360,35 +361,35 @@ void ProgramRunner::stop(core::Error error) {
     run_.stopped = std::move(error);
 }
 
-void ProgramRunner::follow_cure(const gcode::BlockResult& block, const BlockContext& before) {
+void ProgramRunner::follow_correction(const gcode::BlockResult& block, const RunState& before) {
     const LengthWatch& lengths = before.lengths;
-    const bool is_first = lengths.is_open && lengths.doubts.back().first == block.block;
-    if (!lengths.is_open || is_first) end_cure();
+    const bool is_first = lengths.is_open && lengths.mismatches.back().first == block.block;
+    if (!lengths.is_open || is_first) end_correction();
     if (is_first) {
-        followed_ = lengths.doubts.back();
-        cured_ = std::make_unique<CorrectedRun>(*check_.library, check_.file.environment,
-                                                runner_.setup(), check_.file.speed_by_hand, before,
-                                                lengths.doubts.back());
+        corrected_ = lengths.mismatches.back();
+        correction_ = std::make_unique<CorrectedRun>(*check_.library, check_.file.environment,
+                                                     runner_.setup(), check_.file.speed_by_hand,
+                                                     before, lengths.mismatches.back());
     }
-    if (cured_) cured_->follow(block, runner_.setup());
+    if (correction_) correction_->follow(block, runner_.setup());
 }
 
-void ProgramRunner::end_cure() {
-    if (!cured_) return;
-    cured_->end(followed_);
-    cures_.push_back(std::move(followed_));
-    cured_.reset();
+void ProgramRunner::end_correction() {
+    if (!correction_) return;
+    correction_->end(corrected_);
+    corrections_.push_back(std::move(corrected_));
+    correction_.reset();
 }
 
-std::vector<LengthMismatch> ProgramRunner::length_doubts() const {
-    std::vector<LengthMismatch> doubts = place_.lengths.doubts;
-    for (LengthMismatch& doubt : doubts)
-        for (const LengthMismatch& cure : cures_) {
-            if (cure.first != doubt.first) continue;
-            doubt.cured_to = cure.cured_to;
-            doubt.left = cure.left;
+std::vector<LengthMismatch> ProgramRunner::length_mismatches() const {
+    std::vector<LengthMismatch> mismatches = state_.lengths.mismatches;
+    for (LengthMismatch& mismatch : mismatches)
+        for (const LengthMismatch& correction : corrections_) {
+            if (correction.first != mismatch.first) continue;
+            mismatch.corrected_to = correction.corrected_to;
+            mismatch.remaining = correction.remaining;
         }
-    return doubts;
+    return mismatches;
 }
 
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
@@ -399,19 +400,19 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     }
 }
 
-void ProgramRunner::hold_against_stock() {
-    for (core::Finding& finding : implausible_offsets(place_.offsets, runner_.setup()))
+void ProgramRunner::compare_with_stock() {
+    for (core::Finding& finding : implausible_offsets(state_.offsets, runner_.setup()))
         run_.findings.push_back(std::move(finding));
     if (auto jump =
-            units_off_the_stock(place_.units, runner_.setup(), place_.machine.stock.outer_box,
-                                place_.control.modal.unit_said))
+            units_off_the_stock(state_.units, runner_.setup(), state_.machine.stock.outer_box,
+                                state_.control.modal.unit_said))
         run_.findings.push_back(*std::move(jump));
 }
 
-void ProgramRunner::tell_of_moves_not_made() {
+void ProgramRunner::report_missing_moves() {
     for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
-        if (place_.moves_made.contains(i)) continue;
+        if (state_.moves_made.contains(i)) continue;
         core::Finding finding;
         finding.rule = "fixture-move";
         finding.severity = core::severity_of(run_.setup, finding.rule);
@@ -430,7 +431,7 @@ void ProgramRunner::tell_of_moves_not_made() {
 }
 
 bool ProgramRunner::advance() {
-    auto step = runner_.step(place_);
+    auto step = runner_.step(state_);
     if (!step || !*step) {
         if (!step) stop(std::move(step).error());
         end();
@@ -440,7 +441,7 @@ bool ProgramRunner::advance() {
     run_.verdict = std::max(run_.verdict, checked.result.verdict);
     run_.removed += checked.result.removed;
     for (core::Finding& finding : (**step).findings) run_.findings.push_back(std::move(finding));
-    if (runner_.setup().detail != core::Detail::every_pair) keep_what_tells(checked.result);
+    if (runner_.setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
     if (checked.file.empty()) last_line_ = checked.line;
     run_.blocks.push_back(std::move(checked));
     enter((**step).timed);
@@ -453,13 +454,13 @@ CheckProgress ProgramRunner::progress() const {
             run_.findings.size()};
 }
 
-void ProgramRunner::go_back(const RunState& place, size_t blocks, size_t findings) {
-    assert(!place.lengths.is_open);
-    place_ = place;
+void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t findings) {
+    assert(!state.lengths.is_open);
+    state_ = state;
     first_to_time_ = blocks;
-    cured_.reset();
-    std::erase_if(cures_,
-                  [&](const LengthMismatch& cure) { return core::value_of(cure.first) >= blocks; });
+    correction_.reset();
+    std::erase_if(corrections_,
+                  [&](const LengthMismatch& done) { return core::value_of(done.first) >= blocks; });
     run_.blocks.resize(blocks);
     run_.findings.resize(findings);
     run_.stopped.reset();
@@ -476,17 +477,17 @@ void ProgramRunner::go_back(const RunState& place, size_t blocks, size_t finding
 void ProgramRunner::end() {
     const gcode::Environment& environment = check_.file.environment;
     if (!run_.stopped)
-        if (const auto warning = gcode::ending_warning(environment, place_.control))
-            run_.findings.push_back(remark(runner_.setup(), *warning));
-    end_cure();
-    for (core::Finding& finding : core::end_of_run(runner_.setup(), place_.machine))
+        if (const auto warning = gcode::ending_warning(environment, state_.control))
+            run_.findings.push_back(finding_of(runner_.setup(), *warning));
+    end_correction();
+    for (core::Finding& finding : core::end_of_run(runner_.setup(), state_.machine))
         run_.findings.push_back(std::move(finding));
-    if (check_.stock_is_stated) hold_against_stock();
-    if (!run_.stopped) tell_of_moves_not_made();
+    if (check_.stock_is_stated) compare_with_stock();
+    if (!run_.stopped) report_missing_moves();
     std::vector<core::BlockTime> timed;
-    core::stop_clock(place_.clock, timed);
+    core::stop_clock(state_.clock, timed);
     enter(timed);
-    run_.cycle_time = place_.clock.time;
+    run_.cycle_time = state_.clock.time;
 }
 
 void ProgramRunner::stop_here() {
@@ -500,7 +501,7 @@ void ProgramRunner::stop_here() {
     end();
 }
 
-void ProgramRunner::to_the_end() {
+void ProgramRunner::run_to_end() {
     while (advance())
         if (after_block && !after_block(progress())) return stop_here();
 }

@@ -56,13 +56,13 @@ RunState start_of_program(const gcode::Environment& environment, const core::Set
             std::move(machine), core::start_clock(setup.machine)};
 }
 
-uint64_t digest_of(const RunState& place) {
+uint64_t digest_of(const RunState& state) {
     StateDigest digest;
-    digest.add(gcode::digest_of(place.control));
-    digest.add(uint64_t(place.control.next_block));
-    add(digest, place.machine);
-    digest.add(place.clock.time);
-    digest.add(uint64_t(place.clock.first_open));
+    digest.add(gcode::digest_of(state.control));
+    digest.add(uint64_t(state.control.next_block));
+    add(digest, state.machine);
+    digest.add(state.clock.time);
+    digest.add(uint64_t(state.clock.first_open));
     return digest.value;
 }
 

@@ -11,8 +11,8 @@
 
 namespace app {
 
-/// Everything between two blocks of a run: the control, the machine, the stock, and what rules keep
-/// in mind. A plain value: copy it to come back; copies share what is large.
+/// Everything between two blocks of a run: the state of control, machine and stock, and that of the
+/// rules. A plain value: keep a copy to return to it; copies share large data.
 struct RunState {
     gcode::InterpreterState control;
     gcode::Lowering lowering;
@@ -21,17 +21,17 @@ struct RunState {
     LengthWatch lengths = {};
     OffsetWatch offsets = {};
     UnitsWatch units = {};
-    std::set<size_t> moves_made = {}; // of the set-up's fixture moves
+    std::set<size_t> moves_made = {}; // indices of the set-up's fixture moves
 };
 
-/// Before the first block, where the machine stands so.
+/// The state before the first block, with the simulator in a state.
 RunState start_of_program(const gcode::Environment& environment, const core::Setup& setup,
                           core::SimulatorState machine);
 
-/// A number that follows from all that decides how a run goes on and what it looks like here: the
-/// control, every scan line with what cut it, the places of axes, tool, spindle and fixtures.
+/// A hash of all that determines how the run continues and looks: the control, every scan line and
+/// the moves that cut it, the positions of the axes, tool, spindle and fixtures.
 ///
 /// Cost: reads every line of the stock.
-uint64_t digest_of(const RunState& place);
+uint64_t digest_of(const RunState& state);
 
 } // namespace app

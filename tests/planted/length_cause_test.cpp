@@ -44,7 +44,7 @@ TEST(WrongLength, DoesNotTakeInAClampThatIsInTheWayAnyhow) {
     const Checked right = check(with_clamp(93.5, 42), with_length(1, 1, over_clamp));
     EXPECT_THAT(right.errors(), HasSubstr("collision 7"));
     EXPECT_EQ(wrong.errors(), right.errors());
-    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than meant")));
+    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than intended")));
 }
 
 TEST(WrongLength, TakesInAClampThatTheRightOneClears) {
@@ -52,7 +52,7 @@ TEST(WrongLength, TakesInAClampThatTheRightOneClears) {
     const std::string lines = "G0 Z14.5\nX50. Y110.\n";
     const Checked wrong = check(with_clamp(93.5, 12), with_length(1, 3, lines));
     EXPECT_THAT(wrong.errors(), Not(HasSubstr(",")));
-    EXPECT_THAT(all_words(wrong), HasSubstr("1.500 mm lower than meant and comes too near to"));
+    EXPECT_THAT(all_words(wrong), HasSubstr("1.500 mm lower than intended and comes too close to"));
     EXPECT_EQ(check(with_clamp(93.5, 12), with_length(1, 1, lines)).errors(), "");
 }
 
@@ -60,7 +60,7 @@ TEST(WrongLength, LeavesAClampThatIsTooNearWithTheRightOne) {
     // With the right length the clearance is 0.5 mm short, with the wrong one 2 mm.
     const std::string lines = "G0 Z13.5\nX50. Y110.\n";
     const Checked wrong = check(with_clamp(93.5, 12), with_length(1, 3, lines));
-    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than meant")));
+    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than intended")));
     EXPECT_THAT(wrong.errors(), HasSubstr("7"));
     EXPECT_THAT(check(with_clamp(93.5, 12), with_length(1, 1, lines)).errors(), HasSubstr("7"));
 }
@@ -68,7 +68,7 @@ TEST(WrongLength, LeavesAClampThatIsTooNearWithTheRightOne) {
 TEST(WrongLength, LeavesTheTopOfZ) {
     const Checked top = check(table_with(85), with_length(1, 3, "G0 Z350.\n"));
     EXPECT_THAT(top.errors(), HasSubstr("over-travel 6"));
-    EXPECT_THAT(all_words(top), Not(HasSubstr("lower than meant")));
+    EXPECT_THAT(all_words(top), Not(HasSubstr("lower than intended")));
 }
 
 TEST(WrongLength, TakesInTheLowerEndOfZByWhatIsMissing) {
@@ -76,11 +76,11 @@ TEST(WrongLength, TakesInTheLowerEndOfZByWhatIsMissing) {
     const auto beside = [](const std::string& z) { return "G0 Z" + z + "\n"; };
     const SetupWriter setup = table_with(85);
     const Checked little = check(setup, with_length(1, 3, beside("-167.")));
-    EXPECT_THAT(all_words(little), HasSubstr("10.000 mm lower than meant"));
+    EXPECT_THAT(all_words(little), HasSubstr("10.000 mm lower than intended"));
     EXPECT_EQ(check(setup, with_length(1, 1, beside("-167."))).errors(), "");
     const Checked far = check(setup, with_length(1, 3, beside("-180.")));
     EXPECT_THAT(far.errors(), HasSubstr("over-travel 6"));
-    EXPECT_THAT(all_words(far), Not(HasSubstr("lower than meant")));
+    EXPECT_THAT(all_words(far), Not(HasSubstr("lower than intended")));
 }
 
 TEST(WrongLength, LeavesADrillThatIsFedSideways) {
@@ -95,7 +95,7 @@ TEST(WrongLength, LeavesWhatAMachinePlaceRunsInto) {
     const std::string lines = "G0 X50. Y110.\nG53 G0 Z-318.\n";
     const Checked wrong = check(with_clamp(85, 12), with_length(1, 3, lines));
     EXPECT_THAT(wrong.errors(), HasSubstr("collision 7"));
-    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than meant")));
+    EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than intended")));
 }
 
 // Reports of blocks name the same findings as the text.

@@ -15,7 +15,7 @@ core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::De
     app::ProgramRunner runner(check);
     app::BlockRunner ahead(check);
     while (true) {
-        const app::RunState& place = runner.place();
+        const app::RunState& place = runner.state();
         const auto events = app::first_events([&](const app::BlockVisit& look) {
             ahead.visit_ahead(place.control, place.lowering, look);
         });

@@ -43,7 +43,7 @@ private:
 };
 
 core::Result<void> BesideCoprocessor::open() {
-    const core::CutModel& stock = runner_.place().machine.stock;
+    const core::CutModel& stock = runner_.state().machine.stock;
     FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle));
     for (const uint32_t elements : job_.other_elements) {
         hwsim::DeviceConfig config = job_.device;
@@ -55,7 +55,7 @@ core::Result<void> BesideCoprocessor::open() {
 }
 
 core::Result<void> BesideCoprocessor::ask() {
-    const RunState& place = runner_.place();
+    const RunState& place = runner_.state();
     const auto events = first_events(
         [&](const BlockVisit& look) { ahead_.visit_ahead(place.control, place.lowering, look); });
     if (!events) return {};
@@ -88,7 +88,7 @@ core::Result<CoprocessorRun> BesideCoprocessor::run() {
     while (runner_.advance() && (!runner_.after_block || runner_.after_block(runner_.progress())));
     if (auto finished = finish(); !finished) return tl::unexpected(std::move(finished).error());
     check_.run.times.check = checking.seconds();
-    conclude(check_, runner_.place().machine, runner_.length_doubts(), false);
+    conclude(check_, runner_.state().machine, runner_.length_mismatches(), false);
     made_.check = std::move(check_.run);
     return std::move(made_);
 }
