@@ -17,7 +17,7 @@ std::set<std::string> differing_keys(const core::ToolDescription& a,
                                      const core::ToolDescription& b) {
     std::set<std::string> keys;
     if (a.shape != b.shape) keys.insert("shape");
-    for (const ToolField& field : fields_of(b.shape))
+    for (const core::ToolSize& field : fields_of(b.shape))
         if (field.of(a) != field.of(b)) keys.insert(field.key);
     const auto same = [](const core::ConeStep& one, const core::ConeStep& two) {
         return one.lower_diameter == two.lower_diameter && one.upper_diameter == two.upper_diameter
@@ -111,37 +111,7 @@ namespace {
 
 using core::ToolDescription;
 using core::ToolShape;
-
-/// A field and the shapes that have it; none: all of them.
-struct ShapedField {
-    ToolField field;
-    std::vector<ToolShape> shapes;
-};
-
-const std::vector<ShapedField>& all_fields() {
-    using enum ToolShape;
-    using T = ToolDescription;
-    static const std::vector<ShapedField> fields = {
-        {{"diameter", "Diameter", "mm", &T::diameter}, {}},
-        {{"corner_radius", "Corner radius", "mm", &T::corner_radius},
-         {bull, taper, chamfer, tslot, dovetail}},
-        {{"point_deg", "Point angle", "deg", &T::point_deg}, {drill}},
-        {{"angle_deg", "Flank from axis", "deg", &T::angle_deg}, {taper, chamfer, dovetail}},
-        {{"tip_diameter", "Tip diameter", "mm", &T::tip_diameter}, {taper, chamfer}},
-        {{"pitch", "Pitch", "mm", &T::pitch}, {threadmill}},
-        {{"flute_length", "Flute length", "mm", &T::flute_length}, {}},
-        {{"neck_diameter", "Neck diameter", "mm", &T::neck_diameter},
-         {tslot, dovetail, lollipop, threadmill}},
-        {{"shank_diameter", "Shank diameter", "mm", &T::shank_diameter}, {}},
-        {{"stick_out", "Stick-out", "mm", &T::stick_out}, {}},
-    };
-    return fields;
-}
-
-bool is_of(const ShapedField& field, ToolShape shape) {
-    return field.shapes.empty()
-           || std::find(field.shapes.begin(), field.shapes.end(), shape) != field.shapes.end();
-}
+using core::ToolSize;
 
 bool is_cylinder(const std::vector<core::ConeStep>& steps) {
     return steps.size() == 1 && steps[0].lower_diameter == steps[0].upper_diameter;
@@ -156,32 +126,19 @@ bool are_equal(const std::vector<core::ConeStep>& a, const std::vector<core::Con
 
 } // namespace
 
-std::optional<double> ToolField::of(const ToolDescription& tool) const {
-    if (const auto* always = std::get_if<0>(&member)) {
-        const double value = tool.*(*always);
-        return value == 0.0 ? std::nullopt : std::optional(value);
-    }
-    return tool.*std::get<1>(member);
-}
-
-void ToolField::put(ToolDescription& tool, std::optional<double> value) const {
-    if (const auto* always = std::get_if<0>(&member))
-        tool.*(*always) = value.value_or(0.0);
-    else
-        tool.*std::get<1>(member) = value;
-}
-
-std::vector<ToolField> fields_of(ToolShape shape) {
-    std::vector<ToolField> fields;
-    for (const ShapedField& field : all_fields())
-        if (is_of(field, shape)) fields.push_back(field.field);
+std::vector<ToolSize> fields_of(ToolShape shape) {
+    std::vector<ToolSize> fields;
+    for (const ToolSize& size : core::tool_sizes())
+        if (size.shown.contains(shape)) fields.push_back(size);
+    std::stable_sort(fields.begin(), fields.end(),
+                     [](const ToolSize& a, const ToolSize& b) { return a.group < b.group; });
     return fields;
 }
 
-std::span<const ToolShape> stateable_shapes() {
-    using enum ToolShape;
-    static constexpr std::array shapes = {flat,    ball,  bull,     drill,    taper,
-                                          chamfer, tslot, dovetail, lollipop, threadmill};
+std::vector<ToolShape> stateable_shapes() {
+    std::vector<ToolShape> shapes;
+    for (const core::ToolShapeEntry& entry : core::tool_shapes())
+        if (entry.shape != ToolShape::profile) shapes.push_back(entry.shape);
     return shapes;
 }
 
@@ -203,14 +160,13 @@ ToolDescription editable(ToolDescription tool) {
 
 ToolDescription reshaped(ToolDescription tool, ToolShape shape) {
     const ToolDescription before = tool;
-    for (const ShapedField& field : all_fields())
-        if (!field.shapes.empty()) field.field.put(tool, std::nullopt);
+    for (const ToolSize& size : core::tool_sizes())
+        if (!size.shapes.contains(ToolShape::profile)) // a profile has the sizes that all have
+            size.put(tool, std::nullopt);
     tool.teeth.reset();
-    tool.thread_deg.reset();
-    tool.neck_length.reset();
     tool.outline.clear();
     tool.shape = shape;
-    for (const ToolField& field : fields_of(shape)) field.put(tool, field.of(before));
+    for (const ToolSize& size : fields_of(shape)) size.put(tool, size.of(before));
     FoundTool found{.tool = tool, .has_shape = true};
     const ToolDescription kept = complete(found).tool;
     if (core::assemble(kept)) return kept;

@@ -2,9 +2,7 @@
 
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "app/setup/setup_edits.h"
@@ -53,26 +51,11 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup, const Setup
 /// What has to be edited so that `shown` becomes `wanted`, on top of the edits that made `shown`.
 SetupEdits edits_between(const SetupSheet& shown, const SetupSheet& wanted, SetupEdits made);
 
-/// A size of a tool that can be stated: how a set-up calls it, how a person does, and where it is.
-struct ToolField {
-    using Member = std::variant<double core::ToolDescription::*,
-                                std::optional<double> core::ToolDescription::*>;
+/// The sizes that can be edited for a shape, in the order of the dialog.
+std::vector<core::ToolSize> fields_of(core::ToolShape shape);
 
-    const char* key;
-    const char* name;
-    const char* unit;
-    Member member;
-
-    /// Empty where nothing is said of it.
-    std::optional<double> of(const core::ToolDescription& tool) const;
-    void put(core::ToolDescription& tool, std::optional<double> value) const;
-};
-
-/// Those that mean something for a shape, in the order in which they are shown.
-std::vector<ToolField> fields_of(core::ToolShape shape);
-
-/// Shapes that a person can choose; an outline is stated in a set-up file.
-std::span<const core::ToolShape> stateable_shapes();
+/// The shapes that can be chosen in the dialog. An outline is stated in a set-up file only.
+std::vector<core::ToolShape> stateable_shapes();
 
 /// A tool with its lengths in the form that can be edited: one cylinder for its shank, if it has no
 /// more, and the stick-out in place of what follows from it. It assembles to the same tool.

@@ -48,13 +48,11 @@ void check_stock(const core::Solid& stock, std::vector<EditRefusal>& refused) {
 
 /// The key that a message about a tool begins with, or names first.
 std::string key_in(const std::string& why) {
-    constexpr std::array keys = {"corner_radius", "point_deg",      "angle_deg", "tip_diameter",
-                                 "neck_diameter", "neck_length",    "pitch",     "teeth",
-                                 "thread_deg",    "shank_diameter", "stick_out", "gauge_length",
-                                 "flute_length",  "holder",         "diameter"};
+    std::vector<std::string_view> keys = {"teeth", "holder"};
+    for (const core::ToolSize& size : core::tool_sizes()) keys.emplace_back(size.key);
     std::string first;
     size_t at = std::string::npos;
-    for (const char* key : keys)
+    for (const std::string_view key : keys)
         if (const size_t found = why.find(key); found < at) {
             at = found;
             first = key;

@@ -34,10 +34,21 @@ std::string outline(const core::ToolDescription& tool) {
     return rows.empty() ? "" : fmt::format("profile = [{}]\n", fmt::join(rows, ", "));
 }
 
-std::string lengths(const core::ToolDescription& tool) {
-    std::string text = cones("shank", tool.shank) + key("shank_diameter", tool.shank_diameter)
-                       + key("stick_out", tool.stick_out) + cones("holder", tool.holder)
-                       + key("gauge_length", tool.gauge_length);
+/// The tables and numbers that come before a size in a file.
+std::string before(std::string_view key, const core::ToolDescription& tool) {
+    if (key == "neck_diameter") return outline(tool);
+    if (key == "shank_diameter")
+        return (tool.teeth ? fmt::format("teeth = {}\n", *tool.teeth) : std::string())
+               + cones("shank", tool.shank);
+    return key == "gauge_length" ? cones("holder", tool.holder) : std::string();
+}
+
+std::string sizes(const core::ToolDescription& tool) {
+    std::string text;
+    for (const core::ToolSize& size : core::tool_sizes()) {
+        text += before(size.key, tool);
+        if (const auto value = size.of(tool)) text += key(size.key, *value);
+    }
     if (tool.touched_off)
         text += fmt::format("touched_off = {}     # the control counts this as its length, and the "
                             "work offset fits; take it out to have the true length count\n",
@@ -67,16 +78,8 @@ std::string tool_table(const core::ToolDescription& tool) {
     text += fmt::format("number = {}\n", core::value_of(tool.number));
     if (!tool.name.empty()) text += fmt::format("name = {}\n", toml_text(tool.name));
     text += fmt::format("shape = \"{}\"\n", core::name_of(tool.shape));
-    text += key("diameter", tool.diameter);
-    if (tool.flute_length > 0.0) text += key("flute_length", tool.flute_length);
-    text += key("corner_radius", tool.corner_radius) + key("point_deg", tool.point_deg)
-            + key("angle_deg", tool.angle_deg);
-    if (tool.tip_diameter > 0.0) text += key("tip_diameter", tool.tip_diameter);
-    text += outline(tool) + key("neck_diameter", tool.neck_diameter)
-            + key("neck_length", tool.neck_length) + key("pitch", tool.pitch)
-            + key("thread_deg", tool.thread_deg);
-    if (tool.teeth) text += fmt::format("teeth = {}\n", *tool.teeth);
-    text += lengths(tool);
+    if (tool.diameter == 0.0) text += key("diameter", 0.0);
+    text += sizes(tool);
     if (tool.cuts == core::SpindleDirection::counterclockwise)
         text += "spindle = \"counterclockwise\"\n";
     if (!tool.cuts_at_centre)

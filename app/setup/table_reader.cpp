@@ -115,8 +115,7 @@ std::optional<bool> TableReader::boolean(const char* key) {
     return at->value<bool>();
 }
 
-std::optional<std::string> TableReader::word(const char* key,
-                                             std::initializer_list<const char*> words) {
+std::optional<std::string> TableReader::word(const char* key, std::span<const char* const> words) {
     const auto value = string(key);
     if (!value) return std::nullopt;
     for (const char* word : words)

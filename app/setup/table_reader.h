@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,10 @@ public:
     std::optional<bool> boolean(const char* key);
 
     /// One of a few words.
-    std::optional<std::string> word(const char* key, std::initializer_list<const char*> words);
+    std::optional<std::string> word(const char* key, std::span<const char* const> words);
+    std::optional<std::string> word(const char* key, std::initializer_list<const char*> words) {
+        return word(key, std::span(words.begin(), words.size()));
+    }
 
     /// A list of texts, of a fixed length unless `length` is 0.
     std::optional<std::vector<std::string>> strings(const char* key, size_t length);

@@ -14,22 +14,13 @@ namespace app {
 namespace {
 
 void read_shape(TableReader& table, core::ToolDescription& tool) {
-    const auto shape =
-        table.word("shape", {"flat", "ball", "bull", "drill", "taper", "chamfer", "profile",
-                             "tslot", "dovetail", "lollipop", "threadmill"});
+    std::vector<const char*> names;
+    for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.push_back(entry.name);
+    const auto shape = table.word("shape", names);
     if (!shape) return table.need("shape");
     tool.shape = *core::tool_shape_named(*shape);
-    tool.diameter = table.number_or("diameter", 0.0);
-    tool.flute_length = table.number_or("flute_length", 0.0);
-    tool.corner_radius = table.number("corner_radius");
-    tool.point_deg = table.number("point_deg");
-    tool.angle_deg = table.number("angle_deg");
-    tool.tip_diameter = table.number_or("tip_diameter", 0.0);
-    tool.neck_diameter = table.number("neck_diameter");
-    tool.neck_length = table.number("neck_length");
-    tool.pitch = table.number("pitch");
+    for (const core::ToolSize& size : core::tool_sizes()) size.put(tool, table.number(size.key));
     tool.teeth = table.integer("teeth");
-    tool.thread_deg = table.number("thread_deg");
     for (const std::vector<double>& row : table.rows("profile", 2))
         tool.outline.push_back({row[0], row[1]});
 }
@@ -76,9 +67,6 @@ void read_tool(TableReader& table, BodyContext& context) {
     tool.name = table.string("name").value_or("");
     read_shape(table, tool);
     tool.shank = read_steps(table, "shank");
-    tool.shank_diameter = table.number("shank_diameter");
-    tool.stick_out = table.number("stick_out");
-    tool.gauge_length = table.number("gauge_length");
     tool.touched_off = table.number("touched_off");
     read_holder(table, context, tool);
     const auto spindle = table.word("spindle", {"clockwise", "counterclockwise"});

@@ -1,35 +1,93 @@
 #include "core/sim/tool_description.h"
 
-#include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <utility>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace core {
 namespace {
 
-constexpr std::pair<const char*, ToolShape> shapes[] = {
-    {"flat", ToolShape::flat},         {"ball", ToolShape::ball},
-    {"bull", ToolShape::bull},         {"drill", ToolShape::drill},
-    {"taper", ToolShape::taper},       {"chamfer", ToolShape::chamfer},
-    {"tslot", ToolShape::tslot},       {"dovetail", ToolShape::dovetail},
-    {"lollipop", ToolShape::lollipop}, {"threadmill", ToolShape::threadmill},
-    {"profile", ToolShape::profile}};
+namespace shape_table {
 
+using enum ToolShape;
+using Group = ToolSize::Group;
+
+constexpr ToolShapeEntry shapes[] = {
+    {flat, "flat", "a flat end mill"},      {ball, "ball", "a ball end mill"},
+    {bull, "bull", "a bull nose end mill"}, {drill, "drill", "a drill"},
+    {taper, "taper", "a tapered mill"},     {chamfer, "chamfer", "a chamfer mill"},
+    {tslot, "tslot", "a T-slot cutter"},    {dovetail, "dovetail", "a dovetail cutter"},
+    {lollipop, "lollipop", "a lollipop"},   {threadmill, "threadmill", "a thread mill"},
+    {profile, "profile", "a form tool"}};
+
+constexpr ShapeSet no_profile = {flat,    ball,  bull,     drill,    taper,
+                                 chamfer, tslot, dovetail, lollipop, threadmill};
+constexpr ShapeSet all_shapes = {flat,  ball,     bull,     drill,      taper,  chamfer,
+                                 tslot, dovetail, lollipop, threadmill, profile};
+
+// clang-format off
+constexpr ToolSize sizes[] = {
+    {"diameter", "Diameter", "mm", &ToolDescription::diameter, Group::diameter,
+     all_shapes, all_shapes, {profile}},
+    {"flute_length", "Flute length", "mm", &ToolDescription::flute_length, Group::length,
+     all_shapes, all_shapes, {lollipop, profile}},
+    {"corner_radius", "Corner radius", "mm", &ToolDescription::corner_radius, Group::edge,
+     {flat, ball, bull, taper, chamfer, tslot, dovetail}, {bull, taper, chamfer, tslot, dovetail},
+     all_shapes},
+    {"point_deg", "Point angle", "deg", &ToolDescription::point_deg, Group::edge,
+     {drill}, {drill}},
+    {"angle_deg", "Flank from axis", "deg", &ToolDescription::angle_deg, Group::edge,
+     {taper, chamfer, dovetail}, {taper, chamfer, dovetail}},
+    {"tip_diameter", "Tip diameter", "mm", &ToolDescription::tip_diameter, Group::edge,
+     {taper, chamfer}, {taper, chamfer}, all_shapes},
+    {"neck_diameter", "Neck diameter", "mm", &ToolDescription::neck_diameter, Group::length,
+     no_profile, {tslot, dovetail, lollipop, threadmill}},
+    {"neck_length", "Neck length", "mm", &ToolDescription::neck_length, Group::length,
+     no_profile, {}},
+    {"pitch", "Pitch", "mm", &ToolDescription::pitch, Group::edge, {threadmill}, {threadmill}},
+    {"thread_deg", "Thread angle", "deg", &ToolDescription::thread_deg, Group::edge,
+     {threadmill}, {}},
+    {"shank_diameter", "Shank diameter", "mm", &ToolDescription::shank_diameter, Group::length,
+     all_shapes, all_shapes},
+    {"stick_out", "Stick-out", "mm", &ToolDescription::stick_out, Group::length,
+     all_shapes, all_shapes},
+    {"gauge_length", "Gauge length", "mm", &ToolDescription::gauge_length, Group::length,
+     all_shapes, {}}};
+// clang-format on
+
+} // namespace shape_table
 } // namespace
 
-const char* name_of(ToolShape shape) {
-    for (const auto& [name, known] : shapes)
-        if (known == shape) return name;
-    return "";
+std::span<const ToolShapeEntry> tool_shapes() { return shape_table::shapes; }
+
+const char* name_of(ToolShape shape) { return tool_shapes()[static_cast<size_t>(shape)].name; }
+
+const char* description_of(ToolShape shape) {
+    return tool_shapes()[static_cast<size_t>(shape)].description;
 }
 
 std::optional<ToolShape> tool_shape_named(const std::string& name) {
-    for (const auto& [known, shape] : shapes)
-        if (name == known) return shape;
+    for (const ToolShapeEntry& entry : tool_shapes())
+        if (name == entry.name) return entry.shape;
     return std::nullopt;
+}
+
+std::span<const ToolSize> tool_sizes() { return shape_table::sizes; }
+
+std::optional<double> ToolSize::of(const ToolDescription& tool) const {
+    if (const auto* always = std::get_if<0>(&member)) {
+        const double value = tool.*(*always);
+        return value == 0.0 ? std::nullopt : std::optional(value);
+    }
+    return tool.*std::get<1>(member);
+}
+
+void ToolSize::put(ToolDescription& tool, std::optional<double> value) const {
+    if (const auto* always = std::get_if<0>(&member))
+        tool.*(*always) = value.value_or(0.0);
+    else
+        tool.*std::get<1>(member) = value;
 }
 
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why) {
@@ -38,56 +96,30 @@ tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string&
 
 namespace {
 
-using Shapes = std::initializer_list<ToolShape>;
+constexpr double longest_length = 2000.0; // mm; more is a typing error
 
-/// A key that only some shapes have.
-struct ShapeKey {
-    const char* name;
-    bool given;
-    Shapes shapes;
-};
-
-constexpr double longest_length = 2000.0; // mm; more is a slip of the finger
-
+/// An error if the tool states a size that its shape does not have.
 Result<void> check_shape_keys(const ToolDescription& tool) {
-    using enum ToolShape;
-    const auto is_set = [](const std::optional<double>& size) { return size && *size != 0.0; };
-    const Shapes no_profile = {flat,    ball,  bull,     drill,    taper,
-                               chamfer, tslot, dovetail, lollipop, threadmill};
-    const ShapeKey keys[] = {{"corner_radius",
-                              is_set(tool.corner_radius),
-                              {flat, ball, bull, taper, chamfer, tslot, dovetail}},
-                             {"point_deg", tool.point_deg.has_value(), {drill}},
-                             {"angle_deg", tool.angle_deg.has_value(), {taper, chamfer, dovetail}},
-                             {"tip_diameter", tool.tip_diameter != 0.0, {taper, chamfer}},
-                             {"profile", !tool.outline.empty(), {profile}},
-                             {"neck_diameter", tool.neck_diameter.has_value(), no_profile},
-                             {"neck_length", tool.neck_length.has_value(), no_profile},
-                             {"pitch", tool.pitch.has_value(), {threadmill}},
-                             {"teeth", tool.teeth.has_value(), {threadmill}},
-                             {"thread_deg", tool.thread_deg.has_value(), {threadmill}}};
-    for (const ShapeKey& key : keys)
-        if (key.given
-            && std::find(key.shapes.begin(), key.shapes.end(), tool.shape) == key.shapes.end())
-            return tool_error(tool, fmt::format("{} means nothing for shape \"{}\"", key.name,
-                                                name_of(tool.shape)));
+    const auto refused = [&](const char* key) {
+        return tool_error(
+            tool, fmt::format("{} does not apply to shape \"{}\"", key, name_of(tool.shape)));
+    };
+    for (const ToolSize& size : tool_sizes()) {
+        const auto value = size.of(tool);
+        const bool is_absent = !value || (*value == 0.0 && size.zero.contains(tool.shape));
+        if (!is_absent && !size.shapes.contains(tool.shape)) return refused(size.key);
+    }
+    if (!tool.outline.empty() && tool.shape != ToolShape::profile) return refused("profile");
+    if (tool.teeth && tool.shape != ToolShape::threadmill) return refused("teeth");
     return {};
 }
 
-/// A length; zero is one only where the key may as well be absent.
-struct Length {
-    const char* key;
-    double value;
-    bool may_be_zero;
-};
-
-Result<void> check_length(const ToolDescription& tool, const Length& length) {
-    if (!std::isfinite(length.value) || length.value < 0.0
-        || (length.value == 0.0 && !length.may_be_zero))
-        return tool_error(tool, fmt::format("{} must be above 0", length.key));
-    if (length.value > longest_length)
+Result<void> check_length(const ToolDescription& tool, const ToolSize& size, double value) {
+    if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && !size.zero.contains(tool.shape)))
+        return tool_error(tool, fmt::format("{} must be above 0", size.key));
+    if (value > longest_length)
         return tool_error(tool, fmt::format("{} = {:g} mm is larger than any tool ({:g} mm)",
-                                            length.key, length.value, longest_length));
+                                            size.key, value, longest_length));
     return {};
 }
 
@@ -95,20 +127,14 @@ Result<void> check_length(const ToolDescription& tool, const Length& length) {
 
 Result<void> check_keys(const ToolDescription& tool) {
     if (auto wrong = check_shape_keys(tool); !wrong) return wrong;
+    for (const ToolSize& size : tool_sizes()) {
+        if (size.unit != std::string_view("mm")) continue;
+        const bool is_required = std::holds_alternative<double ToolDescription::*>(size.member);
+        const auto value = size.of(tool);
+        if (!value && !is_required) continue;
+        if (auto wrong = check_length(tool, size, value.value_or(0.0)); !wrong) return wrong;
+    }
     const bool outlined = tool.shape == ToolShape::profile;
-    const bool ball = tool.shape == ToolShape::lollipop;
-    const Length lengths[] = {{"diameter", tool.diameter, outlined},
-                              {"flute_length", tool.flute_length, outlined || ball},
-                              {"tip_diameter", tool.tip_diameter, true},
-                              {"corner_radius", tool.corner_radius.value_or(0.0), true},
-                              {"neck_diameter", tool.neck_diameter.value_or(1.0), false},
-                              {"neck_length", tool.neck_length.value_or(1.0), false},
-                              {"pitch", tool.pitch.value_or(1.0), false},
-                              {"shank_diameter", tool.shank_diameter.value_or(1.0), false},
-                              {"stick_out", tool.stick_out.value_or(1.0), false},
-                              {"gauge_length", tool.gauge_length.value_or(1.0), false}};
-    for (const Length& length : lengths)
-        if (auto wrong = check_length(tool, length); !wrong) return wrong;
     if (tool.centre_radius != 0.0
         && !(tool.centre_radius > 0.0 && (outlined || 2.0 * tool.centre_radius < tool.diameter)))
         return tool_error(tool, fmt::format("centre_diameter {:g} must be above 0 and below "

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -25,9 +29,23 @@ enum class ToolShape : uint8_t {
     profile
 };
 
+/// A row of the table of tool shapes.
+struct ToolShapeEntry {
+    ToolShape shape;
+    const char* name;        // `shape` in a set-up
+    const char* description; // "a T-slot cutter", for messages
+};
+
+/// Every shape, in the order of the enumeration.
+std::span<const ToolShapeEntry> tool_shapes();
+
+/// The name of a shape in a set-up: tslot.
 const char* name_of(ToolShape shape);
 
-/// The shape of that name; empty when there is none.
+/// A shape in a sentence: a T-slot cutter.
+const char* description_of(ToolShape shape);
+
+/// The shape of a name; empty if there is none.
 std::optional<ToolShape> tool_shape_named(const std::string& name);
 
 /// A truncated cone of a shank or holder, stacked on the one below.
@@ -64,11 +82,45 @@ struct ToolDescription {
     double centre_radius = 0.0; // up to here it does not cut when it goes straight down
 };
 
+/// A set of shapes.
+struct ShapeSet {
+    uint32_t bits = 0;
+
+    constexpr ShapeSet(std::initializer_list<ToolShape> shapes) {
+        for (const ToolShape shape : shapes) bits |= 1U << static_cast<unsigned>(shape);
+    }
+    constexpr bool contains(ToolShape shape) const {
+        return (bits >> static_cast<unsigned>(shape) & 1U) != 0;
+    }
+};
+
+/// A size of a tool: its key in a set-up, its name in a dialog, and the shapes that have it.
+struct ToolSize {
+    using Member =
+        std::variant<double ToolDescription::*, std::optional<double> ToolDescription::*>;
+    enum class Group : uint8_t { diameter, edge, length };
+
+    const char* key;
+    const char* name;
+    const char* unit; // mm or deg
+    Member member;
+    Group group;
+    ShapeSet shapes;    // in which a set-up may state it
+    ShapeSet shown;     // in which a dialog offers it
+    ShapeSet zero = {}; // in which 0 is allowed and means that there is none
+
+    /// Empty where it is not stated.
+    std::optional<double> of(const ToolDescription& tool) const;
+    void put(ToolDescription& tool, std::optional<double> value) const;
+};
+
+/// Every size that is a number, in the order in which a set-up file is written.
+std::span<const ToolSize> tool_sizes();
+
 /// An error that names the tool.
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why);
 
-/// Looks at every size by itself: it must be a length or angle that a tool can have, and mean
-/// something for the shape.
+/// Checks each size by itself: a tool of this shape must have it, and it must be in range.
 ///
 /// Errors: invalid_value, naming the tool and the key.
 Result<void> check_keys(const ToolDescription& tool);

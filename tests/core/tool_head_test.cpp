@@ -239,10 +239,10 @@ TEST(ToolHead, RefusesSizesThatMakeNoTool) {
     const auto changed = [](ToolShape shape, const std::function<void(ToolDescription&)>& change) {
         return with(sized(shape, 10, 12), change);
     };
-    expect_refused(changed(flat, [](auto& t) { t.angle_deg = 3; }), "angle_deg means nothing");
+    expect_refused(changed(flat, [](auto& t) { t.angle_deg = 3; }), "angle_deg does not apply");
     expect_refused(changed(ball, [](auto& t) { t.corner_radius = 2; }), "corner_radius of a ball");
     expect_refused(changed(drill, [](auto& t) { t.point_deg = 190; }), "point_deg");
-    expect_refused(changed(flat, [](auto& t) { t.pitch = 1; }), "pitch means nothing");
+    expect_refused(changed(flat, [](auto& t) { t.pitch = 1; }), "pitch does not apply");
     expect_refused(changed(threadmill, [](auto& t) { t.pitch = 13; }), "pitch 13");
     expect_refused(changed(threadmill,
                            [](auto& t) {

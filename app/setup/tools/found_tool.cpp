@@ -18,33 +18,99 @@ constexpr double flutes_of_mill = 3.0, flutes_of_drill = 8.0, shank_beyond_flute
 constexpr double longest_flutes_of_mill = 60.0, longest_flutes_of_drill = 250.0;
 constexpr double shortest_shank = 20.0, longest_shank = 60.0;
 
-const char* words_for(const FoundTool& found) {
-    switch (found.tool.shape) {
-    case ToolShape::ball:
-        return "a ball end mill";
-    case ToolShape::bull:
-        return "a bull nose end mill";
-    case ToolShape::drill:
-        return "a drill";
-    case ToolShape::taper:
-        return "a tapered mill";
-    case ToolShape::chamfer:
-        return "a chamfer mill";
-    case ToolShape::tslot:
-        return "a T-slot cutter";
-    case ToolShape::dovetail:
-        return "a dovetail cutter";
-    case ToolShape::lollipop:
-        return "a lollipop";
-    case ToolShape::threadmill:
-        return "a thread mill";
-    case ToolShape::profile:
-        return "a form tool";
-    case ToolShape::flat:
-        break;
-    }
-    return "a flat end mill";
-}
+/// How the sources of tools call the shapes.
+namespace shape_names {
+
+using enum core::ToolShape;
+
+// The first that fits counts: "BALL END MILL" is not a flat end mill.
+constexpr ShapeName of_comments[] = {{"LOLLIPOP", lollipop},
+                                     {"DOVETAIL", dovetail},
+                                     {"DOVE MILL", dovetail},
+                                     {"T-SLOT", tslot},
+                                     {"TSLOT", tslot},
+                                     {"T SLOT", tslot},
+                                     {"SLOT MILL", tslot},
+                                     {"SLITTING", tslot},
+                                     {"WOODRUFF", tslot},
+                                     {"KEY CUTTER", tslot},
+                                     {"THREAD", threadmill},
+                                     {"THRD", threadmill},
+                                     {"TAPERED", taper},
+                                     {"TAPER MILL", taper},
+                                     {"TAPER END", taper},
+                                     {"TPR MILL", taper},
+                                     {"BULL", bull},
+                                     {"TORUS", bull},
+                                     {"TOROID", bull},
+                                     {"BALL", ball},
+                                     {"SPHER", ball},
+                                     {"KUGEL", ball},
+                                     {"V-BIT", chamfer},
+                                     {"VBIT", chamfer},
+                                     {"V BIT", chamfer},
+                                     {"VEE", chamfer},
+                                     {"V-CARV", chamfer},
+                                     {"V-CUT", chamfer},
+                                     {"V-GROOVE", chamfer},
+                                     {"ENGRAV", chamfer},
+                                     {"CHAM", chamfer},
+                                     {"COUNTERSINK", chamfer},
+                                     {"COUNTER SINK", chamfer},
+                                     {"CSINK", chamfer},
+                                     {"SLOT DRILL", flat},
+                                     {"DRILL", drill},
+                                     {"DRL", drill},
+                                     {"BOHRER", drill},
+                                     {"END MILL", flat},
+                                     {"ENDMILL", flat},
+                                     {"END-MILL", flat},
+                                     {"FACE MILL", flat},
+                                     {"FACEMILL", flat},
+                                     {"SHELL MILL", flat},
+                                     {"FLAT", flat},
+                                     {"CYLIND", flat},
+                                     {"ROUTER", flat},
+                                     {"UPCUT", flat},
+                                     {"DOWNCUT", flat},
+                                     {"COMPRESSION", flat},
+                                     {"REAM", flat},
+                                     {"BORING", flat},
+                                     {"BORE", flat},
+                                     {"CUTTER", flat},
+                                     {"FREZ", flat},
+                                     {"FRAES", flat},
+                                     {"FRESA", flat},
+                                     {"FL ", flat},
+                                     {"FLUTE", flat},
+                                     {"EM ", flat},
+                                     {" TAP", flat},
+                                     {"MILL", flat}};
+
+constexpr ShapeName of_freecad[] = {{"endmill", flat},
+                                    {"ballend", ball},
+                                    {"ballnose", ball},
+                                    {"bullnose", bull},
+                                    {"torus", bull},
+                                    {"chamfer", chamfer},
+                                    {"vbit", chamfer},
+                                    {"drill", drill},
+                                    {"dovetail", dovetail},
+                                    {"slittingsaw", tslot},
+                                    {"threadmill", threadmill},
+                                    {"reamer", flat},
+                                    {"tap", flat},
+                                    {"taperedballnose", taper}};
+
+constexpr ShapeName of_fusion[] = {
+    {"flat end mill", flat},     {"ball end mill", ball},   {"bull nose end mill", bull},
+    {"face mill", flat},         {"tapered mill", taper},   {"chamfer mill", chamfer},
+    {"lollipop mill", lollipop}, {"slot mill", tslot},      {"dovetail mill", dovetail},
+    {"thread mill", threadmill}, {"drill", drill},          {"spot drill", drill},
+    {"center drill", drill},     {"counter sink", chamfer}, {"reamer", flat},
+    {"boring bar", flat},        {"counter bore", flat}};
+
+} // namespace shape_names
 
 double cone_height(const ToolDescription& tool, double angle_deg) {
     return 0.5 * (tool.diameter - tool.tip_diameter)
@@ -126,6 +192,16 @@ void complete_lengths(ToolDescription& tool, double least_flutes,
 
 } // namespace
 
+std::span<const ShapeName> shape_words() { return shape_names::of_comments; }
+std::span<const ShapeName> freecad_shapes() { return shape_names::of_freecad; }
+std::span<const ShapeName> fusion_shapes() { return shape_names::of_fusion; }
+
+std::optional<core::ToolShape> shape_in(std::span<const ShapeName> names, std::string_view name) {
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const ShapeName& row) { return row.name == name; });
+    return found == names.end() ? std::nullopt : std::optional(found->shape);
+}
+
 CompleteTool complete(const FoundTool& found, double least_flutes) {
     CompleteTool whole{found.tool, {}};
     std::vector<std::string> assumed;
@@ -134,10 +210,10 @@ CompleteTool complete(const FoundTool& found, double least_flutes) {
     complete_shape(whole.tool, assumed);
     complete_lengths(whole.tool, least_flutes, assumed);
     if (whole.tool.holder.empty()) assumed.emplace_back("no holder");
-    whole.assumed =
-        fmt::format("tool {} is {} of {:.4g} mm, by {}; {} {} assumed",
-                    core::value_of(whole.tool.number), words_for(found), whole.tool.diameter,
-                    found.source, fmt::join(assumed, ", "), assumed.size() == 1 ? "is" : "are");
+    whole.assumed = fmt::format(
+        "tool {} is {} of {:.4g} mm, by {}; {} {} assumed", core::value_of(whole.tool.number),
+        core::description_of(found.tool.shape), whole.tool.diameter, found.source,
+        fmt::join(assumed, ", "), assumed.size() == 1 ? "is" : "are");
     if (assumed.empty()) whole.assumed = whole.assumed.substr(0, whole.assumed.find(';'));
     return whole;
 }

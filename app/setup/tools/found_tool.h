@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/sim/tool_description.h"
@@ -25,5 +27,21 @@ struct CompleteTool {
     std::string assumed;
 };
 CompleteTool complete(const FoundTool& found, double least_flutes = 0.0);
+
+/// A name of a shape in a source of tools.
+struct ShapeName {
+    std::string_view name;
+    core::ToolShape shape;
+};
+
+/// Words of tool names in capitals, in the order in which they count.
+std::span<const ShapeName> shape_words();
+/// The shapes of FreeCAD's tool bits, in small letters.
+std::span<const ShapeName> freecad_shapes();
+/// The types of Fusion 360's tools.
+std::span<const ShapeName> fusion_shapes();
+
+/// The shape of exactly this name; empty if there is none.
+std::optional<core::ToolShape> shape_in(std::span<const ShapeName> names, std::string_view name);
 
 } // namespace app

@@ -206,23 +206,7 @@ std::optional<ToolShape> shape_of_bit(std::string shape) {
     for (const char c : shape.substr(shape.find_last_of('/') + 1))
         if (std::isalpha(static_cast<unsigned char>(c)) != 0)
             letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    static const std::map<std::string, ToolShape> shapes = {{"endmill", ToolShape::flat},
-                                                            {"ballend", ToolShape::ball},
-                                                            {"ballnose", ToolShape::ball},
-                                                            {"bullnose", ToolShape::bull},
-                                                            {"torus", ToolShape::bull},
-                                                            {"chamfer", ToolShape::chamfer},
-                                                            {"vbit", ToolShape::chamfer},
-                                                            {"drill", ToolShape::drill},
-                                                            {"dovetail", ToolShape::dovetail},
-                                                            {"slittingsaw", ToolShape::tslot},
-                                                            {"threadmill", ToolShape::threadmill},
-                                                            {"reamer", ToolShape::flat},
-                                                            {"tap", ToolShape::flat},
-                                                            {"taperedballnose", ToolShape::taper}};
-    const auto found = shapes.find(letters);
-    if (found == shapes.end()) return std::nullopt;
-    return found->second;
+    return shape_in(freecad_shapes(), letters);
 }
 
 void read_angles(const json& parameters, ToolDescription& tool) {
@@ -373,24 +357,7 @@ namespace {
 using nlohmann::json;
 
 std::optional<ToolShape> shape_of_type(const std::string& type) {
-    static const std::map<std::string, ToolShape> shapes = {{"flat end mill", ToolShape::flat},
-                                                            {"ball end mill", ToolShape::ball},
-                                                            {"bull nose end mill", ToolShape::bull},
-                                                            {"face mill", ToolShape::flat},
-                                                            {"tapered mill", ToolShape::taper},
-                                                            {"chamfer mill", ToolShape::chamfer},
-                                                            {"lollipop mill", ToolShape::lollipop},
-                                                            {"slot mill", ToolShape::tslot},
-                                                            {"dovetail mill", ToolShape::dovetail},
-                                                            {"thread mill", ToolShape::threadmill},
-                                                            {"drill", ToolShape::drill},
-                                                            {"spot drill", ToolShape::drill},
-                                                            {"center drill", ToolShape::drill},
-                                                            {"counter sink", ToolShape::chamfer},
-                                                            {"reamer", ToolShape::flat},
-                                                            {"boring bar", ToolShape::flat},
-                                                            {"counter bore", ToolShape::flat}};
-    if (const auto found = shapes.find(type); found != shapes.end()) return found->second;
+    if (const auto shape = shape_in(fusion_shapes(), type)) return shape;
     return shape_of_words(plain_capitals(type));
 }
 

@@ -22,71 +22,6 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
         text.replace(at, what.size(), by);
 }
 
-/// Words in the order in which they count: "BALL END MILL" is no flat end mill.
-constexpr std::pair<std::string_view, ToolShape> shape_words[] = {
-    {"LOLLIPOP", ToolShape::lollipop},
-    {"DOVETAIL", ToolShape::dovetail},
-    {"DOVE MILL", ToolShape::dovetail},
-    {"T-SLOT", ToolShape::tslot},
-    {"TSLOT", ToolShape::tslot},
-    {"T SLOT", ToolShape::tslot},
-    {"SLOT MILL", ToolShape::tslot},
-    {"SLITTING", ToolShape::tslot},
-    {"WOODRUFF", ToolShape::tslot},
-    {"KEY CUTTER", ToolShape::tslot},
-    {"THREAD", ToolShape::threadmill},
-    {"THRD", ToolShape::threadmill},
-    {"TAPERED", ToolShape::taper},
-    {"TAPER MILL", ToolShape::taper},
-    {"TAPER END", ToolShape::taper},
-    {"TPR MILL", ToolShape::taper},
-    {"BULL", ToolShape::bull},
-    {"TORUS", ToolShape::bull},
-    {"TOROID", ToolShape::bull},
-    {"BALL", ToolShape::ball},
-    {"SPHER", ToolShape::ball},
-    {"KUGEL", ToolShape::ball},
-    {"V-BIT", ToolShape::chamfer},
-    {"VBIT", ToolShape::chamfer},
-    {"V BIT", ToolShape::chamfer},
-    {"VEE", ToolShape::chamfer},
-    {"V-CARV", ToolShape::chamfer},
-    {"V-CUT", ToolShape::chamfer},
-    {"V-GROOVE", ToolShape::chamfer},
-    {"ENGRAV", ToolShape::chamfer},
-    {"CHAM", ToolShape::chamfer},
-    {"COUNTERSINK", ToolShape::chamfer},
-    {"COUNTER SINK", ToolShape::chamfer},
-    {"CSINK", ToolShape::chamfer},
-    {"SLOT DRILL", ToolShape::flat},
-    {"DRILL", ToolShape::drill},
-    {"DRL", ToolShape::drill},
-    {"BOHRER", ToolShape::drill},
-    {"END MILL", ToolShape::flat},
-    {"ENDMILL", ToolShape::flat},
-    {"END-MILL", ToolShape::flat},
-    {"FACE MILL", ToolShape::flat},
-    {"FACEMILL", ToolShape::flat},
-    {"SHELL MILL", ToolShape::flat},
-    {"FLAT", ToolShape::flat},
-    {"CYLIND", ToolShape::flat},
-    {"ROUTER", ToolShape::flat},
-    {"UPCUT", ToolShape::flat},
-    {"DOWNCUT", ToolShape::flat},
-    {"COMPRESSION", ToolShape::flat},
-    {"REAM", ToolShape::flat},
-    {"BORING", ToolShape::flat},
-    {"BORE", ToolShape::flat},
-    {"CUTTER", ToolShape::flat},
-    {"FREZ", ToolShape::flat},
-    {"FRAES", ToolShape::flat},
-    {"FRESA", ToolShape::flat},
-    {"FL ", ToolShape::flat},
-    {"FLUTE", ToolShape::flat},
-    {"EM ", ToolShape::flat},
-    {" TAP", ToolShape::flat},
-    {"MILL", ToolShape::flat}};
-
 /// From `at`, a number without a sign; moves `at` behind it.
 std::optional<double> plain_number(const std::string& text, size_t& at) {
     const size_t first = at;
@@ -208,7 +143,7 @@ std::vector<TextNumber> numbers_of(const std::string& capitals) {
 
 std::optional<ToolShape> shape_of_words(const std::string& capitals) {
     const std::string text = " " + capitals + " ";
-    for (const auto& [word, shape] : shape_words) {
+    for (const auto& [word, shape] : shape_words()) {
         if (text.find(word) != std::string::npos) return shape;
     }
     return std::nullopt;

@@ -46,7 +46,7 @@ void draw_holder(Frame& frame, const core::ToolDescription& shown, core::ToolDes
 }
 
 /// A size of the tool; angles are in degrees whatever the window's unit.
-void draw_size(Frame& frame, const ToolField& field, core::ToolDescription& tool) {
+void draw_size(Frame& frame, const core::ToolSize& field, core::ToolDescription& tool) {
     double value = field.of(tool).value_or(0.0);
     const bool is_angle = std::string_view(field.unit) == "deg";
     bool changed = false;
@@ -104,7 +104,7 @@ void SetupPopup::draw_tool(Frame& frame, size_t index) {
     draw_shape(tool);
     source_mark(frame, source_of(shown, "shape"));
     const bool has_cones = !tool.shank.empty();
-    for (const ToolField& field : fields_of(tool.shape)) {
+    for (const core::ToolSize& field : fields_of(tool.shape)) {
         const std::string key = field.key;
         if (has_cones && (key == "stick_out" || key == "shank_diameter")) continue;
         ImGui::PushID(field.key);
