@@ -11,6 +11,7 @@
 #include "app/coproc/device_judge.h"
 #include "app/setup/setup_file.h"
 #include "core/dbm/stock_mesh.h"
+#include "core/sim/run/simulator.h"
 
 namespace app {
 

@@ -9,8 +9,8 @@
 #include "app/check/stock_file.h"
 #include "core/base/ids.h"
 #include "core/base/result.h"
-#include "core/sim/finding.h"
 #include "core/sim/block_result.h"
+#include "core/sim/finding.h"
 #include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 

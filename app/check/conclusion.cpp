@@ -15,6 +15,7 @@
 #include "core/geom/mesh.h"
 #include "core/sim/part_comparison.h"
 #include "core/sim/run/finding_text.h"
+#include "core/sim/run/simulator.h"
 #include "core/sim/verdict.h"
 #include "gcode/text/source.h"
 

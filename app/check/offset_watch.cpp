@@ -8,6 +8,7 @@
 #include "core/motion/kinematics.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "gcode/exec/interpreter.h"
 
 namespace app {

@@ -14,6 +14,7 @@
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
+#include "core/sim/run/simulator.h"
 #include "core/sim/verdict.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/dialect.h"
@@ -154,8 +155,8 @@ core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
     if (!may_begin) return tl::unexpected(stopped_before(job));
     auto state = core::start_of_run(run.setup, check.file.environment.start);
     if (!state) return tl::unexpected(named(state.error(), job.setup));
-    check.machine = *std::move(state);
-    core::SpindleChange& spindle = check.machine.spindle;
+    check.machine = std::make_unique<core::SimulatorState>(*std::move(state));
+    core::SpindleChange& spindle = check.machine->spindle;
     spindle.direction = run.setup.spindle_at_start;
     if (spindle.direction != core::SpindleDirection::stopped) spindle.speed = 1.0;
     run.times.model = modelling.seconds();

@@ -7,6 +7,10 @@
 #include "app/check/check_run.h"
 #include "app/setup/setup_file.h"
 
+namespace core {
+struct Machine;
+struct SimulatorState;
+} // namespace core
 namespace gcode {
 struct Program;
 class ProgramLibrary;
@@ -28,7 +32,7 @@ struct PreparedCheck {
     std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms, for all who run it
     SetupFile file;                                 // its setup is in `run`
     CheckRun run;                                   // without blocks
-    core::SimulatorState machine;                   // before the first block
+    std::unique_ptr<core::SimulatorState> machine;  // before the first block
     bool stock_is_stated = true; // false: it was made from the program's own cuts
 };
 

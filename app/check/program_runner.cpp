@@ -287,7 +287,7 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
     : check_(check),
       run_(check.run),
       runner_(check),
-      state_(start_of_program(check.file.environment, run_.setup, std::move(check.machine))) {
+      state_(start_of_program(check.file.environment, run_.setup, std::move(*check.machine))) {
     runner_.before_block = [this](const gcode::BlockResult& block, const RunState& before) {
         follow_correction(block, before);
     };

@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "core/sim/setup.h"
+
 namespace app {
 namespace {
 

@@ -9,6 +9,10 @@
 #include "gcode/exec/interpreter.h"
 #include "gcode/lower/lowering.h"
 
+namespace core {
+struct Setup;
+}
+
 namespace app {
 
 /// Everything between two blocks of a run: the state of control, machine and stock, and that of the

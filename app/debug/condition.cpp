@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/condition_parser.h"
 #include "app/debug/inspected_value.h"
 #include "core/sim/verdict.h"

@@ -10,6 +10,7 @@
 #include "core/base/text.h"
 #include "core/sim/clearance.h"
 #include "core/sim/leg/check_memory.h"
+#include "core/sim/setup.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/exec/execution.h"
 

@@ -6,6 +6,10 @@
 #include "app/check/run_state.h"
 #include "core/sim/tool_assembly.h"
 
+namespace core {
+struct Setup;
+}
+
 namespace app {
 
 /// The tool is longer or shorter, as if it was pushed into its holder another way: the stick-out

@@ -10,7 +10,7 @@ namespace test_support {
 core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::DevicePort port) {
     FEELER_TRY(app::PreparedCheck check, app::prepare_check(job));
     FEELER_TRY(app::CoprocessorCheck coprocessor,
-               app::CoprocessorCheck::with(std::move(port), check.run.setup, check.machine.stock));
+               app::CoprocessorCheck::with(std::move(port), check.run.setup, check.machine->stock));
     JudgedProgram judged;
     app::ProgramRunner runner(check);
     app::BlockRunner ahead(check);

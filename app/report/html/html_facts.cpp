@@ -12,6 +12,7 @@
 #include "app/report/text/text_report.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
+#include "core/sim/part_comparison.h"
 #include "core/sim/verdict.h"
 #include "gcode/language/dialect.h"
 
