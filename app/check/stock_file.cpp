@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/dbm/cut_model.h"
+#include "core/dbm/stock_mesh.h"
+#include "core/dbm/stock_record.h"
 #include "core/geom/mesh.h"
 #include "core/sim/verdict.h"
 
