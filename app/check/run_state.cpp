@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "core/sim/setup.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 namespace {

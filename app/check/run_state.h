@@ -12,6 +12,9 @@
 namespace core {
 struct Setup;
 }
+namespace gcode {
+struct Environment;
+}
 
 namespace app {
 

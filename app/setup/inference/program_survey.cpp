@@ -5,6 +5,8 @@
 
 #include "core/sim/tool_assembly.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
 #include "gcode/lower/lowering.h"
 #include "gcode/text/source.h"
 
