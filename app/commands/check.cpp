@@ -17,7 +17,9 @@
 
 #include "app/base/text.h"
 #include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/check/conclusion.h"
+#include "app/check/stock_file.h"
 #include "app/commands/check_options.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"

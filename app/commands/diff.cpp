@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"

@@ -5,9 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 namespace {

@@ -7,6 +7,7 @@
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
 #include "app/setup/inference/inferred_setup.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
 #include "gcode/text/source.h"

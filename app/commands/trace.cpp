@@ -8,6 +8,7 @@
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
 #include "app/report/text/trace_report.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/text/source.h"

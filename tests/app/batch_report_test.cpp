@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/exchange/junit_report.h"
 #include "app/report/exchange/sarif_report.h"

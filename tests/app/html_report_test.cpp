@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/html/html_cards.h"
 #include "app/report/html/pictured_run.h"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/result/program_diff.h"
 #include "tests/support/scoped_folder.h"

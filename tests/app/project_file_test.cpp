@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/find/project_file.h"
 #include "app/library/run/batch_job.h"

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/commands/progress.h"
 #include "app/report/exchange/csv_report.h"

@@ -3,11 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/check/prepared_check.h"
 #include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
 #include "app/setup/setup_edits.h"
+#include "app/setup/setup_file.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {

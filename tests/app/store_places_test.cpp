@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/store/relative_paths.h"
 #include "tests/support/scoped_folder.h"

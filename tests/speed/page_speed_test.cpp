@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/html/html_batch.h"
 #include "app/report/html/html_report.h"

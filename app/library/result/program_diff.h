@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/check/check_run.h"
 #include "app/library/result/program_result.h"
 
 namespace app {

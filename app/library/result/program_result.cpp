@@ -5,9 +5,11 @@
 
 #include "app/base/sha256.h"
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/result/stored_json.h"
 #include "core/base/file_reads.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/program_text.h"
 
 namespace app {

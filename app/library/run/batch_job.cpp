@@ -1,5 +1,6 @@
 #include "app/library/run/batch_job.h"
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/find/folder_walk.h"
 #include "app/library/find/program_choice.h"

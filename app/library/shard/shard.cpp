@@ -10,11 +10,13 @@
 
 #include "app/base/sha256.h"
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/result/stored_json.h"
 #include "app/library/run/batch_job.h"
 #include "app/library/store/input_files.h"
 #include "app/library/store/result_key.h"
+#include "app/setup/program_settings.h"
 #include "core/base/file_reads.h"
 
 namespace app {

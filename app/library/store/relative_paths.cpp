@@ -9,7 +9,9 @@
 
 #include "app/base/file_stamp.h"
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/setup/program_settings.h"
 
 namespace app {
 namespace {

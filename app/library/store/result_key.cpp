@@ -12,7 +12,9 @@
 #include "app/base/sha256.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/setup/program_settings.h"
 
 namespace app {
 namespace {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/conclusion.h"
 #include "app/report/html/html_text.h"

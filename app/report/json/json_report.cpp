@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/version.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "core/sim/part_comparison.h"
 #include "gcode/language/dialect.h"
