@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/base/sha256.h"
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/input_file.h"
 #include "app/library/store/database.h"

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/coproc/study/coprocessor_run.h"
 #include "gcode/language/dialect.h"
 #include "tests/support/device_judgement.h"
