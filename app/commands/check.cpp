@@ -26,17 +26,14 @@
 #include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
+#include "app/commands/report_formats.h"
 #include "app/library/find/project_file.h"
 #include "app/library/result/batch_result.h"
 #include "app/library/run/batch_job.h"
 #include "app/library/watch/watched_files.h"
-#include "app/report/exchange/csv_report.h"
-#include "app/report/exchange/junit_report.h"
-#include "app/report/exchange/sarif_report.h"
-#include "app/report/html/html_report.h"
+#include "app/report/html/html_cards.h"
 #include "app/report/html/pictured_run.h"
-#include "app/report/json/json_report.h"
-#include "app/report/text/text_report.h"
+#include "app/report/text/batch_text.h"
 
 namespace app {
 
@@ -49,38 +46,16 @@ ExitCode watch(const std::vector<std::string>& outputs,
 
 namespace {
 
-/// The reports that tell of one program as of many.
-bool is_of_results(const std::string& format) { return format == "sarif" || format == "junit"; }
-
-std::string results_report(const std::string& format, ProgramResult result) {
-    BatchResult batch;
-    batch.programs.push_back(std::move(result));
-    std::error_code ignored;
-    return format == "junit" ? junit_report(batch)
-                             : sarif_report(batch, std::filesystem::current_path(ignored).string());
-}
-
-/// What reports tell of.
+/// What reports contain, and the files that they must not replace.
 struct Checked {
-    const CheckJob& job;
-    const CheckRun& run;
-    const ReportViews& views;
+    ProgramReport report;
     const ReadFiles& read;
-    const std::vector<std::string>& told; // assumptions that are on the screen already
 };
 
-std::string report(const CheckOptions& options, const ReportTarget& target,
-                   const Checked& checked) {
-    const auto& [job, run, views, read, told] = checked;
-    const std::string& format = target.format;
-    if (is_of_results(format)) return results_report(format, result_of(run, job.setup));
-    if (format == "csv") return csv_report(run);
-    if (format == "jsonl") return json_lines_report(run, options.pairs);
-    if (format == "json") return json_report(run, options.pairs);
-    if (format == "html") return html_report(run, views);
-    TextOptions text{.blocks = options.blocks || options.pairs};
-    if (target.path.empty()) text.told = told;
-    return text_report(run, text);
+std::string report_text(const ReportTarget& target, const Checked& checked) {
+    ProgramReport report = checked.report;
+    if (!target.path.empty()) report.told.clear(); // a file lists all of them
+    return report_format(target.format).of_program(report);
 }
 
 /// Whether what is to be written can be, as far as that is known beforehand.
@@ -129,12 +104,13 @@ bool say_memory(double bytes) {
     return true;
 }
 
-/// Whether a report of a run that did not come to its end is not written: it would look like a
-/// whole one, and the old one stays. While files are watched that is of another version: a report
-/// that says how it ended takes its place. SARIF and JUnit always do.
+/// Whether a report must not replace a file because the run did not come to its end: it would look
+/// like a report of the whole program.
 bool is_kept_back(const CheckOptions& options, const ReportTarget& target, const CheckRun& run) {
-    if (!run.stopped || target.path.empty() || is_of_results(target.format)) return false;
-    return !options.watch || target.format == "csv";
+    if (!run.stopped || target.path.empty()) return false;
+    const UnfinishedReport unfinished = report_format(target.format).unfinished;
+    return unfinished == UnfinishedReport::never
+           || (unfinished == UnfinishedReport::when_watching && !options.watch);
 }
 
 /// Writes the reports; false if one could not be. In place of those that are kept back there is a
@@ -143,27 +119,29 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
                    const std::vector<ReportTarget>& targets) {
     std::vector<ReportTarget> written;
     for (const ReportTarget& target : targets)
-        if (!is_kept_back(options, target, checked.run)) written.push_back(target);
+        if (!is_kept_back(options, target, checked.report.run)) written.push_back(target);
     const bool is_on_screen = std::any_of(written.begin(), written.end(),
                                           [](const auto& target) { return target.path.empty(); });
     if (written.size() < targets.size() && !is_on_screen) written.push_back({"text", {}});
     bool all = true;
     for (const ReportTarget& target : written) {
-        const auto done = write_output(target.path, report(options, target, checked), checked.read);
+        const auto done = write_output(target.path, report_text(target, checked), checked.read);
         if (!done) print_error(done.error());
         all = all && done.has_value();
     }
     return all;
 }
 
-/// Tells those who read SARIF or JUnit that a check could not begin.
+/// Writes that a check could not begin into the reports that can say so.
 ExitCode fail(const CheckJob& job, const core::Error& error,
               const std::vector<ReportTarget>& targets, const ReadFiles& read) {
     print_error(error);
+    BatchResult batch;
+    batch.programs.push_back(failed_result(job, error));
     for (const ReportTarget& target : targets) {
-        if (!is_of_results(target.format)) continue;
-        const auto written = write_output(
-            target.path, results_report(target.format, failed_result(job, error)), read);
+        const ReportFormat& format = report_format(target.format);
+        if (format.unfinished != UnfinishedReport::always) continue;
+        const auto written = write_output(target.path, format.of_batch(batch, {}), read);
         if (!written) print_error(written.error());
     }
     return ExitCode::failed;
@@ -218,7 +196,15 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
     if (run->stopped) print_error(*run->stopped);
     const auto saved = save_results(options, *run, read);
     if (!saved) print_error(saved.error());
-    const bool all_written = write_reports(options, {*job, *run, views, read, told}, targets);
+    const bool all_written = write_reports(options,
+                                           {{.run = *run,
+                                             .setup = job->setup,
+                                             .views = views,
+                                             .blocks = options.blocks,
+                                             .pairs = options.pairs,
+                                             .told = told},
+                                            read},
+                                           targets);
     told = run->assumptions;
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
@@ -262,11 +248,9 @@ ExitCode check(const CheckOptions& options) {
 void add_report_options(CLI::App& command, CheckOptions& options) {
     command
         .add_option("--format", options.formats,
-                    "text, json, jsonl (an object to a line), csv (a row to a block, or to a "
-                    "program of many), html (a page; of one program with pictures and a 3D view), "
-                    "sarif, junit, or shard (for merge); several with an -o each, in their order")
+                    format_help(true) + "; repeat it with one -o each, in the same order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit", "shard"}))
+        ->check(CLI::IsMember(format_names(true)))
         ->default_str("text");
     command.add_option("-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);

@@ -8,6 +8,7 @@
 #include "app/commands/batch_ending.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/report_formats.h"
 #include "app/library/shard/shard.h"
 #include "app/library/shard/shard_merge.h"
 #include "app/library/store/result_key.h"
@@ -110,12 +111,10 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
         .add_option("shares", options->files, "All files that --format shard has written of them")
         ->required();
     command
-        .add_option(
-            "--format", options->formats,
-            "text, json, jsonl, csv, html, sarif or junit; several with an -o each, in their "
-            "order")
+        .add_option("--format", options->formats,
+                    format_help(false) + "; repeat it with one -o each, in the same order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"text", "json", "jsonl", "csv", "html", "sarif", "junit"}))
+        ->check(CLI::IsMember(format_names(false)))
         ->default_str("text");
     command.add_option("-o,--output", options->outputs, "Write the report to this file")
         ->allow_extra_args(false);

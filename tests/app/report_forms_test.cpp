@@ -1,3 +1,5 @@
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -7,6 +9,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/commands/progress.h"
+#include "app/commands/report_formats.h"
 #include "app/report/exchange/csv_report.h"
 #include "app/report/json/json_report.h"
 #include "app/report/text/text_report.h"
@@ -149,6 +152,14 @@ TEST(VerdictOnly, FindsTheSameAsAFullCheck) {
     }
     for (size_t i = 0; i < full.blocks.size(); ++i)
         EXPECT_EQ(full.blocks[i].result.verdict, brief.blocks[i].result.verdict) << i;
+}
+
+TEST(ReportFormats, AreInTheManual) {
+    std::ifstream file(std::string(FEELER_SOURCE_DIR) + "/docs/manual/commands.md");
+    const std::string manual{std::istreambuf_iterator<char>(file), {}};
+    for (const ReportFormat& format : report_formats())
+        EXPECT_NE(manual.find("`" + std::string(format.name) + "`"), std::string::npos)
+            << format.name;
 }
 
 TEST(Progress, FitsALineOfATerminal) {

@@ -1,0 +1,92 @@
+#include "app/commands/report_formats.h"
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+
+#include "app/library/result/batch_result.h"
+#include "app/report/exchange/csv_report.h"
+#include "app/report/exchange/junit_report.h"
+#include "app/report/exchange/sarif_report.h"
+#include "app/report/html/html_batch.h"
+#include "app/report/html/html_report.h"
+#include "app/report/json/batch_report.h"
+#include "app/report/json/json_report.h"
+#include "app/report/text/batch_text.h"
+#include "app/report/text/text_report.h"
+
+namespace app {
+namespace {
+
+BatchResult batch_of(const ProgramReport& report) {
+    BatchResult batch;
+    batch.programs.push_back(result_of(report.run, report.setup));
+    return batch;
+}
+
+std::string sarif_of(const BatchResult& batch) {
+    std::error_code ignored;
+    return sarif_report(batch, std::filesystem::current_path(ignored).string());
+}
+
+constexpr ReportFormat formats[] = {
+    {"text", "",
+     [](const ProgramReport& report) {
+         return text_report(report.run,
+                            {.blocks = report.blocks || report.pairs, .told = report.told});
+     },
+     [](const BatchResult& batch, const BatchStyle& style) {
+         return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});
+     }},
+    {"json", "", [](const ProgramReport& report) { return json_report(report.run, report.pairs); },
+     [](const BatchResult& batch, const BatchStyle&) { return batch_json_report(batch); }},
+    {"jsonl", "one object per line",
+     [](const ProgramReport& report) { return json_lines_report(report.run, report.pairs); },
+     [](const BatchResult& batch, const BatchStyle&) { return batch_lines_report(batch); }},
+    {"csv", "one row per block; of many programs, one per program",
+     [](const ProgramReport& report) { return csv_report(report.run); },
+     [](const BatchResult& batch, const BatchStyle&) { return batch_csv_report(batch); },
+     UnfinishedReport::never},
+    {"html", "a page; of one program, with pictures and a 3D view",
+     [](const ProgramReport& report) { return html_report(report.run, report.views); },
+     [](const BatchResult& batch, const BatchStyle&) { return batch_html_report(batch); }},
+    {"sarif", "", [](const ProgramReport& report) { return sarif_of(batch_of(report)); },
+     [](const BatchResult& batch, const BatchStyle&) { return sarif_of(batch); },
+     UnfinishedReport::always},
+    {"junit", "", [](const ProgramReport& report) { return junit_report(batch_of(report)); },
+     [](const BatchResult& batch, const BatchStyle&) { return junit_report(batch); },
+     UnfinishedReport::always},
+    {"shard", "for feeler merge", nullptr, nullptr},
+};
+
+} // namespace
+
+std::span<const ReportFormat> report_formats() { return formats; }
+
+const ReportFormat& report_format(const std::string& name) {
+    const auto* const found =
+        std::find_if(std::begin(formats), std::end(formats),
+                     [&](const ReportFormat& format) { return format.name == name; });
+    assert(found != std::end(formats));
+    return *found;
+}
+
+std::vector<std::string> format_names(bool with_shard) {
+    std::vector<std::string> names;
+    for (const ReportFormat& format : formats)
+        if (with_shard || format.of_batch) names.emplace_back(format.name);
+    return names;
+}
+
+std::string format_help(bool with_shard) {
+    const std::vector<std::string> names = format_names(with_shard);
+    std::string text;
+    for (const std::string& name : names) {
+        if (!text.empty()) text += name == names.back() ? " or " : ", ";
+        const std::string help = report_format(name).help;
+        text += name + (help.empty() ? help : " (" + help + ")");
+    }
+    return text;
+}
+
+} // namespace app
