@@ -23,7 +23,9 @@ std::vector<const char*> arguments_of(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App cli("Feeler tells how close every block of an NC program comes to a crash.", "feeler");
+    CLI::App cli(
+        "Feeler checks NC programs for collisions, with proven clearances for every block.",
+        "feeler");
     cli.set_version_flag("--version", fmt::format("feeler {}", app::version));
     cli.require_subcommand(1);
     app::ExitCode exit_code = app::ExitCode::clear;
@@ -55,11 +57,9 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const std::bad_alloc&) {
-        std::fputs("feeler: there is not enough memory; a larger mesh size needs less\n", stderr);
+        std::fputs("feeler: not enough memory: use a larger mesh size\n", stderr);
     } catch (const std::exception& error) {
-        std::fputs(
-            fmt::format("feeler: a mistake of the program itself: {}\n", error.what()).c_str(),
-            stderr);
+        std::fputs(fmt::format("feeler: internal error: {}\n", error.what()).c_str(), stderr);
     }
     return static_cast<int>(app::ExitCode::failed);
 }

@@ -35,10 +35,10 @@ ExitCode run_bench(const BenchOptions& options) {
 void add_bench(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<BenchOptions>();
     CLI::App& command =
-        *cli.add_subcommand("bench", "Measure the searches for the closest pair of points");
+        *cli.add_subcommand("bench", "Time the searches for the closest pair of points");
     command
         .add_option("tables", options->tables,
-                    "paper: those behind the figures of Uddin and Yamazaki (2010), by both engines")
+                    "paper: the cases of Uddin and Yamazaki (2010), with both engines")
         ->required()
         ->check(CLI::IsMember({"paper"}));
     command.add_option("--format", options->format, "text or csv")

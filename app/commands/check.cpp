@@ -255,30 +255,33 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
     command.add_option("-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);
     command.add_option("--save-stock", options.stock,
-                       "Write what is left of the stock to this file (.stl, .ply, or .feeler "
-                       "for a later set-up)");
+                       "Write the remaining stock to this file: .stl, .ply, or .feeler as the "
+                       "stock of a later set-up");
     command.add_option("--save-comparison", options.comparison,
-                       "Write what is left, coloured by its deviation from the part (.ply)");
-    command.add_flag("--blocks", options.blocks, "Text: add the table of all blocks that move");
+                       "Write the remaining stock, coloured by its deviation from the part (.ply)");
+    command.add_flag("--blocks", options.blocks,
+                     "Text report: add a table of all blocks that move");
     CLI::Option* quiet = command.add_flag(
-        "--quiet", options.quiet, "Many programs: name only those with errors, and the summary");
+        "--quiet", options.quiet, "Many programs: list only those with errors, and the summary");
     command
         .add_flag("--verbose", options.verbose,
-                  "Many programs: also warnings, notes, assumptions and all skipped files")
+                  "Many programs: also list warnings, notes, assumptions and all skipped files")
         ->excludes(quiet);
 }
 
 void add_batch_options(CLI::App& command, CheckOptions& options) {
     CLI::Option* cache = command.add_option(
         "--cache", options.cache,
-        "Many programs: database of results, so that nothing is checked twice; else "
-        ".feeler/results.db in the folder, or beside the project file, that is named");
-    command.add_flag("--no-cache", options.no_cache, "Many programs: check all, and keep nothing")
+        "Many programs: database of results; unchanged programs are not checked again. Default: "
+        ".feeler/results.db in the folder, or beside the project file");
+    command
+        .add_flag("--no-cache", options.no_cache,
+                  "Many programs: check all of them and store no results")
         ->excludes(cache);
     command
         .add_option_function<std::string>(
             "--shard", [&options](const std::string& name) { options.share = *share_named(name); },
-            "Many machines: check share I of N alone; merge joins what --format shard writes")
+            "Several computers: check share I of N only, for --format shard and feeler merge")
         ->check(CLI::Validator(
             [](const std::string& name) {
                 const auto share = share_named(name);
@@ -287,18 +290,18 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
             "I/N"));
     command
         .add_option("-j,--jobs", options.jobs,
-                    "Many programs: so many at the same time; else one for each core")
+                    "Many programs: how many run at the same time; default one per core")
         ->check(number_range(1.0, 1024.0));
     command
         .add_option("--memory", options.memory,
-                    "Many programs: what all that run at the same time may take together, MB; "
-                    "else half of the machine's")
+                    "Many programs: memory for all programs that run at the same time, MB; "
+                    "default half of the computer's")
         ->check(number_range(1.0, 1e9));
 }
 
 void add_watch(CLI::App& command, CheckOptions& options) {
     command.add_flag("--watch", options.watch,
-                     "Check again what changes on disk, programs, set-ups and all they name, "
+                     "Check again whenever a program, a set-up or a file they use changes, "
                      "until Ctrl-C");
 }
 
@@ -317,7 +320,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     add_batch_options(command, *options);
     add_watch(command, *options);
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
-                                          "JSON: add every pair of bodies to every block");
+                                          "JSON: list every pair of bodies in every block");
     command
         .add_option_function<std::string>(
             "--engine",
@@ -325,12 +328,12 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                 options->engine =
                     name == name_of(Engine::exact) ? Engine::exact : Engine::coprocessor;
             },
-            "Who measures: exact, or coprocessor (feeler coproc says what it is)")
+            "Engine that measures: exact, or coprocessor (see feeler coproc)")
         ->check(CLI::IsMember({name_of(Engine::exact), name_of(Engine::coprocessor)}))
         ->default_str(name_of(Engine::exact));
     command
         .add_flag("--verdict-only", options->verdict_only,
-                  "Faster: no clearance of blocks that a bound already clears")
+                  "Faster: no exact clearance for blocks that are clear by a bound alone")
         ->excludes(pairs);
     command.callback([options, &exit_code] { exit_code = check(*options); });
 }

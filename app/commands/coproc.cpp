@@ -90,7 +90,7 @@ core::Result<ExitCode> coproc(const CoprocOptions& options) {
 void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<CoprocOptions>();
     CLI::App& command = *cli.add_subcommand(
-        "coproc", "Run a program beside an emulated coprocessor that permits its blocks");
+        "coproc", "Run a program with an emulated coprocessor that permits each block");
     add_check_arguments(command, options->what)->required();
     add_start_line(command, options->what);
     command.add_option("--config", options->config,
@@ -100,16 +100,17 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     auto* vcd = command.add_option("--vcd", options->vcd,
-                                   "Write the device's signals to this file, for GTKWave");
-    auto* from = command.add_option("--from", options->from, "... from this block on")
+                                   "Write the signals of the device to this file, for GTKWave");
+    auto* from = command.add_option("--from", options->from, "First block for --vcd")
                      ->needs(vcd)
                      ->check(CLI::NonNegativeNumber);
-    command.add_option("--to", options->to, "... to this one")
+    command.add_option("--to", options->to, "Last block for --vcd")
         ->needs(from)
         ->check(CLI::NonNegativeNumber);
     command.add_flag("--past-refusals", options->past_refusals,
-                     "Run refused blocks all the same, as if a person had let them");
-    command.add_flag("--no-fit", options->no_fit, "Do not look for the smallest device");
+                     "Run refused blocks as if the operator had allowed them");
+    command.add_flag("--no-fit", options->no_fit,
+                     "Do not search for the smallest sufficient device");
     command.callback([options, &exit_code] {
         auto done = coproc(*options);
         exit_code = done ? *done : failed(done.error());

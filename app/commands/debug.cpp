@@ -341,7 +341,7 @@ ExitCode debug(const DebugOptions& options) {
 void add_debug(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DebugOptions>();
     CLI::App& command =
-        *cli.add_subcommand("debug", "Step through a program at a prompt, forwards and back");
+        *cli.add_subcommand("debug", "Step through a program at a prompt, forwards and backwards");
     add_check_arguments(command, options->what)->required();
     add_start_line(command, options->what);
     const auto add_script = [options](bool is_file) {
@@ -351,13 +351,13 @@ void add_debug(CLI::App& cli, ExitCode& exit_code) {
     };
     command
         .add_option_function<std::string>("-x,--command", add_script(true),
-                                          "Carry out the commands of a file; may be repeated")
+                                          "Run the commands in this file; may be repeated")
         ->trigger_on_parse();
     command
         .add_option_function<std::string>("--eval-command", add_script(false),
-                                          "Carry out a command, also written -ex; may be repeated")
+                                          "Run this command, also written -ex; may be repeated")
         ->trigger_on_parse();
-    command.add_flag("--batch", options->batch, "End behind these commands");
+    command.add_flag("--batch", options->batch, "Exit after these commands");
     command.callback([options, &exit_code] { exit_code = debug(*options); });
 }
 

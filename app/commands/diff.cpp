@@ -74,14 +74,14 @@ void add_diff(CLI::App& cli, ExitCode& exit_code) {
         "diff", "Compare two versions of a program, or of its set-up, block by block");
     add_check_arguments(command, options->what)->required();
     command.add_option("later", options->later,
-                       "The later version of the program; the same one if it is left out");
+                       "Later version of the program; default: the same file");
     command.add_option("--setup-b", options->later_setup,
-                       "Set-up of the later version; else that of the earlier one");
+                       "Set-up of the later version; default: that of the earlier one");
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
-    command.add_flag("--blocks", options->blocks, "Text: all blocks, not the worst of each kind");
+    command.add_flag("--blocks", options->blocks, "Text report: all blocks instead of the worst");
     command.callback([options, &exit_code] { exit_code = diff(*options); });
 }
 

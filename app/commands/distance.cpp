@@ -77,20 +77,20 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
 void add_distance(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
-    const char* body = "A mesh file, or sphere:R, box:X,Y,Z, cylinder:R,H centred on the origin";
+    const char* body = "Mesh file, or sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin";
     command.add_option("a", options->a, body)->required();
     command.add_option("b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300))
         ->capture_default_str();
-    add_vector(command, "--move", options->move, "X,Y,Z: moves B, mm");
+    add_vector(command, "--move", options->move, "Move B by X,Y,Z, mm");
     add_vector(command, "--rotate", options->rotate,
-               "RX,RY,RZ: turns B about its origin before it is moved, degrees, fixed axes");
+               "Rotate B about its origin by RX,RY,RZ before the move, degrees, fixed axes");
     add_vector(command, "--sweep", options->sweep,
-               "X,Y,Z: moves B on by this, the least distance on the way counts, mm");
+               "Sweep B by X,Y,Z from there and take the least distance on the way, mm");
     command
         .add_option("--engine", options->engine,
-                    "fast, or paper: the search of the paper; both find the same distance")
+                    "fast, or paper (the published search); both find the same distance")
         ->check(CLI::IsMember({"fast", "paper"}))
         ->capture_default_str();
     command.add_option("--format", options->format, "text or json")

@@ -102,10 +102,11 @@ ExitCode history(const HistoryOptions& options) {
 void add_history(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<HistoryOptions>();
     CLI::App& command = *cli.add_subcommand(
-        "history", "Show how a program's results changed from version to version");
+        "history", "Show how the results of a program changed from version to version");
     command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--cache", options->cache,
-                       "Database of results; else .feeler/results.db of the nearest folder above");
+    command.add_option(
+        "--cache", options->cache,
+        "Database of results; default: .feeler/results.db in the nearest folder above");
     command.add_option("--format", options->format, "text or json")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();

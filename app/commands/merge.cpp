@@ -106,9 +106,10 @@ ExitCode merge_aloud(const MergeOptions& options) {
 
 void add_merge(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<MergeOptions>();
-    CLI::App& command = *cli.add_subcommand("merge", "Join the shares of check --shard");
+    CLI::App& command = *cli.add_subcommand("merge", "Join the results of check --shard");
     command
-        .add_option("shares", options->files, "All files that --format shard has written of them")
+        .add_option("shares", options->files,
+                    "Files written by check --shard --format shard, one per share")
         ->required();
     command
         .add_option("--format", options->formats,
@@ -119,10 +120,10 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("-o,--output", options->outputs, "Write the report to this file")
         ->allow_extra_args(false);
     CLI::Option* quiet = command.add_flag("--quiet", options->style.quiet,
-                                          "Name only programs with errors, and the summary");
+                                          "List only programs with errors, and the summary");
     command
         .add_flag("--verbose", options->style.verbose,
-                  "Also warnings, notes, assumptions and all skipped files")
+                  "Also list warnings, notes, assumptions and all skipped files")
         ->excludes(quiet);
     command.callback([options, &exit_code] { exit_code = merge_aloud(*options); });
 }

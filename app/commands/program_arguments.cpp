@@ -17,7 +17,7 @@ namespace {
 
 std::string why_no_position(const std::string& text) {
     if (position_in(text)) return {};
-    return fmt::format("'{}' is no place: write the machine coordinates of the axes in mm, as "
+    return fmt::format("'{}' is not a position: write machine coordinates in mm, such as "
                        "X=-100,Y=-50,Z=0",
                        text);
 }
@@ -34,14 +34,15 @@ std::string why_no_count(const std::string& text) {
 void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
     command
         .add_option("--dialect", arguments.dialect,
-                    "The control's language; else it is recognised, and said")
+                    "Dialect of the control; default: recognised from the program")
         ->check(CLI::IsMember(
             {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "siemens-iso", "heidenhain"}));
     command
         .add_option("--start-position", arguments.start_position,
-                    "Machine coordinates at the first block, mm: X=-100,Y=-50,Z=0")
+                    "Machine coordinates before the first block, mm: X=-100,Y=-50,Z=0")
         ->check(CLI::Validator(why_no_position, "AXIS=MM,..."));
-    command.add_option("--block-delete", arguments.block_delete, "on leaves out blocks with /")
+    command
+        .add_option("--block-delete", arguments.block_delete, "on: skip blocks that begin with /")
         ->check(CLI::IsMember({"on", "off"}));
     command.add_option("--parameters", arguments.parameters, "Variables file of LinuxCNC");
     command.add_option("--tool-table", arguments.tool_table, "Tool table of LinuxCNC");
@@ -49,19 +50,18 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
                        "Ini file of LinuxCNC: unit, variables, tool table and search path");
     command
         .add_option("--machine-unit", arguments.machine_unit,
-                    "Unit of lengths in variables files and tool tables")
+                    "Unit of lengths in the variables file and the tool table")
         ->check(CLI::IsMember({"mm", "inch"}));
     command
         .add_option("--no-decimal-point", arguments.no_decimal_point,
-                    "What X1000 means on Fanuc and Haas: 1000 units, or 1000 of the smallest steps")
+                    "X1000 on Fanuc and Haas means 1000 units, or 1000 least input increments")
         ->check(CLI::IsMember({"units", "steps"}));
     command
         .add_option("--search-path", arguments.search_path,
-                    "Folder with subprograms; more of them with ':' or by repeating")
+                    "Folder with subprograms; separate several with ':' or repeat the option")
         ->allow_extra_args(false);
     command
-        .add_option("--max-blocks", arguments.max_blocks,
-                    "Stop a program that runs more blocks than this")
+        .add_option("--max-blocks", arguments.max_blocks, "Stop a program after this many blocks")
         ->check(CLI::Validator(why_no_count, "COUNT"));
 }
 
@@ -101,24 +101,24 @@ CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
 void add_check_options(CLI::App& command, CheckArguments& arguments) {
     command.add_option(
         "--setup", arguments.setup,
-        "Set-up file (TOML); else NAME.toml beside NAME.nc, else what the program says");
+        "Set-up file (TOML); default: NAME.toml beside NAME.nc, else inferred from the program");
     command
         .add_option("--allowance", arguments.allowance,
-                    "Clearance to keep from fixtures, and of the holder from the stock, mm")
+                    "Minimum clearance to fixtures, and of the holder to the stock, mm")
         ->check(number_range(0.0, 1000.0));
     command.add_option("--mesh-size", arguments.mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300));
     command
         .add_option("--memory-limit", arguments.memory_limit,
-                    "What the model of the stock may take, MB (8590 unless said)")
+                    "Memory for the model of the stock, MB; default 8590")
         ->check(number_range(1.0, 1e9));
     add_program_arguments(command, arguments.reading);
 }
 
 void add_start_line(CLI::App& command, CheckArguments& arguments) {
     command.add_option("--start-line", arguments.start_line,
-                       "Start at this line, or at block N210, as after switching on, and list what "
-                       "is missing");
+                       "Start at this line, or at block N210, as after power-on, and report what "
+                       "the program relies on");
 }
 
 core::Result<CheckJob> job_of(const CheckArguments& arguments) {
@@ -137,10 +137,10 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
 
 void add_device_arguments(CLI::App& command, DeviceArguments& arguments) {
     command.add_flag("--coprocessor", arguments.shown,
-                     "Run the program beside an emulated coprocessor, and show its panel");
+                     "Run the program with an emulated coprocessor and show its panel");
     command
         .add_option("--device", arguments.file,
-                    "The same beside this one: device file (TOML), as coproc --config has it")
+                    "The same with this device file (TOML), as for coproc --config")
         ->each([&arguments](const std::string&) { arguments.shown = true; });
 }
 

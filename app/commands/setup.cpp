@@ -41,7 +41,7 @@ ExitCode setup(const SetupOptions& options) {
 void add_setup(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<SetupOptions>();
     CLI::App& command =
-        *cli.add_subcommand("setup", "Write a set-up file from what a program says");
+        *cli.add_subcommand("setup", "Infer a set-up from a program and write it to a file");
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("-o,--output", options->output, "File for the set-up");
     add_program_arguments(command, options->reading);

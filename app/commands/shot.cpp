@@ -342,14 +342,15 @@ core::Result<void> shoot(const ShotOptions& options) {
 
 /// What is to be seen: one of these.
 void add_subject(CLI::App& command, ShotOptions& options) {
-    auto* block = command.add_option("--block", options.block,
-                                     "The end of this block, numbered as in the reports of check");
+    auto* block =
+        command.add_option("--block", options.block,
+                           "Show the end of this block, numbered as in the reports of check");
     auto* worst = command.add_flag("--worst", options.worst,
-                                   "The block with the worst clearance (the default)");
-    auto* finding =
-        command.add_option("--finding", options.finding, "The block of this finding, from 1");
-    auto* sheet = command.add_flag("--sheet", options.sheet, "All findings on one sheet");
-    auto* from = command.add_option("--from", options.from, "A film from this block ...");
+                                   "Show the block with the least margin (default)");
+    auto* finding = command.add_option("--finding", options.finding,
+                                       "Show the block of this finding, counted from 1");
+    auto* sheet = command.add_flag("--sheet", options.sheet, "Show all findings on one sheet");
+    auto* from = command.add_option("--from", options.from, "Make a film from this block ...");
     auto* to = command.add_option("--to", options.to, "... to this one");
     for (CLI::Option* one : {block, worst, finding, sheet})
         for (CLI::Option* other : {block, worst, finding, sheet, from, to})
@@ -357,11 +358,11 @@ void add_subject(CLI::App& command, ShotOptions& options) {
 }
 
 void add_looks(CLI::App& command, ShotOptions& options) {
-    command.add_option("--size", options.size, "Pixels")->capture_default_str();
-    command.add_option("--view", options.view, "From where")
+    command.add_option("--size", options.size, "Width and height in pixels")->capture_default_str();
+    command.add_option("--view", options.view, "Direction of view")
         ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
         ->capture_default_str();
-    command.add_flag("--no-ui", options.no_ui, "The 3D view alone");
+    command.add_flag("--no-ui", options.no_ui, "Only the 3D view, without panels");
     command.add_option("--theme", options.theme, "Colours")
         ->check(CLI::IsMember({"dark", "light"}))
         ->capture_default_str();
@@ -375,9 +376,9 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     add_check_arguments(command, options->what)->required();
     add_subject(command, *options);
     command
-        .add_option(
-            "-o,--output", options->output,
-            "Picture (.png); of a film .mp4 or another that ffmpeg writes, else numbered pictures")
+        .add_option("-o,--output", options->output,
+                    "Picture (.png), or film (.mp4 or another type that ffmpeg writes; else "
+                    "numbered pictures)")
         ->required();
     add_looks(command, *options);
     add_device_arguments(command, options->device);

@@ -140,10 +140,11 @@ ExitCode trace(const TraceOptions& options) {
 
 void add_trace(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<TraceOptions>();
-    CLI::App& command = *cli.add_subcommand("trace", "Print the canonical commands of a program");
+    CLI::App& command =
+        *cli.add_subcommand("trace", "Print what each block means, as canonical commands");
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("--setup", options->setup,
-                       "Set-up file (TOML): offsets, tool lengths, start");
+                       "Set-up file (TOML), for offsets, tool lengths and start position");
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or jsonl")
         ->check(CLI::IsMember({"text", "jsonl"}))

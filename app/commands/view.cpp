@@ -62,10 +62,9 @@ ExitCode view(const ViewOptions& options) {
 
 void add_view(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<ViewOptions>();
-    CLI::App& command =
-        *cli.add_subcommand("view", "Step through a program in a window and see it");
+    CLI::App& command = *cli.add_subcommand("view", "Step through a program in a window, in 3D");
     add_check_arguments(command, options->what)
-        ->description("NC program; it can also be dropped in");
+        ->description("NC program; it can also be dropped on the window");
     add_device_arguments(command, options->device);
     command.add_option("--frame-log", options->frame_log)->group(""); // for measuring
     command.callback([options, &exit_code] { exit_code = view(*options); });

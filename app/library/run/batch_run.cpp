@@ -30,14 +30,13 @@ core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
         return tl::unexpected<core::Error>(
             {core::ErrorCode::io,
              {},
-             "there is not enough memory; a larger mesh size or fewer --jobs need less",
+             "not enough memory: use a larger mesh size or fewer --jobs",
              job.program});
     } catch (const std::exception& mistake) {
-        return tl::unexpected<core::Error>(
-            {core::ErrorCode::io,
-             {},
-             std::string("a mistake of the program itself: ") + mistake.what(),
-             job.program});
+        return tl::unexpected<core::Error>({core::ErrorCode::io,
+                                            {},
+                                            std::string("internal error: ") + mistake.what(),
+                                            job.program});
     }
 }
 
