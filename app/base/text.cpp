@@ -230,6 +230,16 @@ std::string counted(size_t count, const std::string& noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string counts_text(size_t errors, size_t warnings, size_t notes) {
+    return counted(errors, "error") + ", " + counted(warnings, "warning") + ", "
+           + counted(notes, "note");
+}
+
+std::string clearance_text(double lower, std::optional<double> upper, double allowance) {
+    if (!upper) return ">= " + core::clearance_at_least(lower);
+    return core::bounds_below(lower, *upper, allowance, "-");
+}
+
 std::string duration_text(double seconds) {
     const auto whole = static_cast<long long>(std::llround(seconds));
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
@@ -243,7 +253,7 @@ std::string verdict_text(core::Verdict verdict) {
     case core::Verdict::undecided:
         return "UNDECIDED, not proven clear";
     case core::Verdict::violation:
-        return "VIOLATION, an allowance is not kept";
+        return "VIOLATION, below a minimum clearance";
     default:
         return "COLLISION";
     }

@@ -263,7 +263,7 @@ TEST(Junit, HasACaseForEachProgram) {
     EXPECT_THAT(xml, HasSubstr("<failure message=\"violation: 2 errors\" type=\"violation\">"));
     EXPECT_THAT(xml, HasSubstr("&lt;clamp-1&gt; &amp; &quot;more&quot;"));
     EXPECT_THAT(xml, HasSubstr("<error message=\"line 3: G999: no such &lt;code&gt;\""));
-    EXPECT_THAT(xml, HasSubstr("<error message=\"was not checked: the batch was ended before\"/>"));
+    EXPECT_THAT(xml, HasSubstr("<error message=\"was not checked: the batch was stopped first\"/>"));
     EXPECT_THAT(xml, HasSubstr("bell ? and line\nend"));
 }
 

@@ -25,7 +25,7 @@ TEST(Diff, SaysWhatCameNearerAndEndsWithOneWhenItIsWorse) {
 TEST(Diff, EndsWithZeroWhenItIsBetterOrTheSame) {
     const auto better = feeler({"diff", plate_low, plate, "--setup", setup});
     EXPECT_EQ(better.status, 0) << better.out;
-    EXPECT_NE(better.out.find("Findings that are gone:"), std::string::npos);
+    EXPECT_NE(better.out.find("Resolved findings:"), std::string::npos);
     const test_support::ScopedFolder folder;
     const std::string copy = folder.write("copy.nc", test_support::bytes_of(plate));
     const auto same = feeler({"diff", plate, copy, "--setup", setup});

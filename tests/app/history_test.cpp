@@ -46,7 +46,7 @@ TEST_F(TwoVersions, AreToldWithWhatBecameOther) {
     EXPECT_EQ(ran.out.find(program + ": 2 versions\n"), 0u) << ran.out;
     EXPECT_NE(ran.out.find("UTC  CLEAR\n"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("UTC  VIOLATION"), std::string::npos);
-    EXPECT_NE(ran.out.find("6.000 mm nearer to what must be kept"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("least margin 6.000 mm less"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("new:  error near-miss, line 7: G1 X104 F500"), std::string::npos)
         << ran.out;
 }

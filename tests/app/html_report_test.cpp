@@ -152,7 +152,7 @@ TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {
         if (core::value_of(block.block) != at) block.result.deciding.reset();
     const double keep = pair.allowance.distance;
     const std::string shown =
-        fmt::format("{:.3f} to {:.3f} mm, {:.3f} mm to keep", keep - 0.001, keep + 0.001, keep);
+        fmt::format("{:.3f} to {:.3f} mm (minimum {:.3f} mm)", keep - 0.001, keep + 0.001, keep);
     EXPECT_EQ(count_of(html_report(run, {}), shown), 2U) << "in the summary and in the card";
 }
 

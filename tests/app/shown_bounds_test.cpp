@@ -67,14 +67,14 @@ TEST(TextReport, RoundsLowerBoundsDownAndUpperBoundsUp) {
     const auto text = [](double lower, double upper, double keep) {
         return text_report(with_bounds(lower, upper, keep), {.blocks = true});
     };
-    EXPECT_THAT(text(1.9996, 1.9996, 2.0), HasSubstr(" 1.999 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9996, 1.9996, 2.0), HasSubstr(" 1.999 mm (minimum 2.000 mm)"));
     EXPECT_THAT(text(1.9996, 1.9996, 2.0), HasSubstr("          1.999 "));
-    EXPECT_THAT(text(1.9006, 2.0024, 2.0), HasSubstr(" 1.900-2.003 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9006, 2.0024, 2.0), HasSubstr(" 1.900-2.003 mm (minimum 2.000 mm)"));
     EXPECT_THAT(text(1.9006, 2.0024, 2.0), HasSubstr("    1.900-2.003 "));
-    EXPECT_THAT(text(1.9, 1.9996, 2.0), HasSubstr(" 1.900-1.999600 mm, 2.000 mm to keep"));
-    EXPECT_THAT(text(2.0000000001, 2.0000000001, 2.0), HasSubstr(" 2.000 mm, 2.000 mm to keep"));
-    EXPECT_THAT(text(2.0002, 2.0002, 2.0004), HasSubstr(" 2.000 mm, 2.001 mm to keep"));
-    EXPECT_THAT(text(-0.0004, 0.0, 2.0), HasSubstr(" 0.000 mm, 2.000 mm to keep"));
+    EXPECT_THAT(text(1.9, 1.9996, 2.0), HasSubstr(" 1.900-1.999600 mm (minimum 2.000 mm)"));
+    EXPECT_THAT(text(2.0000000001, 2.0000000001, 2.0), HasSubstr(" 2.000 mm (minimum 2.000 mm)"));
+    EXPECT_THAT(text(2.0002, 2.0002, 2.0004), HasSubstr(" 2.000 mm (minimum 2.001 mm)"));
+    EXPECT_THAT(text(-0.0004, 0.0, 2.0), HasSubstr(" 0.000 mm (minimum 2.000 mm)"));
     EXPECT_THAT(text(1.9996, core::infinity, 2.0), HasSubstr(" >= 1.999 "));
 }
 

@@ -110,7 +110,7 @@ test("a program opens to its findings, facts, assumptions and the command for it
   const program = page.locator("#program");
   assert.match(await program.locator("h3").first().textContent(), /^it's "50%" & \$HOME\.nc$/);
   const text = await program.textContent();
-  for (const part of ["strap-1", "line ", "Cure: ", "clamped_plate.toml", "assumptions", "mm to keep"])
+  for (const part of ["strap-1", "line ", "Cure: ", "clamped_plate.toml", "assumptions", "(minimum "])
     assert.ok(text.includes(part), part);
   assert.ok((await program.locator(".card.error").count()) >= 1);
   assert.match(await program.locator(".card code").first().textContent(), /[GXYZ]/);

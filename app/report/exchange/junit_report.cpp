@@ -62,7 +62,7 @@ std::string finding_text(const StoredFinding& finding) {
 }
 
 /// The findings that count as errors, or the others.
-std::string findings_text(const ProgramResult& program, bool errors) {
+std::string finding_texts(const ProgramResult& program, bool errors) {
     std::string text;
     for (const StoredFinding& finding : program.findings)
         if ((finding.severity == core::Severity::error) == errors) text += finding_text(finding);
@@ -80,7 +80,7 @@ std::string name_attributes(const std::string& program) {
 std::string case_of(const ProgramResult& program) {
     std::string text = fmt::format("    <testcase {} time=\"{:.3f}\">\n",
                                    name_attributes(program.program), program.seconds);
-    const std::string errors = findings_text(program, true), others = findings_text(program, false);
+    const std::string errors = finding_texts(program, true), others = finding_texts(program, false);
     if (program.error) {
         const StoredError& error = *program.error;
         const std::string place = error.line == 0 ? "" : fmt::format("line {}: ", error.line);
@@ -113,7 +113,7 @@ std::string junit_report(const BatchResult& batch) {
     for (const std::string& program : batch.unchecked)
         cases +=
             fmt::format("    <testcase {} time=\"0\">\n      <error message=\"was not checked: "
-                        "the batch was ended before\"/>\n    </testcase>\n",
+                        "the batch was stopped first\"/>\n    </testcase>\n",
                         name_attributes(program));
     errors += batch.unchecked.size(); // nobody is to take a batch that was cut short for a good one
     const std::string counts =

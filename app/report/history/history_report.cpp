@@ -10,6 +10,7 @@
 
 #include "app/base/text.h"
 #include "app/base/version.h"
+#include "app/library/result/batch_result.h"
 #include "app/library/result/program_diff.h"
 #include "app/report/text/diff_report.h"
 #include "core/sim/verdict.h"
@@ -37,30 +38,25 @@ std::string time_text(const char* form, int64_t seconds) {
 std::string minute_text(int64_t seconds) { return time_text("{:%Y-%m-%d %H:%M}", seconds); }
 
 std::string nearest_text(const ProgramResult& result) {
-    if (!result.tightest) return "nothing came near";
+    if (!result.tightest) return "no pair of bodies within the search limit";
     const Tightest& tightest = *result.tightest;
     return fmt::format("{} mm {} / {}, line {}",
-                       tightest.upper ? core::bounds_below(tightest.lower, *tightest.upper,
-                                                           tightest.allowance, "-")
-                                      : ">= " + core::clearance_at_least(tightest.lower),
+                       clearance_text(tightest.lower, tightest.upper, tightest.allowance),
                        trimmed(tightest.pair[0]), trimmed(tightest.pair[1]), tightest.line);
 }
 
-std::string findings_text(const ProgramResult& result) {
-    size_t errors = 0, warnings = 0;
-    for (const StoredFinding& finding : result.findings) {
-        errors += finding.severity == core::Severity::error;
-        warnings += finding.severity == core::Severity::warning;
-    }
-    return counted(errors, "error") + ", " + counted(warnings, "warning");
+std::string finding_counts(const ProgramResult& result) {
+    return counts_text(count_of(result, core::Severity::error),
+                       count_of(result, core::Severity::warning),
+                       count_of(result, core::Severity::note));
 }
 
 std::string change_text(const ProgramChange& change) {
     std::string text;
     constexpr double least = 0.0005; // what would be shown as 0
     if (change.nearer && std::abs(*change.nearer) >= least)
-        text += fmt::format("    {:.3f} mm {} what must be kept\n", std::abs(*change.nearer),
-                            *change.nearer > 0.0 ? "nearer to" : "farther from");
+        text += fmt::format("    least margin {:.3f} mm {}\n", std::abs(*change.nearer),
+                            *change.nearer > 0.0 ? "less" : "more");
     if (std::abs(change.longer) >= 0.05)
         text += fmt::format("    {:.1f} s {}\n", std::abs(change.longer),
                             change.longer > 0.0 ? "longer" : "shorter");
@@ -68,7 +64,7 @@ std::string change_text(const ProgramChange& change) {
         text += "    new:  " + finding_line(finding) + "\n";
     for (const StoredFinding& finding : change.gone_findings)
         text += "    gone: " + finding_line(finding) + "\n";
-    return text.empty() ? "    nothing else is other than before\n" : text;
+    return text.empty() ? "    no other change\n" : text;
 }
 
 std::string version_text(const StoredVersion& kept, const StoredVersion* earlier) {
@@ -80,7 +76,7 @@ std::string version_text(const StoredVersion& kept, const StoredVersion* earlier
                     result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
     if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
-                        duration_text(result.cycle_time), findings_text(result));
+                        duration_text(result.cycle_time), finding_counts(result));
     text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
                         kept.setup.empty() ? "set-up inferred" : "set-up " + trimmed(kept.setup),
                         kept.version.substr(0, kept.version.find(' ')));

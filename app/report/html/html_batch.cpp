@@ -179,28 +179,30 @@ size_t tightest_program(const BatchResult& batch) {
 
 std::string tightest_html(const BatchResult& batch) {
     const size_t at = tightest_program(batch);
-    if (at == batch.programs.size()) return "no pair of bodies came near in any program";
+    if (at == batch.programs.size())
+        return "no pair of bodies within the search limit in any program";
     const ProgramResult& program = batch.programs[at];
     const Tightest& tightest = *program.tightest;
     const std::string name = program.program.substr(common_folder(batch).size());
     const double margin =
         1e-3 * static_cast<double>(clearance_um(tightest.lower) - um_above(tightest.allowance));
-    return fmt::format("{}{:.3f} mm: clearance {}, {} mm to keep, {} / {}, <button type=\"button\" "
-                       "class=\"link\" data-program=\"{}\">{}, line {}</button>",
-                       tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
-                       bounds_text(tightest.lower, tightest.upper, tightest.allowance),
-                       core::at_most(tightest.allowance), html_text(tightest.pair[0]),
-                       html_text(tightest.pair[1]), at, html_text(name), tightest.line);
+    return fmt::format(
+        "{}{:.3f} mm: clearance {} (minimum {} mm), {} / {}, <button type=\"button\" "
+        "class=\"link\" data-program=\"{}\">{}, line {}</button>",
+        tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
+        bounds_text(tightest.lower, tightest.upper, tightest.allowance),
+        core::at_most(tightest.allowance), html_text(tightest.pair[0]), html_text(tightest.pair[1]),
+        at, html_text(name), tightest.line);
 }
 
-std::string findings_text(const BatchResult& batch) {
-    std::string text;
-    for (const Severity severity : {Severity::error, Severity::warning, Severity::note}) {
-        size_t count = 0;
-        for (const ProgramResult& program : batch.programs) count += count_of(program, severity);
-        text += (text.empty() ? "" : ", ") + counted(count, core::name_of(severity));
+std::string finding_counts(const BatchResult& batch) {
+    size_t errors = 0, warnings = 0, notes = 0;
+    for (const ProgramResult& program : batch.programs) {
+        errors += count_of(program, Severity::error);
+        warnings += count_of(program, Severity::warning);
+        notes += count_of(program, Severity::note);
     }
-    return text;
+    return counts_text(errors, warnings, notes);
 }
 
 template <typename Field>
@@ -277,15 +279,17 @@ std::string html_missing(const BatchResult& batch) {
                               + clipped(program.error->message, longest));
     std::string html;
     if (!batch.share.empty())
-        html += "<p><b>" + html_text(batch.share) + ":</b> of the others other reports tell.</p>\n";
+        html += "<p><b>" + html_text(batch.share)
+                + ":</b> the other programs are in the reports of the other shares.</p>\n";
     if (!unchecked.empty())
         html += "<p><b>" + share(batch, unchecked.size())
-                + " not checked:</b> the batch was ended before.</p>\n"
+                + " not checked:</b> the batch was stopped first.</p>\n"
                 + list_html(unchecked, shown);
     if (!stopped.empty())
-        html += "<p><b>" + share(batch, stopped.size())
-                + " could not be run to the end:</b> nothing is said of what comes behind.</p>\n"
-                + list_html(stopped, shown);
+        html +=
+            "<p><b>" + share(batch, stopped.size())
+            + " could not be run to the end:</b> the blocks after the error were not checked.</p>\n"
+            + list_html(stopped, shown);
     if (html.empty()) return html;
     if (!unchecked.empty() || !stopped.empty())
         html += "<p><button type=\"button\" data-lost=\"true\">Show all of them</button></p>";
@@ -305,14 +309,14 @@ std::string html_outcomes(const BatchResult& batch) {
 std::string html_batch_summary(const BatchResult& batch) {
     size_t blocks = 0;
     for (const ProgramResult& program : batch.programs) blocks += program.blocks;
-    return fact_row("status", status_text(batch)) + fact_row("findings", findings_text(batch))
+    return fact_row("status", status_text(batch)) + fact_row("findings", finding_counts(batch))
            + fact_row("least margin", tightest_html(batch))
            + fact_row("blocks", fmt::format("{}", blocks))
            + fact_row("cycle time of all", duration_text(sum_of(batch, &ProgramResult::cycle_time)))
            + fact_row(
                "checking took",
                duration_text(sum_of(batch, &ProgramResult::seconds))
-                   + ", all programs together; those kept from an earlier check count as then");
+                   + ", all programs together; stored results count with their original time");
 }
 
 std::string html_rules(const BatchResult& batch) {

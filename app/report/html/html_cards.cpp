@@ -114,7 +114,7 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
                html_text(core::body_name(run.setup, pair.pair)))
            + picture_of(run, "tightest", block, views)
            + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
-                         "\xC2\xB7 {1}, {2} mm to keep</button> <code>{3}</code></p>"
+                         "\xC2\xB7 {1} (minimum {2} mm)</button> <code>{3}</code></p>"
                          "</article>\n",
                          block, bounds_text(pair.lower, upper, pair.allowance.distance),
                          core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));

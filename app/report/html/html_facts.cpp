@@ -32,10 +32,10 @@ std::string term(const std::string& name, const std::string& size, const std::st
 
 std::string tightest_text(const CheckRun& run) {
     const CheckedBlock* block = nearest_block(run);
-    if (!block) return "no pair of bodies came near";
+    if (!block) return "no pair of bodies within the search limit";
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
     const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
-    return fmt::format("{}, {} mm to keep: {} / {} in block {}, line {}",
+    return fmt::format("{} (minimum {} mm): {} / {} in block {}, line {}",
                        bounds_text(pair.lower, upper, pair.allowance.distance),
                        core::at_most(pair.allowance.distance),
                        core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
@@ -67,11 +67,11 @@ std::string html_summary(const CheckRun& run) {
     std::string rows;
     if (run.stopped) rows += row("stopped", error_text(*run.stopped));
     rows += row("findings", counts_text(run)) + row("tightest", tightest_text(run));
-    rows += row("blocks", fmt::format("{}, {} of them move", run.blocks.size(), moving));
+    rows += row("blocks", fmt::format("{}, {} with motion", run.blocks.size(), moving));
     rows += row("cycle time", duration_text(run.cycle_time));
     rows += row("removed", fmt::format("{:.1f} mm\xC2\xB3", run.removed));
     rows += row("allowance", run.setup.allowance ? fmt::format("{} mm", *run.setup.allowance)
-                                                 : "as usual for each pair of bodies");
+                                                 : "the default of each pair of bodies");
     rows += row("dialect", std::string(gcode::dialect(run.dialect).name));
     rows += row("engine", name_of(run.engine));
     if (run.comparison) rows += row("part", facts_of(*run.comparison, run.setup.part->tolerance));
@@ -83,27 +83,28 @@ std::string html_summary(const CheckRun& run) {
 
 std::string html_bound_terms(const CheckRun& run) {
     const double h = run.setup.mesh_size;
-    std::string rows = term(
-        "cell", fmt::format("{} mm", h),
-        fmt::format("Scan lines of the stock stand so far apart. The lower bound counts all "
-                    "matter that may be between them; {} squares were worked out afresh at a finer "
-                    "mesh size to decide a verdict.",
-                    run.statistics.refined));
+    std::string rows =
+        term("cell", fmt::format("{} mm", h),
+             fmt::format("Spacing of the scan lines of the stock. The lower bound counts all "
+                         "material that may lie between them; {} cells were recomputed at a finer "
+                         "mesh size to decide a verdict.",
+                         run.statistics.refined));
     rows += term("chord", core::at_most(core::chord_error(h), 4) + " mm",
                  "Arcs are cut and checked as chords within this of them.");
     rows += term("path tolerance", fmt::format("{} mm", core::default_blend_tolerance),
-                 "A control may round corners by this where the program does not say how. "
+                 "A control may round corners by this unless the program states a path mode. "
                  "Clearances are those of sharp corners.");
     rows += term("stock tolerance", fmt::format("{} mm", run.setup.stock.tolerance),
-                 "So much larger the raw stock may be all round, as the set-up says.");
+                 "The raw stock may be larger by this on every side, as the set-up states.");
     rows += term("resolution", fmt::format("{:g} mm", core::resolution),
-                 "A clearance that keeps its allowance to within this keeps it.");
+                 "Clearances are compared with their minimum to within this.");
     rows += term("search limit", fmt::format("{} mm", run.setup.search_limit),
-                 "Nothing farther away is measured.");
+                 "Clearances beyond this are not measured.");
     if (const auto widest = widest_interval(run))
-        rows += term("widest interval", core::at_most(*widest) + " mm",
-                     "The most by which lower and upper bound of a deciding pair differ in any "
-                     "block.");
+        rows +=
+            term("widest interval", core::at_most(*widest) + " mm",
+                 "Largest difference between the lower and upper bound of a deciding pair in any "
+                 "block.");
     return rows;
 }
 

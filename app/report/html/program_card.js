@@ -79,7 +79,7 @@ function clearanceSentence(programs, i) {
   if (programs.pair[i] < 0) return "no pair of bodies came near";
   const lower = millimetres(programs.lower[i]), width = programs.width[i];
   const range = width < 0 ? lower + " mm or more" : width <= 1 ? lower + " mm" : lower + "\u2013" + millimetres(programs.lower[i] + width) + " mm";
-  return range + ", " + millimetres(programs.keep[i]) + " mm to keep: " + programs.texts[programs.pair[i]]
+  return range + " (minimum " + millimetres(programs.keep[i]) + " mm): " + programs.texts[programs.pair[i]]
     + " in block " + programs.block[i] + ", line " + programs.line[i];
 }
 
@@ -119,7 +119,7 @@ function cardHeader(programs, i) {
 function programCard(programs, i) {
   const card = make("article", "program", cardHeader(programs, i));
   if (programs.outcome[i] === outcomes.length - 1) {
-    card.append(make("p", "notice", "This program was not checked: the batch was ended before."), commandPart(programs, i));
+    card.append(make("p", "notice", "This program was not checked: the batch was stopped first."), commandPart(programs, i));
     return card;
   }
   card.append(...stoppedPart(programs, i), findingsPart(programs, i), factsPart(programs, i),

@@ -25,7 +25,7 @@ std::string coloured(const std::string& text, int colour, const BatchStyle& styl
     return style.colour ? fmt::format("\033[{}m{}\033[0m", colour, text) : text;
 }
 
-std::string counts_text(const ProgramResult& result) {
+std::string nonzero_counts(const ProgramResult& result) {
     std::string text;
     for (const Severity severity : {Severity::error, Severity::warning, Severity::note})
         if (const size_t count = count_of(result, severity))
@@ -35,7 +35,7 @@ std::string counts_text(const ProgramResult& result) {
 
 /// A line for each rule that was found, with its lines in the program and the message of its worst
 /// finding; the worst rule first.
-std::string findings_text(const ProgramResult& result, const BatchStyle& style) {
+std::string rule_lines(const ProgramResult& result, const BatchStyle& style) {
     struct Group {
         const StoredFinding* worst;
         std::set<uint32_t> lines;
@@ -163,11 +163,11 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     const Outcome outcome = outcome_of(result);
     const std::string word = fmt::format("{:<10}", name_of(outcome));
     std::string text = " " + trimmed(result.program);
-    const std::string counts = counts_text(result);
+    const std::string counts = nonzero_counts(result);
     if (!counts.empty()) text += ": " + counts;
     text += "\n";
     if (result.error) text += wrapped(own_error_line(result), 11, 2);
-    text += findings_text(result, style);
+    text += rule_lines(result, style);
     for (size_t i = 0; style.verbose && i < result.assumptions.size(); ++i)
         text += wrapped("assumed: " + result.assumptions[i], 11, 2);
     return coloured(word, colour_of(outcome), style) + printable(text);

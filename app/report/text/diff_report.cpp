@@ -17,10 +17,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t few = 12; // blocks of a kind, unless all are wanted
 
-std::string clearance_text(const BlockMeasure& block) {
+std::string known_clearance(const BlockMeasure& block) {
     if (!block.margin) return "not known";
-    if (!block.upper) return ">= " + core::clearance_at_least(block.lower);
-    return core::bounds_below(block.lower, *block.upper, block.allowance, "-");
+    return clearance_text(block.lower, block.upper, block.allowance);
 }
 
 std::string pair_text(const BlockMeasure& block) {
@@ -33,14 +32,14 @@ std::string change_text(const ChangedBlock& changed) {
     const BlockMeasure &was = changed.before, &is = changed.after;
     const double change = std::abs(changed.nearer);
     if (was.pair == is.pair && was.allowance == is.allowance) {
-        std::string text = fmt::format("{} -> {} mm", clearance_text(was), clearance_text(is));
+        std::string text = fmt::format("{} -> {} mm", known_clearance(was), known_clearance(is));
         if (change > 0.0)
             text += fmt::format(", {:.3f} {}", change, changed.nearer > 0.0 ? "nearer" : "farther");
         return is.pair[0].empty() ? text : text + ", " + pair_text(is);
     }
     const auto side = [](const BlockMeasure& block) {
         const std::string pair = pair_text(block);
-        return clearance_text(block) + " mm" + (pair.empty() ? "" : " " + pair);
+        return known_clearance(block) + " mm" + (pair.empty() ? "" : " " + pair);
     };
     std::string text = fmt::format("{} -> {}", side(was), side(is));
     if (change > 0.0)
@@ -70,7 +69,7 @@ std::string blocks_text(const char* title, const std::vector<ChangedBlock>& bloc
     return text + "\n";
 }
 
-std::string findings_text(const char* title, const std::vector<StoredFinding>& findings) {
+std::string finding_list(const char* title, const std::vector<StoredFinding>& findings) {
     if (findings.empty()) return {};
     std::string text = fmt::format("{}:\n", title);
     for (const StoredFinding& finding : findings) text += "  " + finding_line(finding) + "\n";
@@ -119,8 +118,8 @@ std::string diff_text(const ProgramDiff& diff, bool all) {
     std::string text =
         fmt::format("{}\n-> {}\n\n", name_of_version(diff.before), name_of_version(diff.after));
     text += blocks_text("Nearer", diff.nearer, all) + blocks_text("Farther", diff.farther, all);
-    text += findings_text("New findings", diff.change.new_findings);
-    text += findings_text("Findings that are gone", diff.change.gone_findings);
+    text += finding_list("New findings", diff.change.new_findings);
+    text += finding_list("Resolved findings", diff.change.gone_findings);
     text += fmt::format("{} nearer, {} farther, {} as before, {} new, {} gone\n",
                         counted(diff.nearer.size(), "block"), diff.farther.size(), diff.same,
                         diff.added.size(), diff.removed.size());

@@ -39,7 +39,7 @@ std::vector<FindingGroup> grouped(const CheckRun& run) {
     return groups;
 }
 
-std::string findings_text(const CheckRun& run) {
+std::string finding_groups_text(const CheckRun& run) {
     std::string text;
     for (const FindingGroup& group : grouped(run)) {
         const core::Finding& worst = *group.worst;
@@ -59,7 +59,7 @@ std::string findings_text(const CheckRun& run) {
     return text;
 }
 
-std::string clearance_text(const CheckRun& run, const core::BlockResult& result) {
+std::string block_clearance(const CheckRun& run, const core::BlockResult& result) {
     if (!result.checked) return "not known";
     if (!result.deciding) {
         const double least = least_clearance(run.setup, result);
@@ -67,8 +67,8 @@ std::string clearance_text(const CheckRun& run, const core::BlockResult& result)
         return ">= " + core::clearance_at_least(least);
     }
     const core::PairClearance& pair = result.pairs[*result.deciding];
-    if (!pair.found()) return ">= " + core::clearance_at_least(pair.lower);
-    return core::bounds_below(pair.lower, pair.upper, pair.allowance.distance, "-");
+    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
+    return clearance_text(pair.lower, upper, pair.allowance.distance);
 }
 
 std::string blocks_text(const CheckRun& run) {
@@ -85,7 +85,7 @@ std::string blocks_text(const CheckRun& run) {
         text += fmt::format("{:>5} {:<5} {:>4} {:>15} {:<17} {:<9} {}\n", block.line,
                             core::name_of(result.motion),
                             result.tool ? std::to_string(core::value_of(*result.tool)) : "-",
-                            clearance_text(run, result), clipped(trimmed(pair), 17),
+                            block_clearance(run, result), clipped(trimmed(pair), 17),
                             core::name_of(result.verdict), clipped(trimmed(block.text), 19));
     }
     return text + "\n";
@@ -99,7 +99,7 @@ std::string assumptions_text(const std::vector<std::string>& all,
         };
     };
     const bool is_more = !told.empty() && std::all_of(told.begin(), told.end(), is_in(all));
-    std::string text = is_more ? "  assuming   what was told before\n" : "  assuming\n";
+    std::string text = is_more ? "  assuming   the same as before\n" : "  assuming\n";
     for (const std::string& assumption : all)
         if (!is_more || !is_in(told)(assumption)) text += wrapped("- " + assumption, 4, 2);
     return text;
@@ -111,15 +111,15 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
         moving += block.result.motion != core::BlockMotion::none;
     std::string text = fmt::format("{}: {}\n", trimmed(run.program_file), outcome_text(run));
     text += fmt::format("  findings   {}\n", counts_text(run));
-    text += fmt::format("  blocks     {}, {} of them move; dialect {}\n", run.blocks.size(), moving,
+    text += fmt::format("  blocks     {}, {} with motion; dialect {}\n", run.blocks.size(), moving,
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = nearest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
         const std::string heading = "  tightest   ";
         const std::string tightest = fmt::format(
-            "line {}: {} / {}, {} mm, {} mm to keep", block->line,
+            "line {}: {} / {}, {} mm (minimum {} mm)", block->line,
             core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
-            clearance_text(run, block->result), core::at_most(pair.allowance.distance));
+            block_clearance(run, block->result), core::at_most(pair.allowance.distance));
         text += heading + wrapped(tightest, heading.size()).substr(heading.size());
     }
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));
@@ -152,20 +152,19 @@ bool has_word(const std::string& text, const std::string& name) {
 std::string counts_text(const CheckRun& run) {
     std::map<core::Severity, size_t> counts;
     for (const core::Finding& finding : run.findings) ++counts[finding.severity];
-    return fmt::format("{}, {}, {}", counted(counts[core::Severity::error], "error"),
-                       counted(counts[core::Severity::warning], "warning"),
-                       counted(counts[core::Severity::note], "note"));
+    return counts_text(counts[core::Severity::error], counts[core::Severity::warning],
+                       counts[core::Severity::note]);
 }
 
 std::string outcome_text(const CheckRun& run) {
     if (run.stopped) return "STOPPED, not checked to its end";
     if (run.verdict == core::Verdict::clear && run.has_errors())
-        return "ERRORS in the program; all distances are kept";
+        return "ERRORS in the program; clearances are sufficient";
     return verdict_text(run.verdict);
 }
 
 std::string text_report(const CheckRun& run, const TextOptions& options) {
-    std::string text = findings_text(run);
+    std::string text = finding_groups_text(run);
     if (options.blocks) text += blocks_text(run);
     return printable(text + summary_text(run, options.told));
 }
