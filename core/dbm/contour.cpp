@@ -9,8 +9,8 @@
 namespace core {
 namespace {
 
-/// Directions in which the planes say less than this share of what they say at most are left alone:
-/// edges flatter than some 16 degrees are taken for curvature.
+/// Directions with less than this fraction of the greatest eigenvalue are ignored: edges flatter
+/// than some 16 degrees count as curvature.
 constexpr double weakest = 0.02;
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -71,7 +71,7 @@ Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
 
 namespace {
 
-/// How far a point lies outside a body, negative inside, and the direction in which that grows.
+/// The signed distance of a point from a body, negative inside, and its gradient.
 struct Facing {
     double outside = infinity;
     Vec3 normal = Vec3(0.0);
@@ -94,8 +94,8 @@ Facing facing(const ProfileElement& e, const Vec3& p) {
     return most;
 }
 
-/// The normal of what the surface at `p` sweeps, which is across the motion. A face that is not is
-/// but one of the two at a rim: it is the rim that sweeps.
+/// The normal of the surface swept at `p`, which is perpendicular to the motion. If the normal of
+/// the face is not, `p` is on a rim, and the rim sweeps the surface.
 Vec3 across_motion(const ProfileElement& e, const Vec3& p, const Vec3& normal, const Vec3& by) {
     if (std::abs(glm::dot(normal, by)) <= 1e-6 * glm::length(by)) return normal;
     const Vec3 across = glm::cross(by, Vec3(-p.y, p.x, 0.0));
@@ -105,10 +105,10 @@ Vec3 across_motion(const ProfileElement& e, const Vec3& p, const Vec3& normal, c
     return glm::dot(across, out) < 0.0 ? -across / size : across / size;
 }
 
-/// The same for the piece while it moves: how far outside at the moment when that is least. `p` and
-/// `by` are in the tool's frame, from where the tip stands at first.
+/// The same for the moving piece, at the time when the distance is least. `p` and `by` are in the
+/// frame of the tool, relative to the initial tip position.
 Facing facing_sweep(const ProfileElement& e, const Vec3& p, const Vec3& by) {
-    // How far outside is convex in time, and its normal says which way it falls.
+    // The distance is convex in time, and its normal gives the direction of descent.
     const auto at = [&](double t) { return facing(e, p - t * by); };
     const auto rises = [&](const Facing& f) { return -glm::dot(f.normal, by); };
     if (const Facing first = at(0.0); rises(first) >= 0.0) return first;
@@ -129,7 +129,7 @@ Facing facing_sweep(const ProfileElement& e, const Vec3& p, const Vec3& by) {
     return best;
 }
 
-/// Out of the stock is into what was cut.
+/// Out of the stock means into the cut volume.
 Vec3 normal_of_cut(const CutterSweep& sweep, const Vec3& point) {
     const Mat3 tool_from_stock = glm::transpose(sweep.orientation);
     const Vec3 p = tool_from_stock * (point - sweep.from);
@@ -143,9 +143,8 @@ Vec3 normal_of_cut(const CutterSweep& sweep, const Vec3& point) {
     return -(sweep.orientation * deepest.normal);
 }
 
-/// The normal of the face that a line passes where its end is at `point`. On a rim that may come
-/// out as the face beside it, along which the line runs: a little off that one, the other is
-/// nearer.
+/// The normal of the face that a line crosses at its end `point`. On a rim this could be the
+/// adjacent face along which the line runs: slightly off that face, the other one is nearer.
 Vec3 normal_at_end(const CutterSweep& sweep, const Vec3& point, const Vec3& outward) {
     constexpr double off = 1e-4, along = 1e-6;
     const Vec3 normal = normal_of_cut(sweep, point);
@@ -161,7 +160,7 @@ Vec3 normal_of_cylinder(const SolidCylinder& c, const Vec3& point, int axis, con
     return glm::normalize(radial);
 }
 
-/// That of the triangle which the line passes nearest to its plane, among those at the point.
+/// That of the triangle most nearly perpendicular to the line among those at the point.
 Vec3 normal_of_mesh(const SolidMesh& mesh, const Vec3& point, const Vec3& outward) {
     constexpr double near = 1e-6;
     Vec3 best = outward;
@@ -217,7 +216,7 @@ std::vector<SurfacePoint> surface_points(const CutModel& model, int axis) {
 
 namespace {
 
-/// How far beyond an edge an end is still taken for the edge's own, mm.
+/// How far beyond an edge an end still counts as on the edge, mm.
 constexpr double contour_slack = 1e-6;
 
 } // namespace
@@ -281,8 +280,8 @@ CrossedEdge crossed_edge(const CutModel& model, const Crossing& crossing) {
 }
 
 Aabb vertex_room(const ScanGrid& grid, const Aabb& bounds, const std::array<int, 3>& cell) {
-    // Where a sharp edge leaves its cell through a side that lines pass on both flanks, only the
-    // cell knows of it: vertices may stand in the cell beyond.
+    // Where a sharp edge leaves its cell through a side that lines cross on both flanks, only this
+    // cell detects it: vertices may lie in the neighbouring cell.
     const auto corner = [&](int by) {
         const Vec3 node(grid.coordinate(0, cell[0] - 1 + by), grid.coordinate(1, cell[1] - 1 + by),
                         grid.coordinate(2, cell[2] - 1 + by));

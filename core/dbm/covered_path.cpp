@@ -21,20 +21,20 @@ bool widens_upwards(const RevolvedProfile& flutes) {
         if (e.r1 < e.r0 || e.r1 + e.margin < radius) return false;
         radius = e.r1 + e.margin;
     }
-    // A ball that nothing stands on narrows in its upper half.
+    // A ball with nothing above it narrows in its upper half.
     return is_convex(flutes) && flutes.elements.back().margin == 0.0;
 }
 
-/// A straight move of a tip in the tool's frame, where the tool stands upright, and whether what it
+/// A straight move of a tip in the frame of the tool, in which the tool is upright, and whether its
 /// cut is open above.
 struct Move {
     Vec3 from, to;
-    double near = 0.0; // how far the tip may be from it
+    double near = 0.0; // allowed distance of the tip from it
     bool open = false;
 };
 
-/// Whether the tip at `p` is near enough to a place of the move: all of a tool made smaller by that
-/// much is then within the tool as it stood there.
+/// Whether the tip at `p` is near enough to a position of the move: a tool made smaller by that
+/// distance is then inside the tool at that position.
 bool passes(const Move& move, const Vec3& p) {
     const Vec3 q = move.from, by = move.to - move.from;
     const double length = glm::dot(by, by);
@@ -42,10 +42,10 @@ bool passes(const Move& move, const Vec3& p) {
     return glm::distance(p, q + t * by) <= move.near;
 }
 
-/// Whether the tip at `p` stands in what the move cut: over a place of it that is near enough.
+/// Whether the tip at `p` is in the cut of the move: above a position that is near enough.
 bool covers(const Move& move, const Vec3& p) {
     const Vec3 q = move.from, by = move.to - move.from;
-    // The places of the move that are not above p: first .. last of 0 .. 1.
+    // The positions of the move that are not above p: first .. last of 0 .. 1.
     double first = 0.0, last = 1.0;
     if (by.z > 0.0) last = std::min(last, (p.z - q.z) / by.z);
     if (by.z < 0.0) first = std::max(first, (p.z - q.z) / by.z);
@@ -57,7 +57,7 @@ bool covers(const Move& move, const Vec3& p) {
     return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= move.near;
 }
 
-/// A search among the moves that can serve.
+/// A search among the candidate moves.
 struct Search {
     std::vector<Move> moves;
 
@@ -65,7 +65,7 @@ struct Search {
         return passes(move, p) || (move.open && covers(move, p));
     }
 
-    /// Both ends over one move: then, both being straight, all between is over it too.
+    /// Whether both ends are above one move: as both are straight, everything between is too.
     bool covered(const Vec3& a, const Vec3& b, int depth) const {
         bool ends_covered = false;
         for (const Move& move : moves) {
@@ -78,7 +78,7 @@ struct Search {
         return covered(a, middle, depth + 1) && covered(middle, b, depth + 1);
     }
 
-    /// Both in the same of two ways: each of them holds between its ends.
+    /// Whether both ends meet the same one of two criteria: each holds between its ends.
     bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
         const bool passed = passes(move, a) && passes(move, b);
         return passed || (move.open && covers(move, a) && covers(move, b));
@@ -105,7 +105,7 @@ Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb
     return path;
 }
 
-/// The moves of a log that can serve, of those with these numbers.
+/// The candidate moves of a log, among those with these numbers.
 Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
                     const PathQuestion& question, double top) {
     const bool upwards = widens_upwards(question.flutes);
@@ -120,7 +120,7 @@ Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
         Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to,
                   question.sideways - sweep.cutter->path_error};
         if (move.near <= 0.0) continue;
-        // What cut under the path reached up through it, to the top of all matter and beyond.
+        // The move below the path also cut above it, up to the top of all matter and beyond.
         move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
         search.moves.push_back(move);
     }

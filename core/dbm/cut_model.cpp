@@ -55,7 +55,7 @@ void for_sweeps_over(const CutModel& model, int i, int j, const Square& square, 
         }
 }
 
-/// Where the grid's lines run, with as many more as fill the last tile.
+/// Positions of the lines, padded to fill the last tile.
 std::vector<double> places_along(const ScanGrid& grid, int axis) {
     std::vector<double> places;
     for (int i = 0; i < grid.count(axis) + ScanLines::tile_side; ++i)
@@ -63,7 +63,7 @@ std::vector<double> places_along(const ScanGrid& grid, int axis) {
     return places;
 }
 
-/// Where the corners of the cells stand; those beyond the last one mean nothing.
+/// Positions of the cell corners; entries beyond the last one have no meaning.
 std::vector<double> corners_along(const CutModel& model, int axis) {
     const auto edge = [&](int i) {
         const Square cell = cell_square(model, axis == 0 ? i : 0, axis == 1 ? i : 0);
@@ -156,7 +156,7 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
 }
 
 bool is_gone(const CutModel& model) {
-    // A box that was not fitted since the last cut may stand round nothing.
+    // A box not refitted since the last cut may be empty.
     for (int j = 0; j < model.columns.v_count(); ++j)
         for (int i = 0; i < model.columns.u_count(); ++i)
             if (!model.columns.line(i, j).empty()) return false;

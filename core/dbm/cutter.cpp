@@ -5,7 +5,7 @@
 namespace core {
 namespace {
 
-/// The box of a piece about the profile's origin, its axis pointing anywhere.
+/// The box of a piece relative to the origin of the profile, for any direction of its axis.
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
     // Circles about the axis reach as far along X as the axis leans away from X.
     const Vec3 lean(std::hypot(up.y, up.z), std::hypot(up.z, up.x), std::hypot(up.x, up.y));

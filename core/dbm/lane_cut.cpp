@@ -2,7 +2,7 @@
 
 #include <bit>
 
-// What lies between SSE2, which every x86-64 has, and AVX2 gains these loops nothing.
+// Targets between SSE2, which every x86-64 has, and AVX2 do not speed up these loops.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
 #endif
@@ -33,8 +33,8 @@ HWY_INLINE Stretch matter_of(const ScanTile& tile, size_t k, size_t place) {
     return {load(&tile.layers[k].lower[place]), load(&tile.layers[k].upper[place])};
 }
 
-/// The layers, by bit, that hold matter on any of the lines within a stretch; all beyond the 32nd
-/// count as one.
+/// The layers, as bits, with matter on any of the lines within a segment; all beyond the 32nd share
+/// one bit.
 HWY_INLINE uint32_t layers_with_matter(const ScanTile& tile, size_t place, const Stretch& where,
                                        const RowMask& wanted) {
     uint32_t layers = 0;
@@ -64,18 +64,18 @@ HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, s
     }));
 }
 
-/// An end of matter as volume counts it: how many of the grid's coordinates lie below, and how far
-/// it is above the border half way to the next one.
+/// An end of matter for counting volume: the number of grid coordinates below it, and its height
+/// above the border half way to the next one.
 struct Counted {
     Row points, beyond;
 };
 
-/// Of coordinates that lie on an end, an upper one leaves them out and a lower one, too.
+/// A coordinate exactly on an end counts for neither an upper nor a lower end.
 HWY_INLINE Counted counted(const TileTask& task, const Row& x, const RowMask& is_upper) {
     const ScanGrid& grid = *task.grid;
     const double half = grid.half_count[static_cast<size_t>(task.axis)];
     const double centre = grid.centre[task.axis];
-    // Half way between two points either of them serves.
+    // Half way between two points either will do.
     const Row near = (x - centre) * (1.0 / grid.spacing) + (half - 0.5);
     const Row index = each<Row>([&](size_t k) HWY_ATTR { return hn::Round(near.part[k]); });
     const Row there = row_of(centre) + (index - half + 0.5) * grid.spacing;
@@ -84,7 +84,7 @@ HWY_INLINE Counted counted(const TileTask& task, const Row& x, const RowMask& is
     return {points, x - (row_of(centre) + (points - half) * grid.spacing)};
 }
 
-/// What an end weighs, from how it is kept and back.
+/// The weight of an end from its stored form, and back.
 HWY_INLINE Row facing_of(const uint8_t* tilts) {
     const Row tilt = each<Row>([&](size_t k) HWY_ATTR {
         const hn::Rebind<uint8_t, Tag> bytes;
@@ -122,13 +122,13 @@ HWY_INLINE void set_marks(uint32_t* marks, uint32_t which, uint32_t mark) {
     }
 }
 
-/// Counts what goes when the intervals of a layer are shortened.
+/// Counts what is removed when the intervals of a layer are shortened.
 HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t place,
                       const Stretch& old, const Swept& gone, const RowMask& wanted,
                       const RowMask& from_below, const RowMask& from_above, TileCut& done) {
     const Row low = row_of(1.0) - tilt_of(gone.low_facing) * (1.0 / ScanTile::steepest);
     const Row high = row_of(1.0) - tilt_of(gone.high_facing) * (1.0 / ScanTile::steepest);
-    // What goes ends above at an old upper end or where a new lower one is made, below likewise.
+    // The removed part ends at an old upper end or at the new lower end above it; likewise below.
     const Counted upper = counted(task, choose(from_above, old.upper, gone.ends.upper), from_above);
     const Counted lower =
         counted(task, choose(from_below, old.lower, gone.ends.lower), but_not(wanted, from_below));
@@ -139,7 +139,7 @@ HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t
     if (task.axis == 2) add_to(&done.points[lane], wanted, upper.points - lower.points);
 }
 
-/// Shortens the intervals of a layer; those in `wanted` keep one end, or go.
+/// Shortens the intervals of a layer; those in `wanted` keep one end or are removed.
 HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t place,
                      const Swept& gone, const RowMask& wanted, TileCut& done) {
     const Stretch old = matter_of(tile, k, place);
@@ -183,7 +183,7 @@ void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone)
     }
 }
 
-/// Takes stretches out of a chunk of lines, where the layers hold matter.
+/// Removes segments from a chunk of lines in the layers that hold matter.
 HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
                            const Swept& gone, TileCut& done) {
     RowMask hard = below(row_of(1.0), row_of(0.0));
@@ -259,7 +259,7 @@ HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, Ti
         });
 }
 
-/// What the four corners of each cell share, safely.
+/// The intersection over the four corners of each cell, shortened by the error bound.
 HWY_INLINE Stretch shared(const CornerStretches& front, const CornerStretches& back, size_t first) {
     const auto both = [&](const auto& one, const auto& other, const auto& act) HWY_ATTR {
         return act(act(load(&one[first]), load(&one[first + 1])),

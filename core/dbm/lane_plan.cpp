@@ -5,12 +5,12 @@
 namespace core {
 namespace {
 
-/// Components of a move shorter than this count as none, mm; what is neglected stays below what
-/// computed ends may be off by.
+/// Shorter components of a move are ignored, mm; the effect is below the error bound of computed
+/// ends.
 constexpr double least_move = 1e-10;
 
-/// What a ball and a circle have in common; `steep` is how far the surface that they sweep leans
-/// along the lines, 0 for a circle.
+/// Parameters common to a ball and a circle; `steep` is the inclination of the swept surface along
+/// the lines, 0 for a circle.
 CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radius) {
     const int ua = u_axis(axis), va = v_axis(axis);
     Vec3 from = sweep.from;
@@ -51,7 +51,7 @@ CapsuleLanes ball_lanes(const CutterSweep& sweep, int axis, const ProfileElement
     return c;
 }
 
-/// A cylinder's stretch begins and ends at its faces, when the line comes in or goes out.
+/// The segment of a cylinder begins and ends at its faces, when the line enters or leaves.
 CapsuleLanes upright_lanes(const CutterSweep& sweep, const ProfileElement& e) {
     CapsuleLanes c = capsule(sweep, 2, 0.0, e.r0);
     c.low_end = e.z0;
@@ -107,7 +107,7 @@ ElementLanes element_lanes(const CutterSweep& sweep, int axis, const ProfileElem
     return lanes;
 }
 
-/// Whether a move climbs or sinks on its way by more than rounding.
+/// Whether a move is sloped by more than rounding.
 bool is_sloped(const CutterSweep& sweep) {
     constexpr double least_part = 1e-6;
     const Vec3 by = sweep.to - sweep.from;
@@ -123,8 +123,7 @@ bool has_shaft(const std::vector<ProfileElement>& all, size_t i) {
            && all[i + 1].z0 == all[i].z0 && all[i + 1].z1 >= all[i].z0 + all[i].margin;
 }
 
-/// Lets the stretches end at the height up to which the body reaches at every moment, if that is
-/// above all stock.
+/// Ends the segments at the height that the body always reaches, if that is above all stock.
 bool open_up(CapsuleLanes& c, double reached, double top) {
     if (reached < top) return false;
     c.opens_up = true;
@@ -152,7 +151,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             CapsuleLanes& c = plan.ball[plan.balls++];
             c = ball_lanes(sweep, axis, e);
             if (!has_shaft(all, i)) continue;
-            // Over its centre, wherever that is, the shaft holds all of the ball.
+            // Above its centre, the shaft contains the ball at every position.
             if (axis == 0) c.v_most = highest + e.z0;
             if (axis == 1) c.u_most = highest + e.z0;
             if (axis == 2 && open_up(c, lowest + all[i + 1].z1, top)) ++i;

@@ -11,7 +11,7 @@
 namespace core {
 namespace {
 
-/// Where a line passes through the surface, and by how much its winding number grows there.
+/// A crossing of a line with the surface, and the change of the winding number there.
 struct TriangleCrossing {
     uint32_t line;
     int32_t step;
@@ -31,11 +31,11 @@ struct LineScan {
     double unsound_at = 0.0;
 };
 
-/// Reads the sorted crossings of one line. Stretches up to `rounding` long decide nothing.
+/// Reads the sorted crossings of one line. Segments up to `rounding` long are ignored.
 LineScan read_line(std::span<const TriangleCrossing> crossings, double rounding) {
     LineScan scan;
     int winding = 0;
-    Interval piece{0.0, -infinity}; // the last piece found; waits for one that continues it
+    Interval piece{0.0, -infinity}; // the last piece found; the next one may continue it
     double inside_since = 0.0;
     const auto finish_piece = [&] {
         if (piece.length() > rounding) scan.matter.add(piece);
@@ -145,7 +145,7 @@ std::vector<TriangleCrossing> crossings_with(const Mesh& mesh, const ScanGrid& g
     return crossings;
 }
 
-/// Fills one family; says whether shells overlap.
+/// Fills one family; returns whether shells overlap.
 Result<bool> scan_family(const Mesh& mesh, const ScanGrid& grid, double rounding,
                          ScanLines& family) {
     const std::vector<TriangleCrossing> crossings = crossings_with(mesh, grid, family.axis());
@@ -168,8 +168,7 @@ Result<bool> scan_family(const Mesh& mesh, const ScanGrid& grid, double rounding
 } // namespace
 
 Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing, double memory_limit) {
-    if (mesh.triangles.empty())
-        return fail(ErrorCode::invalid_value, "the mesh has no triangles");
+    if (mesh.triangles.empty()) return fail(ErrorCode::invalid_value, "the mesh has no triangles");
     const Aabb bounds = mesh.bounds();
     FEELER_TRY(Dbm dbm, empty_dbm(bounds, spacing, memory_limit));
     bool shells_overlap = false;

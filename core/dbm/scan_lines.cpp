@@ -105,7 +105,7 @@ ScanTile& ScanLines::edit_tile(size_t index) {
         tile = std::make_shared<ScanTile>(*tile);
     } else {
         // use_count is a relaxed read: without the fence, reads of a snapshot that another thread
-        // has just dropped could still be under way when we write.
+        // has just dropped could still be in progress when we write.
         std::atomic_thread_fence(std::memory_order_acquire);
     }
     return *tile;

@@ -6,7 +6,7 @@
 namespace core {
 namespace {
 
-/// Added to heights that were computed, so that rounding never loses matter, mm.
+/// Added to computed heights so that rounding never loses matter, mm.
 constexpr double rounding = 1e-9;
 
 template <typename... Cases>
@@ -44,7 +44,7 @@ IntervalList line_of_cylinder(const SolidCylinder& c, int axis, double u, double
     return IntervalList({c.base[axis] - std::sqrt(under), c.base[axis] + std::sqrt(under)});
 }
 
-/// Distance from `x` to the stretch lower .. upper.
+/// Distance from `x` to the interval lower .. upper.
 double outside(double x, double lower, double upper) {
     return std::max({lower - x, x - upper, 0.0});
 }
@@ -104,7 +104,8 @@ Mesh triangles_over(const SolidMesh& solid, const Square& s) {
 }
 
 IntervalList column_of_mesh(const SolidMesh& solid, const Square& s) {
-    // Clipping may lose a sliver at the border of the square to rounding: look a little wider.
+    // Clipping may lose a sliver at the border of the square to rounding: use a slightly larger
+    // one.
     const Square wide{s.x0 - rounding, s.x1 + rounding, s.y0 - rounding, s.y1 + rounding};
     const Mesh near = triangles_over(solid, wide);
     IntervalList heights;
@@ -117,7 +118,7 @@ IntervalList column_of_mesh(const SolidMesh& solid, const Square& s) {
 }
 
 IntervalList line_of_mesh(const SolidMesh& solid, int axis, double u, double v) {
-    // Lines along Z are asked for one by one while squares are refined.
+    // Refining squares queries lines along Z one by one.
     if (axis == 2) return matter_on_line(triangles_over(solid, {u, u, v, v}), 2, u, v);
     return matter_on_line(*solid.mesh, axis, u, v);
 }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int32_t no_vertex = -1;
 
-/// Nodes with the same z: where the lines of the three families meet. Node (i, j) stands where the
-/// lines i - 1 and j - 1 do; those round the outside have no lines and are outside.
+/// Nodes with the same z: where the lines of the three families meet. Node (i, j) is on the
+/// lines i - 1 and j - 1; the border nodes have no lines and are outside.
 struct NodeLayer {
     std::vector<uint8_t> inside;
     std::array<std::vector<int32_t>, 2> edges; // along X, Y from each node: number of its point
@@ -76,7 +76,7 @@ private:
     size_t taken_ = 0;                       // boundary points that became part of the surface
 };
 
-/// A node is inside where most of its three lines say so: they may differ by rounding.
+/// A node is inside if at least two of its three lines are: they may differ by rounding.
 NodeLayer Contouring::nodes(int k) {
     NodeLayer layer;
     layer.inside.assign(size_, 0);
@@ -201,7 +201,7 @@ void Contouring::add_upright_quads(const CellLayer& layer) {
                          *p, (layer.inside[at(i, j)] & 1U) != 0);
 }
 
-/// Two triangles, cut along the diagonal that leaves them nearer to the point on the line.
+/// Two triangles, split along the diagonal that is closer to the point on the line.
 void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards) {
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
@@ -232,8 +232,8 @@ struct QuadsAtVertices {
     }
 };
 
-/// How far the samples are from the mesh at most: no more than from their own triangles, or from
-/// those that touch these; where a vertex stands outside of its cell, the sample lies on the
+/// An upper bound of the distance of the samples from the mesh: the distance from their own
+/// triangles or from adjacent ones. Where a vertex is outside its cell, the sample lies on the
 /// latter.
 void Contouring::measure_error() {
     std::vector<uint32_t> order;

@@ -34,8 +34,8 @@ const ScanLines& family(const CutModel& model, int axis) {
     return model.lines.families[static_cast<size_t>(axis)];
 }
 
-/// Whether matter of line (u, v) along Z hangs together with matter of the next line along
-/// `towards`, X or Y.
+/// Whether matter of line (u, v) along Z is connected to matter of the next line along `towards`, X
+/// or Y.
 bool hang_together(const CutModel& model, int u, int v, int towards, const Interval& a,
                    const Interval& b) {
     const ScanGrid& grid = model.lines.grid;
@@ -55,16 +55,16 @@ bool hang_together(const CutModel& model, int u, int v, int towards, const Inter
 
 } // namespace
 
-/// The matter of a tile of lines along Z: its parts, and which of them hang together with parts of
-/// the tiles after it along X and Y.
+/// The matter of a tile of lines along Z: its parts, and their connections to parts of the next
+/// tiles along X and Y.
 struct PieceMap::Tile {
     std::vector<uint32_t> first;   // number of the first stretch of each line; one more at the end
     std::vector<uint32_t> part;    // that each stretch belongs to
-    std::vector<StockPiece> parts; // volume as length until they are put together
+    std::vector<StockPiece> parts; // volume stored as length until they are joined
     std::array<std::vector<std::pair<uint32_t, uint32_t>>, 2> links;
 };
 
-/// A map while it is brought up to date.
+/// A map during an update.
 class PieceWork {
 public:
     PieceWork(const CutModel& model, PieceMap& map)
@@ -151,7 +151,7 @@ void PieceWork::number_parts(Tile& tile, const LineRange& range, UnionFind& grou
             }
 }
 
-/// Finds what hangs together across the border to the next tile.
+/// Finds connections across the border to the next tile.
 void PieceWork::link(int tu, int tv, int towards) {
     const int tu2 = tu + (towards == 0), tv2 = tv + (towards == 1);
     if (tu < 0 || tv < 0 || tu2 >= u_tiles_ || tv2 >= v_tiles_) return;
@@ -243,7 +243,7 @@ std::vector<StockPiece> PieceWork::put_together() {
 void PieceMap::note_cut(const CutModel& model, const Aabb& box) {
     if (changed_.empty()) return; // nothing is known yet
     const ScanLines& z = family(model, 2);
-    // A line along X or Y that is cut parts lines along Z on both sides of it.
+    // A cut line along X or Y separates the lines along Z on both sides of it.
     const auto [u_first, u_last] = lines_within(model.lines.grid, 0, box.min.x, box.max.x, 1);
     const auto [v_first, v_last] = lines_within(model.lines.grid, 1, box.min.y, box.max.y, 1);
     const int u_tiles = (z.u_count() + tile_side - 1) / tile_side;

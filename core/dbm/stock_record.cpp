@@ -14,10 +14,10 @@ constexpr std::string_view magic = "feeler stock 1\n";
 
 enum class ShapeTag : uint8_t { box, cylinder, mesh };
 
-/// What a move has in common with the one before it, and so is not written.
+/// What a move shares with the previous one and is therefore not written.
 enum SameAsBefore : uint8_t { goes_on = 1, same_cutter = 2, same_attitude = 4, same_block = 8 };
 
-/// FNV-1a, to notice damage.
+/// FNV-1a, to detect damage.
 uint64_t digest_of(std::string_view bytes) {
     uint64_t digest = 0xcbf29ce484222325;
     for (const char c : bytes) digest = (digest ^ static_cast<uint8_t>(c)) * 0x100000001b3;
@@ -43,7 +43,7 @@ public:
     }
 };
 
-/// Reads numbers until the bytes end; then everything is zero and `ok` false.
+/// Reads numbers; at the end of the bytes it returns zeros and sets `ok` to false.
 class Reader {
 public:
     explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -74,7 +74,7 @@ public:
         const Vec3 x = vector(), y = vector(), z = vector();
         return {x, y, z};
     }
-    /// How many things of so many bytes follow; more than there are bytes for is damage.
+    /// The number of items of this size that follow; more than fit into the bytes means damage.
     size_t count(size_t least_bytes) {
         const auto n = get<uint64_t>();
         if (n > bytes_.size() / least_bytes) ok = false;
@@ -223,7 +223,7 @@ std::vector<CutterSweep> get_sweeps(Reader& in) {
     return sweeps;
 }
 
-/// The axis that a direction is along, and which way; none for one that is along none.
+/// The axis and sign of a direction; empty if it is not along an axis.
 std::optional<std::pair<int, bool>> along_axis(const Vec3& direction) {
     for (int axis = 0; axis < 3; ++axis)
         if (std::abs(std::abs(direction[axis]) - 1.0) < 1e-12)

@@ -10,7 +10,7 @@
 
 namespace core {
 
-/// A stretch of a parameter: of a motion, of a line.
+/// A range of a parameter: of a motion or of a line.
 struct Range {
     double first, last;
 
@@ -18,7 +18,7 @@ struct Range {
     double clamp(double t) const { return std::clamp(t, first, last); }
 };
 
-/// A quantity that changes evenly: at + t * by.
+/// A linear function of time: at + t * by.
 struct Linear {
     double at, by;
 
@@ -41,7 +41,7 @@ struct Quadratic {
 };
 
 /// The zeros of q, lower one first, from its discriminant >= 0. Nothing cancels, so that a very
-/// small `a` does no harm; a zero that is not there (a = 0) comes out infinite.
+/// small `a` does no harm; a missing zero (a = 0) is infinite.
 inline Range zeros(const Quadratic& q, double discriminant) {
     const double far = -q.b - std::copysign(std::sqrt(discriminant), q.b);
     if (far == 0.0) return {0.0, 0.0};
@@ -58,7 +58,7 @@ inline Range where_not_positive(const Quadratic& q, Range range) {
     return {std::max(range.first, below.first), std::min(range.last, below.last)};
 }
 
-/// Least and greatest of two functions over the candidates that were tried.
+/// The least and the greatest value over the candidates.
 struct Extent {
     double least = infinity, greatest = -infinity;
 
@@ -90,8 +90,8 @@ double half_chord(double radius, double away) {
 }
 
 /// The extent of along(t) -+ half(t) over `range`, where half is the root of `under` and concave:
-/// ends and stationary points. Every candidate is a point of the swept volume, so nothing is ever
-/// taken too long.
+/// ends and stationary points. Every candidate is a point of the swept volume, so no segment is
+/// too long.
 template <typename Half>
 std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& under,
                                          const Half& half, Range range) {
@@ -115,7 +115,7 @@ std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& u
     return extent.interval();
 }
 
-/// What every case needs: the line's place relative to the moving origin, axis by axis.
+/// Common to all cases: the position of the line relative to the moving origin, axis by axis.
 struct LineMotion {
     std::array<Linear, 3> offset; // on `axis`: minus the origin's own place; else line minus origin
 
@@ -151,7 +151,8 @@ std::optional<Interval> ball_interval(const ElementSweep& sweep, int axis, doubl
     return extent_with_root(along, {-outside.a, -outside.b, -outside.c}, half, range);
 }
 
-/// A truncated cone met by a line along X or Y: at each moment a chord of the circle at its height.
+/// A truncated cone crossed by a line along X or Y: at each time a chord of the circle at its
+/// height.
 std::optional<Interval> cone_across(const ElementSweep& sweep, int axis, double u, double v) {
     const ProfileElement& e = sweep.element;
     const LineMotion line(sweep, axis, u, v);

@@ -10,14 +10,14 @@ Separation overlapping_at(const Vec3& point) {
     return {.lower = 0.0, .upper = 0.0, .point_a = point, .point_b = point, .time_a = 0.0};
 }
 
-/// A point that the shape holds at its first place.
+/// A point of the shape at its first place.
 Vec3 inner_point(const ConvexShape& shape) {
     const Vec3 place = shape.places[0].at;
     if (shape.core == ConvexShape::Core::points) return place + shape.points[0];
     return place + shape.orientation * Vec3(0.0, 0.0, 0.5 * (shape.cone.z0 + shape.cone.z1));
 }
 
-/// The shape of B as it is moved against A.
+/// The shape of B, moving in the frame of A.
 ConvexShape moved(const ConvexShape& shape, const Transform& a_from_b, const Vec3& sweep) {
     const Vec3 places[] = {Vec3(0.0), sweep};
     return swept(posed(shape, a_from_b), places);
@@ -28,7 +28,7 @@ Separation turned_round(Separation found) {
     return found;
 }
 
-/// Meshes whose surfaces never meet: inside one another at the start is inside all the way.
+/// Two meshes. If the surfaces never meet, a mesh inside the other at the start stays inside.
 Separation between_meshes(const SolidMesh& a, const SolidMesh& b, const Transform& a_from_b,
                           const Vec3& sweep, const SeparationGoal& goal) {
     for (const Vec3& p : b.shell_points)
@@ -68,7 +68,7 @@ Separation separation(const ExactBody& a, const ExactBody& b, const Transform& a
     const auto& mesh_b = std::get<SolidMesh>(b);
     if (const auto* mesh_a = std::get_if<SolidMesh>(&a))
         return between_meshes(*mesh_a, mesh_b, a_from_b, sweep, goal);
-    // A is convex: look at it from B, where it moves the other way.
+    // A is convex: in the frame of B it moves the opposite way.
     const Transform b_from_a = a_from_b.inverse();
     Separation found = separation(
         moved(std::get<ConvexShape>(a), b_from_a, -(b_from_a.rotation * sweep)), b, goal);

@@ -21,7 +21,7 @@ bool is_rigid(const Transform& t) {
 
 bool is_near(const Vec3& v) { return glm::length(v) <= farthest; }
 
-/// An engine that keeps a tree of each body.
+/// An engine with a tree for each body.
 template <typename Tree, Result<Tree> build(std::span<const Vec3>)>
 class TreeEngine final : public DistanceEngine {
 public:
@@ -56,7 +56,7 @@ private:
 
     std::string_view name_;
     double bytes_;
-    std::deque<Tree> bodies_; // stay where they are
+    std::deque<Tree> bodies_; // addresses are stable
 };
 
 } // namespace

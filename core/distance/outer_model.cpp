@@ -23,7 +23,7 @@ IntervalList grown(const LineView& list, double by) {
     return wider;
 }
 
-/// The cells across `axis` that a stretch along it meets, first .. last.
+/// The cells across `axis` that an interval along it overlaps, first .. last.
 struct CellRange {
     int first, last;
 };
@@ -35,7 +35,7 @@ CellRange cells_met(const OuterModel& model, int axis, const Interval& stretch) 
                                            model.grid.count(axis) - 1.0))
                + 1;
     };
-    // One more on either side: the estimate is rounded, and what a cell does not meet drops out.
+    // One more on either side: the estimate is rounded, and cells without overlap drop out.
     return {std::max(0, near(stretch.lower) - 1),
             std::min(cells_along(model, axis) - 1, near(stretch.upper) + 1)};
 }
@@ -49,7 +49,7 @@ void clip(const LineView& list, const Interval& cell, std::vector<Interval>& par
     }
 }
 
-/// Puts the boxes of a model together, column by column of its first family.
+/// Builds the boxes of a model, column by column of its first family.
 class BoxBuilder {
 public:
     explicit BoxBuilder(const OuterModel& model)
@@ -120,7 +120,7 @@ private:
     std::vector<Interval> across_u_, across_v_;
 };
 
-/// Whether one interval of a column holds the stretch, up to `error`.
+/// Whether one interval of a column contains the segment, up to `error`.
 bool holds(const LineView& column, const Interval& stretch, double error) {
     return std::any_of(column.begin(), column.end(), [&](const Interval& i) {
         return i.lower <= stretch.lower + error && i.upper >= stretch.upper - error;
@@ -188,22 +188,22 @@ bool holds(const OuterModel& model, const Dbm& lines, double error) {
 
 namespace {
 
-/// How far the rectangle is from 0 along one side.
+/// Distance of the interval from 0.
 double outside(double lower, double upper) { return std::max({lower, -upper, 0.0}); }
 
-/// The stretch between two places, also where rounding leaves one or less than one point of it.
+/// The closed interval between two positions, enlarged so that rounding never empties it.
 IntervalList closed(double lower, double upper) {
     return IntervalList({std::nextafter(std::min(lower, upper), -infinity),
                          std::nextafter(std::max(lower, upper), infinity)});
 }
 
-/// Half the chord of a circle, `across` away from its middle.
+/// Half the chord of a circle at the distance `across` from its centre.
 double half_chord(double radius, double across) {
     return std::sqrt(std::max(0.0, (radius - across) * (radius + across)));
 }
 
-/// The section of a piece gets thinner away from the axis, so what the rectangle's nearest point
-/// sees of it holds what all others see.
+/// A piece gets thinner away from its axis, so its heights at the point of the rectangle nearest to
+/// the axis contain those at all other points.
 IntervalList column_along_axis(const ProfileElement& e, const Square& s) {
     const double r = std::hypot(outside(s.x0, s.x1), outside(s.y0, s.y1));
     const double disc = std::max(e.r0, e.r1);
@@ -229,7 +229,7 @@ double widest(const ProfileElement& e, const Interval& z) {
     return std::max(at(z.lower), at(z.upper));
 }
 
-/// A column across the axis: `across` is how far it passes the axis, `z` its heights.
+/// A column across the axis: `across` is its distance from the axis, `z` its heights.
 IntervalList column_across_axis(const ProfileElement& e, double across, Interval z) {
     z.lower = std::max(z.lower, e.z0 - e.margin);
     z.upper = std::min(z.upper, e.z1 + e.margin);
@@ -263,7 +263,7 @@ IntervalList column_of(const Cylinder& c, int axis, const Square& s) {
     return column_of(ProfileElement{-half, c.radius, half, c.radius, 0.0}, axis, s);
 }
 
-/// A vector as seen when `axis` is turned to Z, the two next axes to X and Y.
+/// A vector with `axis` mapped to Z and the next two axes to X and Y.
 Vec3 turned(const Vec3& v, int axis) { return {v[u_axis(axis)], v[v_axis(axis)], v[axis]}; }
 
 Aabb turned(const Aabb& box, int axis) { return {turned(box.min, axis), turned(box.max, axis)}; }

@@ -18,19 +18,19 @@ public:
     PairComparison(const Transform& a_from_b, const PairGoal& goal)
         : motion_(a_from_b, goal), goal_(goal), moves_(motion_.moves()) {}
 
-    /// Whether the goal is reached whatever else there is.
+    /// Whether the goal is reached already.
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
 
-    /// Only what is nearer than this is still of interest.
+    /// Only pairs closer than this still matter.
     double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
 
-    /// The answer, if nothing nearer than worth() is left out.
+    /// The result, provided that no pair closer than worth() was skipped.
     ClosestPair finished() {
         best_.lower = done() ? 0.0 : std::max(worth(), 0.0);
         return best_;
     }
 
-    /// Whether two points, of a body that stands still, cannot be the nearest.
+    /// Whether two points of bodies at rest cannot be the nearest.
     bool is_no_nearer(const Vec3& of_a, const Vec3& of_b) const {
         if (moves_) return false;
         const Vec3 apart = of_a - motion_.start * of_b;
@@ -38,7 +38,7 @@ public:
     }
 
     void compare(const PointPlace& a, const PointPlace& b) {
-        if (a.tree == nullptr || b.tree == nullptr) return; // cut away
+        if (a.tree == nullptr || b.tree == nullptr) return; // no first pair
         const Vec3& p = a.position();
         const MovingPoint q = motion_.of(b.position());
         const Vec3 apart = p - q.at;
@@ -63,7 +63,7 @@ protected:
     const PairGoal& goal_;
     const bool moves_;
     ClosestPair best_;
-    // The nearest pair compared so far, also if beyond the limit.
+    // The nearest pair compared so far, even if beyond the limit.
     double near_squared_ = infinity;
     Vec3 near_apart_ = Vec3(0.0);
     PointPlace near_a_, near_b_;
@@ -72,9 +72,9 @@ protected:
 namespace {
 
 constexpr uint32_t lane_width = PointTree::width;
-constexpr size_t beam_width = 2; // pairs followed down to the leaves before the search proper
+constexpr size_t beam_width = 2; // pairs followed down to the leaves before the main search
 
-/// The square of a length in single precision, not less than it was.
+/// The square of a length in single precision, rounded up.
 float squared_above(double length) {
     const double squared = length * length * (1.0 + 2e-6) + 1e-37;
     return squared < 1e38 ? static_cast<float>(squared) : std::numeric_limits<float>::infinity();
@@ -88,7 +88,7 @@ struct BoxPair {
     uint32_t a, b;
 };
 
-/// What a search fills; kept by each thread so that the next search need not allocate.
+/// Buffers of a search, one set per thread, so that searches need not allocate.
 struct SearchBuffers {
     SearchSide a, b;
     std::vector<BoxPair> stack, beam;
@@ -128,8 +128,8 @@ public:
     }
 
 private:
-    /// What double precision may add to the distances of points at this pose and at another: some
-    /// ten operations; squares of less than 1e-150 mm have lost their digits.
+    /// Bound of the rounding of point distances in double precision at this pose and at another:
+    /// some ten operations; squares below 1e-150 mm have lost their digits.
     double rounding(const Transform& other) const {
         const auto reach = [](const PointTree& body) {
             const PointTree::Node& root = body.nodes[0];
@@ -141,7 +141,7 @@ private:
         return 1e-150 + 64.0 * std::numeric_limits<double>::epsilon() * lengths;
     }
 
-    /// Whether balls round the bodies say that nothing is near.
+    /// Whether the bounding balls show that nothing is within the limit.
     bool is_beyond_limit() const {
         if (goal_.limit == infinity || motion_.end) return false;
         const PointTree::Node& a = body_a_.nodes[0];
@@ -154,7 +154,7 @@ private:
 
     // --- the frame ---
 
-    /// Begins afresh at the roots, in the best frame known by now.
+    /// Restarts at the roots in the best frame known so far.
     void start() {
         frame_ = next_frame();
         sweep_ = single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
@@ -171,8 +171,8 @@ private:
             compare_boxes(a_, 0, b_, static_cast<uint32_t>(std::countr_zero(left)));
     }
 
-    /// Across the gap of the nearest pair so far: along the normals of the patches it lies on,
-    /// which tell better than the pair itself where the surfaces face each other.
+    /// The direction across the gap of the nearest pair so far: the normals of its patches, which
+    /// are more reliable than the pair itself.
     SearchFrame next_frame() const {
         const Vec3& middle_of_a = body_a_.nodes[0].origin;
         const MovingPoint middle_of_b = motion_.of(body_b_.nodes[0].origin);
@@ -208,8 +208,8 @@ private:
         }
     }
 
-    /// Follows the pairs whose middles are nearest down to the leaves: the search proper then
-    /// begins with a good pair, and in a good frame.
+    /// Descends to the leaves along the pairs with the nearest centres, so that the main search
+    /// starts with a good pair and in a good frame.
     void follow_the_middles() {
         by_middles_ = true;
         start();
@@ -279,14 +279,14 @@ private:
 
     /// The points of B that come near a box of A.
     uint32_t rows_near(const VisitedLeaf& b, FrameBox box, float limit) const {
-        for (size_t k = 0; k < 3; ++k) { // B's points are where they start
+        for (size_t k = 0; k < 3; ++k) { // B's points are at their start
             box.lower[k] -= std::max(sweep_[k], 0.0F);
             box.upper[k] -= std::min(sweep_[k], 0.0F);
         }
         return kernels_.near_box(b.points, box, limit);
     }
 
-    /// No pair of points that is farther apart than this in the frame can be of interest.
+    /// Pairs of points farther apart than this in the frame do not matter.
     float limit_for(const VisitedLeaf& a, const VisitedLeaf& b) const {
         const double worth_of = by_middles_ ? std::sqrt(near_squared_) : std::max(worth(), 0.0);
         return squared_above(worth_of + 8.0 * static_cast<double>(a.margin + b.margin));
@@ -296,7 +296,7 @@ private:
         const Vec3* const of_a = &a.tree->points[a.leaf->first];
         const Vec3* const of_b = &b.tree->points[b.leaf->first];
         for_near(a, b, rows, limit, [&](uint32_t i, uint32_t j) {
-            // Most pairs end here: where faces lie parallel, all are equally near.
+            // Most pairs end here: between parallel faces all are equally near.
             if (!is_no_nearer(of_a[i], of_b[j])) compare(place_in(a, i), place_in(b, j));
         });
     }

@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// A point on its way into the tree. Single precision decides only who goes where.
+/// A point during the build. Single precision only affects the partition.
 struct Loose {
     std::array<float, 3> at;
     uint32_t index;
@@ -30,7 +30,7 @@ std::array<float, 3> widest_direction(Group group) {
     const double xx = square[0] - sum[0] * sum[0] / n, yy = square[1] - sum[1] * sum[1] / n,
                  zz = square[2] - sum[2] * sum[2] / n, xy = square[3] - sum[0] * sum[1] / n,
                  yz = square[4] - sum[1] * sum[2] / n, zx = square[5] - sum[2] * sum[0] / n;
-    // A few steps of power iteration from the axis of largest spread; any direction would do.
+    // A few steps of power iteration from the axis of largest spread; any direction will do.
     Vec3 d = xx >= yy && xx >= zz ? Vec3(xx, xy, zx)
              : yy >= zz           ? Vec3(xy, yy, yz)
                                   : Vec3(zx, yz, zz);
@@ -110,7 +110,7 @@ private:
     uint32_t add_node(size_t first, size_t last) {
         const auto id = static_cast<uint32_t>(tree_.nodes.size());
         tree_.nodes.emplace_back();
-        // As many children as are needed when all of them but the last are full.
+        // As many children as needed if all but the last are full.
         const size_t leaves = leaves_for(last - first);
         size_t below = 1; // leaves that a child holds at most
         while (below * PointTree::width < leaves) below *= PointTree::width;
@@ -253,7 +253,7 @@ Axes principal_axes(std::span<const Vec3> points) {
     return {first, glm::cross(n, first), n};
 }
 
-/// The axes turned about the last one so that the first lies as the frame does.
+/// The axes rotated about the last one to align the first with the frame.
 Axes squared_up(const Axes& axes) {
     const Vec3 n = axes[2];
     const Vec3 a = glm::abs(n);

@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// The part of `v` at right angles to the unit vector `u`, of unit length; zero if hardly any.
+/// The component of `v` orthogonal to the unit vector `u`, normalised; zero if it is tiny.
 Vec3 beside(const Vec3& v, const Vec3& u) {
     const double length = glm::length(v);
     if (!(length > 0.0)) return Vec3(0.0);
@@ -16,7 +16,7 @@ Vec3 beside(const Vec3& v, const Vec3& u) {
     return glm::length(part) > 1e-3 ? glm::normalize(part) : Vec3(0.0);
 }
 
-/// Some direction at right angles to `u`.
+/// Any direction orthogonal to `u`.
 Vec3 any_beside(const Vec3& u) {
     const Vec3 a = glm::abs(u);
     const int least = a.x <= a.y && a.x <= a.z ? 0 : a.y <= a.z ? 1 : 2;
@@ -41,11 +41,11 @@ namespace {
 
 constexpr uint32_t lane_count = PointTree::width;
 
-/// The single precision that the frame's coordinates are off by, per length: direction, products
-/// and sums take less than ten roundings.
+/// Relative rounding of coordinates in the frame in single precision: direction, products and sums
+/// take less than ten roundings.
 constexpr float rounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-/// The boxes round two rows of boxes.
+/// Extends boxes by other boxes, lane by lane.
 void extend(BoxLanes& boxes, const BoxLanes& by) {
     for (size_t k = 0; k < 3; ++k)
         for (size_t lane = 0; lane < lane_count; ++lane) {

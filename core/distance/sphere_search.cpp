@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    /// What rounding can add to a gap computed from radii and mapped centres: some 10 operations on
+    /// Bound of the rounding of a gap computed from radii and mapped centres: some 10 operations on
     /// numbers up to the sum of all these lengths, and B's spheres becoming larger where its
     /// transform is not quite a rotation. Squares of less than 1e-150 mm have lost their digits.
     static double rounding_of(const Node& a, const Node& b, const StraightMotion& motion) {
@@ -139,15 +139,15 @@ private:
 
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
 
-    /// Only what is nearer than this is still of interest.
+    /// Only pairs closer than this still matter.
     double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
 
     double apart(const Vec3& a, const MovingPoint& b) const {
         return moves_ ? swept_distance(a - b.at, b.sweep) : glm::distance(a, b.at);
     }
 
-    /// A sphere whose points go straight from one pose to another stays a sphere of its size: half
-    /// way, the points are nearer together, if anything.
+    /// If the points of a sphere move straight from one pose to another, they stay within a sphere
+    /// of the same size: on the way the points are closer together, if anything.
     Pair tested(const Node* a, const Node* b, const MovingPoint& b_centre) {
         ++best_.node_tests;
         const double gap = apart(a->centre, b_centre);

@@ -10,18 +10,18 @@
 namespace core {
 namespace {
 
-/// Bounds nearer together than this are not told apart, mm: what is so little nearer than the best
-/// so far is passed over, and its bound remembered.
+/// Differences below this are ignored, mm: matter closer than the best so far by less is skipped,
+/// and its bound is kept.
 constexpr double same = 1e-7;
 
-/// Up to sixteen boxes that may be nearer than a limit.
+/// Up to sixteen boxes that may be within a limit.
 class NearBoxes {
 public:
     void add(double bound, size_t index, double limit) {
         if (bound < limit) near_[count_++] = {bound, index};
     }
 
-    /// Runs `act` over those that still may be, nearest first.
+    /// Calls `act` for those still within the limit, nearest first.
     template <typename Limit, typename Act>
     void in_order(const Limit& limit, const Act& act) {
         std::sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count_),
@@ -121,8 +121,7 @@ private:
         return best;
     }
 
-    /// Runs `act` over the tiles with matter that may be nearer than `limit` says, about nearest
-    /// first.
+    /// Calls `act` for the tiles with matter that may be within `limit`, roughly nearest first.
     template <typename Limit, typename Act>
     void for_near_tiles(const TileBoxes& tiles, int axis, const Limit& limit, const Act& act) {
         if (!tiles.above.empty())
@@ -158,7 +157,7 @@ private:
         return std::min({goal_.limit, upper_.upper, promised_.bound}) - same;
     }
 
-    /// Runs `act` over the ranges of lines in a tile that may come nearer than `limit` says.
+    /// Calls `act` for the ranges of lines in a tile that may be within `limit`.
     template <typename Limit, typename Act>
     void for_blocks(const ScanLines& lines, const TileBoxes& tiles, size_t tile, const Limit& limit,
                     const Act& act) {
@@ -193,13 +192,13 @@ private:
         if (line_limit() < before) result_.line = id;
     }
 
-    /// Matter that is certainly there, from `a` to `b`.
+    /// Matter known to exist, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
         const Aabb matter{glm::min(a, b), glm::max(a, b)};
         const double bound = box_bound(matter, line_limit());
         if (bound >= line_limit()) return;
         if (is_exact_)
-            promised_ = {bound, matter}; // the witness is found once, at the end
+            promised_ = {bound, matter}; // the witness is computed once, at the end
         else
             measure(matter, line_limit());
     }
@@ -209,7 +208,7 @@ private:
         if (found.upper < upper_.upper) upper_ = found;
     }
 
-    /// Measures the nearest line of which only a bound was taken.
+    /// Measures the nearest line for which only a bound was computed.
     void keep_promise() {
         if (promised_.bound == infinity) return;
         const Promise line = std::exchange(promised_, {});
@@ -217,9 +216,8 @@ private:
     }
 
     void search_columns() {
-        lower_ = std::min(goal_.limit, upper_.upper); // a bound above that would say nothing
-        // Ties are passed over, and the bound lowered by what they may be nearer; none at the
-        // limit.
+        lower_ = std::min(goal_.limit, upper_.upper); // a larger bound is useless
+        // Ties are skipped, and the bound is lowered by the tolerance; not at the limit.
         const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
         for_near_tiles(stock_.column_boxes, 2, limit, [&](size_t tile) {
             for_columns(tile, limit, [&](int i, int j, const Square& square) {
@@ -231,7 +229,7 @@ private:
         lower_ = std::max(0.0, limit());
     }
 
-    /// Matter by the nearest column, for the next search to begin with.
+    /// Matter near the nearest column, as the start of the next search.
     void search_lines_of_nearest_cell() {
         const auto [i, j] = nearest_cell_;
         const ScanLines& lines = stock_.lines.families[2];
@@ -267,7 +265,7 @@ private:
     }
 
     void refine_columns() {
-        // Every column that is not looked at here, or not to its end, is at least this far away.
+        // Every column that is skipped here, wholly or in part, is at least this far away.
         refined_lower_ = goal_.threshold + same;
         const auto near_enough = [&] { return goal_.threshold + same; };
         for_near_tiles(stock_.column_boxes, 2, near_enough, [&](size_t tile) {
@@ -280,7 +278,7 @@ private:
 
     bool decided_near() const { return upper_.upper < goal_.threshold; }
 
-    /// Divides a square until its bound reaches the threshold; what stays below it is kept.
+    /// Divides a square until its bound reaches the threshold; the least remaining bound is kept.
     void refine(int i, int j, const Square& square, const LineView& column) {
         const double bound = bound_of(square, column, goal_.threshold + same);
         const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
@@ -308,8 +306,8 @@ private:
     StockGoal goal_;
     std::vector<ShapeOutline> outlines_;
     Aabb whole_;           // round all of them
-    bool is_exact_ = true; // what outlines say is the distance, but for rounding
-    /// Matter on a line that is this far away, as outlines say.
+    bool is_exact_ = true; // outline distances are exact up to rounding
+    /// Matter on a line at this distance according to the outlines.
     struct Promise {
         double bound = infinity;
         Aabb matter;

@@ -11,7 +11,7 @@ struct Point2 {
     double r = 0.0, z = 0.0;
 };
 
-/// Two points of the half plane, on the piece and on the box as the axis sees it.
+/// Two points of the half plane, on the piece and on the box.
 struct Pair2 {
     Point2 piece, box;
     double square = infinity; // of their distance
@@ -30,14 +30,14 @@ Point2 nearest_on(const Point2& a, const Point2& b, const Point2& p) {
     return {a.r + t * r, a.z + t * z};
 }
 
-/// The piece at a height above its origin, and what the axis sees of a box: all places no nearer
-/// than `apart`, from `bottom` up to `top`.
+/// The piece at a height above its origin, and a box in the half plane: all points at least `apart`
+/// from the axis, from `bottom` up to `top`.
 struct HalfPlane {
     Point2 low, high; // the rims of the piece
     double apart = 0.0, bottom = 0.0, top = 0.0;
 };
 
-/// A straight wall against a wall, face against face, or rim against edge.
+/// Wall against wall, face against face, or rim against edge.
 Pair2 nearest_to_cylinder(const HalfPlane& h) {
     Pair2 near;
     near.box.r = h.apart;
@@ -77,8 +77,8 @@ Pair2 nearest_to_cone(const HalfPlane& h) {
     return best;
 }
 
-/// The distance at one moment, and a slope with which it nowhere falls faster: the distance is a
-/// convex function of time, and above this tangent everywhere.
+/// The distance at one time, and its slope: the distance is a convex function of time and lies
+/// above this tangent everywhere.
 struct Moment {
     double time = 0.0;
     double distance = 0.0; // of the piece without its margin
@@ -130,7 +130,7 @@ public:
         return found;
     }
 
-    /// The nearest moment, and a lower bound of the distance over all.
+    /// The time of least distance, and a lower bound of the distance over all times.
     std::pair<Moment, double> nearest(const SeparationGoal& goal) const {
         const double limit = goal.limit + sweep_.element.margin;
         Moment before = at(0.0);
@@ -138,7 +138,7 @@ public:
         if (before.slope >= 0.0 || lower >= limit) return {before, std::max(0.0, lower)};
         Moment after = at(1.0);
         if (after.slope <= 0.0) return {after, after.distance};
-        // Between two moments the tangents meet at the lowest that the distance can be.
+        // Between two times, the intersection of the tangents is a lower bound.
         constexpr int max_iterations = 64;
         for (int i = 0; i < max_iterations; ++i) {
             const Moment& best = before.distance <= after.distance ? before : after;
@@ -178,7 +178,7 @@ double distance_bound(const UprightSweep& sweep, const Aabb& box, double limit) 
 
 namespace {
 
-/// The upright cylinder round points, about the origin's axis.
+/// The upright cylinder around points, about the axis through the origin.
 ProfileElement cylinder_round(std::span<const Vec3> points, double margin) {
     ProfileElement element{.z0 = infinity, .z1 = -infinity, .margin = margin};
     for (const Vec3& point : points) {
