@@ -20,7 +20,7 @@ void take_tool_zero(core::Event& event) {
 /// stop the program there. Of others the builder decides.
 bool comes_after_motion(int code) { return code == 0 || code == 1 || code == 60; }
 
-bool is_of_line(const core::FixtureMove& move, const gcode::BlockResult& block) {
+bool is_of_line(const core::FixtureMove& move, const gcode::BlockCommands& block) {
     return move.line && block.file.empty() && block.line == *move.line;
 }
 
@@ -29,7 +29,7 @@ struct FixtureEvents {
     std::vector<core::Event> before, after;
 };
 
-FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockResult& block) {
+FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockCommands& block) {
     FixtureEvents events;
     for (const size_t i : fixture_moves_of(setup, block)) {
         const core::FixtureMove& move = setup.fixture_moves[i];
@@ -51,7 +51,7 @@ void take_any_speed(core::Event& event) {
 
 } // namespace
 
-std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::BlockResult& block) {
+std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::BlockCommands& block) {
     std::vector<size_t> moves;
     for (size_t i = 0; i < setup.fixture_moves.size(); ++i) {
         const core::FixtureMove& move = setup.fixture_moves[i];
@@ -61,7 +61,7 @@ std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::Bloc
     return moves;
 }
 
-std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockResult& block,
+std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockCommands& block,
                                    gcode::Lowering& lowering, bool speed_by_hand) {
     const FixtureEvents fixtures = fixture_events(setup, block);
     std::vector<core::Event> events = fixtures.before;

@@ -33,7 +33,7 @@ public:
 
     /// Runs the block that the program ran under a set-up. Does nothing once the corrected program
     /// has taken another branch, or the set-up was replaced.
-    void follow(const gcode::BlockResult& real, const core::Setup& setup);
+    void follow(const gcode::BlockCommands& real, const core::Setup& setup);
 
     /// Writes the findings into the mismatch.
     void end(LengthMismatch& mismatch);
@@ -79,7 +79,7 @@ void CorrectedRun::apply_length() {
     gcode::change_offsets(control_.modal, corrected);
 }
 
-void CorrectedRun::follow(const gcode::BlockResult& real, const core::Setup& setup) {
+void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& setup) {
     is_lost_ = is_lost_ || &setup != &setup_;
     if (is_lost_) return;
     apply_length();
@@ -87,7 +87,7 @@ void CorrectedRun::follow(const gcode::BlockResult& real, const core::Setup& set
     is_lost_ = !next || !*next || (*next)->block != real.block || (*next)->line != real.line
                || (*next)->file != real.file;
     if (is_lost_) return;
-    const gcode::BlockResult& block = **next;
+    const gcode::BlockCommands& block = **next;
     const std::vector<core::Event> events = events_of(setup_, block, lowering_, speed_by_hand_);
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
     core::BlockResult result = core::run_block(setup_, of_block, machine_);
@@ -145,7 +145,7 @@ core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning
 std::optional<std::vector<core::Event>>
 first_events(const std::function<void(const BlockVisit&)>& show) {
     std::optional<std::vector<core::Event>> found;
-    show([&](const gcode::BlockResult&, std::span<const core::Event> events) {
+    show([&](const gcode::BlockCommands&, std::span<const core::Event> events) {
         found.emplace(events.begin(), events.end());
         return false;
     });
@@ -158,7 +158,7 @@ BlockRunner::BlockRunner(const PreparedCheck& check)
       interpreter_(*check.library, check.file.environment),
       next_(gcode::initial_state(check.file.environment)) {}
 
-std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
+std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& block,
                                                 const gcode::Lowering& lowering) const {
     if (lowering.moved_tilted)
         return core::Error{core::ErrorCode::unsupported,
@@ -176,7 +176,7 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockResult& block,
                        std::string(block.file)};
 }
 
-void BlockRunner::add_warnings(const gcode::BlockResult& block, const RunState& state,
+void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState& state,
                                std::vector<core::Finding>& findings) const {
     for (const gcode::Warning& warning : block.warnings) {
         // An offset that the set-up states is set, even if it is all zeros.
@@ -200,7 +200,7 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
         std::swap(state.control, next_);
         return std::nullopt;
     }
-    const gcode::BlockResult& block = **read;
+    const gcode::BlockCommands& block = **read;
     gcode::Lowering lowering = state.lowering;
     const std::vector<core::Event> events =
         events_of(*setup_, block, lowering, check_.file.speed_by_hand);
@@ -288,7 +288,7 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
       run_(check.run),
       runner_(check),
       state_(start_of_program(check.file.environment, run_.setup, std::move(*check.machine))) {
-    runner_.before_block = [this](const gcode::BlockResult& block, const RunState& before) {
+    runner_.before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
         follow_correction(block, before);
     };
 }
@@ -361,7 +361,7 @@ void ProgramRunner::stop(core::Error error) {
     run_.stopped = std::move(error);
 }
 
-void ProgramRunner::follow_correction(const gcode::BlockResult& block, const RunState& before) {
+void ProgramRunner::follow_correction(const gcode::BlockCommands& block, const RunState& before) {
     const LengthWatch& lengths = before.lengths;
     const bool is_first = lengths.is_open && lengths.mismatches.back().first == block.block;
     if (!lengths.is_open || is_first) end_correction();

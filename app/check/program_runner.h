@@ -11,7 +11,7 @@
 #include "app/check/run_state.h"
 
 namespace gcode {
-struct BlockResult;
+struct BlockCommands;
 }
 
 namespace app {
@@ -27,7 +27,7 @@ core::Error named(core::Error error, const std::string& file);
 core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning);
 
 /// Receives a block and its events. Returns false to see no more blocks.
-using BlockVisit = std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>;
+using BlockVisit = std::function<bool(const gcode::BlockCommands&, std::span<const core::Event>)>;
 
 /// The events of the first block that `show` passes to its visitor; empty if there is none.
 std::optional<std::vector<core::Event>>
@@ -48,7 +48,7 @@ public:
 
     // Called after the control has read a block and before anything moves, with the state before
     // the block.
-    std::function<void(const gcode::BlockResult&, const RunState&)> before_block;
+    std::function<void(const gcode::BlockCommands&, const RunState&)> before_block;
     // Judges a block in place of the distance core; empty: clearances are measured.
     std::function<core::Result<core::Judgement>(std::span<const core::Event>,
                                                 const core::SimulatorState&)>
@@ -71,10 +71,10 @@ public:
                      const BlockVisit& visit);
 
 private:
-    std::optional<core::Error> refusal(const gcode::BlockResult& block,
+    std::optional<core::Error> refusal(const gcode::BlockCommands& block,
                                        const gcode::Lowering& lowering) const;
     /// Adds the findings for the interpreter's warnings.
-    void add_warnings(const gcode::BlockResult& block, const RunState& state,
+    void add_warnings(const gcode::BlockCommands& block, const RunState& state,
                       std::vector<core::Finding>& findings) const;
 
     const PreparedCheck& check_;
@@ -136,7 +136,7 @@ public:
 
 private:
     /// Runs the block of a length mismatch with the right length as well.
-    void follow_correction(const gcode::BlockResult& block, const RunState& before);
+    void follow_correction(const gcode::BlockCommands& block, const RunState& before);
     void end_correction();
     /// Ends the run at an error. An alarm of the control becomes a block and, if a rule names it, a
     /// finding.

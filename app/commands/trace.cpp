@@ -68,7 +68,7 @@ struct Tracing {
         print_note(log.line_for(warning, file.empty() ? options.program : file));
     }
 
-    core::Result<void> add(const gcode::BlockResult& block) {
+    core::Result<void> add(const gcode::BlockCommands& block) {
         for (const gcode::Warning& warning : block.warnings) warn(warning, block.file);
         if (options.format == "jsonl")
             append_trace_json(block, text);

@@ -289,7 +289,7 @@ void release(Contour& contour) {
         PendingBlock& block = contour.pending.front();
         const auto waits = [](const PendingBlock::Slot& slot) { return slot.is_waiting; };
         if (std::any_of(block.slots.begin(), block.slots.end(), waits)) return;
-        BlockResult result = std::move(block.result);
+        BlockCommands result = std::move(block.result);
         std::vector<CanonicalCommand> commands;
         std::vector<uint32_t> columns;
         for (size_t i = 0; i < block.slots.size(); ++i) {
@@ -367,7 +367,7 @@ FlatPoint tip_of(int orientation, Plane plane) {
 }
 
 core::Result<void> begin_path(Contour& contour, const ModalState& before, const ModalState& after,
-                              const BlockResult& block) {
+                              const BlockCommands& block) {
     contour.plane = after.plane;
     const auto at = flat(before.position, after.plane);
     if (!at)
@@ -383,7 +383,7 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
     return {};
 }
 
-core::Result<void> take_commands(Contour& contour, const BlockResult& block,
+core::Result<void> take_commands(Contour& contour, const BlockCommands& block,
                                  const ModalState& before) {
     contour.pending.push_back({block, std::vector<PendingBlock::Slot>(block.commands.size())});
     Position place = before.position;
@@ -401,7 +401,7 @@ core::Result<void> take_commands(Contour& contour, const BlockResult& block,
     return {};
 }
 
-core::Result<void> take_with_corners(Contour& contour, const BlockResult& block,
+core::Result<void> take_with_corners(Contour& contour, const BlockCommands& block,
                                      const ModalState& before, const ModalState& after) {
     const bool on = after.compensation != Side::none && after.compensation_radius != 0.0;
     const bool changed = before.compensation != after.compensation
@@ -443,8 +443,8 @@ bool Contour::operator==(const Contour& other) const {
            && failure.has_value() == other.failure.has_value();
 }
 
-core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
-                              const ModalState& after) {
+core::Result<void> take_block(Contour& contour, const BlockCommands& block,
+                              const ModalState& before, const ModalState& after) {
     if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
     FEELER_TRY(const std::vector<ExecutedBlock> ready,
                take_for_corners(contour.corners, {block, before, after}));

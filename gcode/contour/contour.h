@@ -24,7 +24,7 @@ struct CornerWord {
 
 /// An executed block with the modal state before and after it.
 struct ExecutedBlock {
-    BlockResult result;
+    BlockCommands result;
     ModalState before, after;
 };
 
@@ -67,7 +67,7 @@ struct PendingBlock {
         bool is_waiting = false;
     };
 
-    BlockResult result;
+    BlockCommands result;
     std::vector<Slot> slots; // one for each command
 };
 
@@ -81,7 +81,7 @@ struct Contour {
     bool pauses = false; // the block being executed takes the tool away from the contour
     ContourStyle style = ContourStyle::rs274;
     std::deque<PendingBlock> pending{};
-    std::deque<BlockResult> ready{};
+    std::deque<BlockCommands> ready{};
     size_t first_pending = 0;             // number of blocks before the pending ones
     std::optional<core::Error> failure{}; // reported after the ready blocks
 
@@ -94,8 +94,8 @@ struct Contour {
 /// Takes an executed block with the state before and after it.
 ///
 /// Errors: those of the corners, of add_move and of end_compensation. The block is not taken then.
-core::Result<void> take_block(Contour& contour, const BlockResult& block, const ModalState& before,
-                              const ModalState& after);
+core::Result<void> take_block(Contour& contour, const BlockCommands& block,
+                              const ModalState& before, const ModalState& after);
 
 /// Ends the program: all waiting moves become final as they are.
 ///

@@ -49,7 +49,7 @@ struct Tracing {
 
     core::Result<void> enter();
     core::Result<void> follow();
-    core::Result<void> take(const BlockResult& block, const Position& before);
+    core::Result<void> take(const BlockCommands& block, const Position& before);
 };
 
 core::Result<void> Tracing::enter() {
@@ -61,7 +61,7 @@ core::Result<void> Tracing::enter() {
         !parsed)
         return parsed;
     call.flow.span = label.span;
-    BlockResult unused;
+    BlockCommands unused;
     state.modal.motion.reset();
     state.modal.cycle.reset();
     return run_flow(
@@ -69,7 +69,7 @@ core::Result<void> Tracing::enter() {
 }
 
 /// A block of the contour: its single motion and the corner after it.
-core::Result<void> Tracing::take(const BlockResult& block, const Position& before) {
+core::Result<void> Tracing::take(const BlockCommands& block, const Position& before) {
     for (size_t i = 0; i < block.commands.size(); ++i) {
         const auto* arc = std::get_if<ArcFeed>(&block.commands[i]);
         const auto* feed = std::get_if<StraightFeed>(&block.commands[i]);
@@ -109,7 +109,7 @@ core::Result<void> Tracing::follow() {
         place[fillet_axis].reset();
         place[chamfer_axis].reset();
         const Position before = place;
-        FEELER_TRY(const BlockResult* const block, interpreter.next(state));
+        FEELER_TRY(const BlockCommands* const block, interpreter.next(state));
         if (!block) break;
         for (const Warning& warning : block->warnings) execution.result.warnings.push_back(warning);
         if (auto taken = take(*block, before); !taken) return taken;

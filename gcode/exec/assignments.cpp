@@ -140,7 +140,7 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos,
 }
 
 core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
-                              Value value, core::SourceSpan where, BlockResult& result) {
+                              Value value, core::SourceSpan where, BlockCommands& result) {
     constexpr double alarm = 3000.0, message_stop = 3006.0;
     if (!remembers_words(dialect.system_parameters)) return {};
     const std::string text =
@@ -161,7 +161,7 @@ core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double
     return {};
 }
 
-void note_clock(const Block& block, InterpreterState& state, BlockResult& result) {
+void note_clock(const Block& block, InterpreterState& state, BlockCommands& result) {
     const auto& steps = block.pool.instructions;
     for (size_t i = 0; !state.said_time && i + 1 < steps.size(); ++i) {
         const bool reads = steps[i].operation == Operation::number
@@ -178,7 +178,7 @@ void note_clock(const Block& block, InterpreterState& state, BlockResult& result
     }
 }
 
-void announce_offsets(const Offsets& before, const ModalState& modal, BlockResult& result) {
+void announce_offsets(const Offsets& before, const ModalState& modal, BlockCommands& result) {
     if (before == modal.offsets) return;
     if (before.tool != modal.offsets.tool) {
         result.commands.emplace_back(UseToolLengthOffset{modal.length_number, modal.offsets.tool,

@@ -23,7 +23,7 @@ struct Assigning {
     ProgramParameters& parameters;
     std::vector<AssignmentUndo>& undos; // gets what was set, in order
     std::vector<Value>& values;         // room to work in
-    BlockResult& result;
+    BlockCommands& result;
     bool inch; // what lengths are in
 };
 
@@ -41,12 +41,12 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramPara
 ///
 /// Errors: invalid_value for an alarm: the control goes no further.
 core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
-                              Value value, core::SourceSpan where, BlockResult& result);
+                              Value value, core::SourceSpan where, BlockCommands& result);
 
 /// Says once that a program reads a clock, which stands still here.
-void note_clock(const Block& block, InterpreterState& state, BlockResult& result);
+void note_clock(const Block& block, InterpreterState& state, BlockCommands& result);
 
 /// Emits what changed in the offsets since a block began.
-void announce_offsets(const Offsets& before, const ModalState& modal, BlockResult& result);
+void announce_offsets(const Offsets& before, const ModalState& modal, BlockCommands& result);
 
 } // namespace gcode

@@ -18,7 +18,7 @@ struct Execution {
     const Block& block;
     const Statement& statement;
     InterpreterState& state;
-    BlockResult& result;
+    BlockCommands& result;
     uint32_t column = 1; // of the word that is being carried out
 
     ModalState& modal() { return state.modal; }

@@ -13,7 +13,7 @@ struct FlowStep {
     const Dialect& dialect;
     const Block& block;
     InterpreterState& state;
-    BlockResult& result;
+    BlockCommands& result;
 };
 
 /// Carries out a flow statement: sets the line that is run next, calls and returns.

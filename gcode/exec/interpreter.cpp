@@ -51,7 +51,7 @@ void restore_calls(InterpreterState& state, const BeforeBlock& before); // if th
 
 /// Warns once of a program that writes some lengths with a decimal point and some without one: on
 /// controls that count their smallest steps the latter are a thousandth of what they look like.
-void note_points(const Block& block, InterpreterState& state, BlockResult& result);
+void note_points(const Block& block, InterpreterState& state, BlockCommands& result);
 
 /// Makes lengths and angles without a decimal point what a control that counts its smallest steps
 /// reads: 0.001 mm, 0.0001 inch, 0.001 degrees. F, P and counts are left as they are.
@@ -82,7 +82,7 @@ struct Interpreter::Scratch {
     const LanguageFunctions& language = functions_of(dialect.language);
     Block block{};
     Statement statement{};
-    BlockResult result{};
+    BlockCommands result{};
     std::string line_text{};
     BeforeBlock before{};
     std::vector<AssignmentUndo> undos{};
@@ -302,7 +302,7 @@ void Interpreter::Scratch::place_in_lines() {
 namespace {
 
 /// Gives a block that waits for later ones a text of its own.
-void keep_text(BlockResult& result) {
+void keep_text(BlockCommands& result) {
     result.own_text = std::make_shared<const std::string>(result.text);
     result.text = *result.own_text;
 }
@@ -314,7 +314,7 @@ Interpreter::Interpreter(ProgramLibrary& library, const Environment& environment
 
 Interpreter::~Interpreter() = default;
 
-core::Result<const BlockResult*> Interpreter::next(InterpreterState& state) {
+core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
     while (true) {
         Scratch& scratch = scratch_->speaking(state);
         if (!state.contour->ready.empty()) {
@@ -506,7 +506,7 @@ bool is_cycle(double code) { return code >= 73.0 && code <= 89.0 && code != 80.0
 
 } // namespace
 
-void note_points(const Block& block, InterpreterState& state, BlockResult& result) {
+void note_points(const Block& block, InterpreterState& state, BlockCommands& result) {
     DecimalPoints& points = state.points;
     if (points.said || has_other_meanings(block)) return;
     for (const Word& word : block.words) {

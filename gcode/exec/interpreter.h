@@ -96,7 +96,7 @@ public:
     ///         that never end, as far as that can be seen. Nothing has changed then: `state` is as
     ///         before the block at fault.
     /// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
-    core::Result<const BlockResult*> next(InterpreterState& state);
+    core::Result<const BlockCommands*> next(InterpreterState& state);
 
 private:
     struct Scratch;
@@ -110,7 +110,7 @@ std::optional<Warning> ending_warning(const Environment& environment,
 /// A whole program, which is not read in windows, up to its end or its first error.
 struct Run {
     std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
-    std::vector<BlockResult> blocks;
+    std::vector<BlockCommands> blocks;
     std::optional<Warning> ending; // as ending_warning
     std::optional<core::Error> error;
     InterpreterState state; // after the last good block

@@ -353,7 +353,7 @@ void announce_overrides(const ModalState& before, const ModalState& after, auto 
 
 } // namespace
 
-void announce_modes(BlockResult& result, uint32_t column, const ModalState& before,
+void announce_modes(BlockCommands& result, uint32_t column, const ModalState& before,
                     const ModalState& after) {
     const auto say = [&](CanonicalCommand command) {
         result.commands.push_back(std::move(command));

@@ -16,7 +16,7 @@ void restore_modes(InterpreterState& state, const ModalState& saved);
 std::vector<std::string> losses_of_restoring(const ModalState& now, const ModalState& saved);
 
 /// Says by commands what restored modes mean for the machine.
-void announce_modes(BlockResult& result, uint32_t column, const ModalState& before,
+void announce_modes(BlockCommands& result, uint32_t column, const ModalState& before,
                     const ModalState& after);
 
 /// The G code that is active in one of Fanuc's groups of modal codes, as #4001 and on show it; 54.1

@@ -61,7 +61,7 @@ bool moves_quickly(const InterpreterState& state) {
            && state.contour->is_idle() && !state.speaks_iso;
 }
 
-bool take_quick_move(const Block& block, InterpreterState& state, BlockResult& result) {
+bool take_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {
     ModalState& modal = state.modal;
     Move move{.motion = *modal.motion, .feed = modal.feed, .end = modal.position};
     for (const Word& word : block.words)

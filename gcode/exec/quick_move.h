@@ -14,6 +14,6 @@ bool moves_quickly(const InterpreterState& state);
 /// Carries out such a block; false when it holds anything else, and nothing has changed then.
 ///
 /// The outcome is that of the steps of execution.h, at a third of their cost.
-bool take_quick_move(const Block& block, InterpreterState& state, BlockResult& result);
+bool take_quick_move(const Block& block, InterpreterState& state, BlockCommands& result);
 
 } // namespace gcode

@@ -19,7 +19,7 @@ bool is_feed(const CanonicalCommand& command) {
            || std::holds_alternative<ThreadFeed>(command);
 }
 
-bool feeds(const BlockResult& block) {
+bool feeds(const BlockCommands& block) {
     return std::any_of(block.commands.begin(), block.commands.end(), is_feed);
 }
 
@@ -37,7 +37,7 @@ bool is_motion(const CanonicalCommand& command) {
 
 /// Whether a block moves as the motion code before it says: not home, by a cycle, or to a place of
 /// the machine.
-bool goes_on_moving(const BlockResult& block) {
+bool goes_on_moving(const BlockCommands& block) {
     const auto has = [&](std::string_view code) {
         return block.text.find(code) != std::string_view::npos;
     };

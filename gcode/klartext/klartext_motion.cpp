@@ -388,7 +388,7 @@ core::Result<std::optional<CornerSide>> motion_ahead(Execution& execution, const
     Interpreter interpreter(execution.library, execution.environment);
     const PlaneAxes axes = axes_of(execution.modal().plane);
     for (int count = 0; count < most_blocks_ahead; ++count) {
-        FEELER_TRY(const BlockResult* const found, interpreter.next(ahead));
+        FEELER_TRY(const BlockCommands* const found, interpreter.next(ahead));
         if (!found) break;
         for (const CanonicalCommand& command : found->commands) {
             const auto* arc = std::get_if<ArcFeed>(&command);

@@ -139,7 +139,7 @@ struct Warning {
 };
 
 /// One block as executed.
-struct BlockResult {
+struct BlockCommands {
     core::BlockIndex block{};
     uint32_t line = 0;
     std::string_view text{};       // the line, as long as the library stays where it is; of a

@@ -244,7 +244,7 @@ Lowering initial_lowering(const Environment& environment) {
     return initial_lowering(initial_state(environment));
 }
 
-std::vector<core::Event> lower(const BlockResult& block, Lowering& lowering) {
+std::vector<core::Event> lower(const BlockCommands& block, Lowering& lowering) {
     std::vector<core::Event> events;
     for (const CanonicalCommand& command : block.commands)
         for (core::Event& event : lowering.lower(command)) events.push_back(event);

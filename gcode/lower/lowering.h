@@ -31,6 +31,6 @@ Lowering initial_lowering(const InterpreterState& state);
 Lowering initial_lowering(const Environment& environment);
 
 /// The events of a whole block, in order.
-std::vector<core::Event> lower(const BlockResult& block, Lowering& lowering);
+std::vector<core::Event> lower(const BlockCommands& block, Lowering& lowering);
 
 } // namespace gcode

@@ -151,7 +151,7 @@ std::string to_text(const CanonicalCommand& command) {
 
 std::string to_text(const Run& run) {
     std::string text;
-    for (const BlockResult& block : run.blocks) {
+    for (const BlockCommands& block : run.blocks) {
         for (const CanonicalCommand& command : block.commands)
             text += fmt::format("{}: {}\n", block.line, to_text(command));
         for (const Warning& warning : block.warnings) text += to_text(warning);

@@ -52,7 +52,7 @@ TEST(JsonLine, WritesAnyBytesAsAText) {
 
 /// The JSON of one command in a block of its own.
 Json json_of(const gcode::CanonicalCommand& command) {
-    gcode::BlockResult block{core::BlockIndex(4), 7, "the \"text\"", "sub.ngc", {2, 5}};
+    gcode::BlockCommands block{core::BlockIndex(4), 7, "the \"text\"", "sub.ngc", {2, 5}};
     block.commands = {command, gcode::ProgramEnd{}};
     block.columns = {3, 4};
     std::string text;

@@ -69,7 +69,7 @@ bool is_finite(const core::Event& event) {
     return !motion->arc || std::isfinite(motion->arc->angle);
 }
 
-void check_block(const gcode::BlockResult& block, gcode::Lowering& lowering, size_t lines) {
+void check_block(const gcode::BlockCommands& block, gcode::Lowering& lowering, size_t lines) {
     require(block.columns.size() == block.commands.size(), "every command has a column");
     require(block.file.empty() && block.line >= 1 && block.line <= lines,
             "a block is a line of its program");
@@ -105,7 +105,8 @@ Outcome run_on(gcode::ProgramLibrary& library, const gcode::Environment& environ
             const core::Error& error = next.error();
             require(!error.message.empty() && error.where.line <= lines, "an error has a place");
             if (!may_fail_late && !holds_blocks_back(state)) {
-                require(continue_alike(state, before), "an error leaves the state as it was before the block");
+                require(continue_alike(state, before),
+                        "an error leaves the state as it was before the block");
                 require(gcode::digest_of(state) == gcode::digest_of(before),
                         "states that are equal have one digest");
             }
@@ -142,7 +143,8 @@ void run_any_program(std::string_view text, gcode::DialectId dialect, bool block
     const Outcome whole = run_on(library, environment, state, &half_way);
     if (!half_way) return;
     const Outcome rest = run_on(library, environment, *half_way, nullptr);
-    require(rest.digest == whole.digest && rest.error == whole.error && continue_alike(*half_way, state),
+    require(rest.digest == whole.digest && rest.error == whole.error
+                && continue_alike(*half_way, state),
             "a copy of a state goes on as the state itself");
 }
 

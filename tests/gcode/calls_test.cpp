@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 std::string rapids_of(const Ran& ran) {
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 found += std::to_string(static_cast<int>(*rapid->end[0])) + " ";
@@ -149,7 +149,7 @@ TEST(Calls, TheProgramsEndIsOneInASubprogramToo) {
 TEST(Calls, BlocksKnowTheLinesThatCalledThem) {
     const Ran ran = run_text("G21\nM98 P1\nM30\nO1\nG65 P2 A5\nM99\nO2\nG0 X#1\nM99\n");
     const auto moving = std::find_if(ran.run.blocks.begin(), ran.run.blocks.end(),
-                                     [](const BlockResult& block) { return block.line == 8; });
+                                     [](const BlockCommands& block) { return block.line == 8; });
     ASSERT_NE(moving, ran.run.blocks.end());
     EXPECT_EQ(moving->calls, (std::vector<uint32_t>{2, 5}));
 }

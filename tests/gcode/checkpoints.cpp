@@ -31,8 +31,8 @@ size_t memory_of(const Frame& frame) {
            + sizeof(ModalState);
 }
 
-size_t memory_of(const BlockResult& block) {
-    return sizeof(BlockResult) + block.commands.size() * sizeof(CanonicalCommand)
+size_t memory_of(const BlockCommands& block) {
+    return sizeof(BlockCommands) + block.commands.size() * sizeof(CanonicalCommand)
            + block.columns.size() * sizeof(uint32_t)
            + (block.own_text ? block.own_text->size() : 0);
 }
@@ -43,7 +43,7 @@ size_t memory_of(const InterpreterState& state, const InterpreterState* before) 
     for (const Frame& frame : state.frames) bytes += memory_of(frame);
     for (const PendingBlock& block : state.contour->pending)
         bytes += memory_of(block.result) + block.slots.size() * sizeof(PendingBlock::Slot);
-    for (const BlockResult& block : state.contour->ready) bytes += memory_of(block);
+    for (const BlockCommands& block : state.contour->ready) bytes += memory_of(block);
     if (!before || !state.parameters.is_shared_with(before->parameters))
         bytes += memory_of(*state.parameters);
     if (!before || !state.tables.is_shared_with(before->tables)) bytes += memory_of(*state.tables);
@@ -83,7 +83,7 @@ core::Result<InterpreterState> Checkpoints::state_after(uint64_t results,
     const uint64_t nearest = std::min<uint64_t>(results / interval_, states_.size() - 1);
     InterpreterState state = states_[nearest];
     for (uint64_t at = nearest * interval_; at < results; ++at) {
-        FEELER_TRY(const BlockResult* block, interpreter.next(state));
+        FEELER_TRY(const BlockCommands* block, interpreter.next(state));
         if (!block) return too_far();
     }
     return state;

@@ -19,7 +19,7 @@ std::string commands(const std::string& block) {
 /// The largest distance of the tool centre from a point along the path, ends and arcs.
 double farthest_from(const Run& run, double x, double y) {
     double farthest = 0.0;
-    for (const BlockResult& block : run.blocks)
+    for (const BlockCommands& block : run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* arc = std::get_if<ArcFeed>(&command)) {
                 const double to_centre = std::hypot(arc->centre[0] - x, arc->centre[1] - y);

@@ -16,7 +16,7 @@ std::string path_of(std::string_view text) {
         path += std::to_string(std::lround(*end[0] * 1000)) + ","
                 + std::to_string(std::lround(*end[1] * 1000));
     };
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* line = std::get_if<StraightFeed>(&command)) {
                 add(line->end);

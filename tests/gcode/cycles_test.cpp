@@ -14,7 +14,7 @@ std::string levels(const std::string& text, DialectId dialect = DialectId::fanuc
     std::string found;
     const Ran ran = run_text("G21 G0 Z20\n" + text, dialect);
     if (ran.run.error) return ran.run.error->message;
-    for (const BlockResult& block : ran.run.blocks) {
+    for (const BlockCommands& block : ran.run.blocks) {
         if (block.line == 1) continue;
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))

@@ -17,7 +17,7 @@ const std::string radius_2 = "G10 L12 P1 R2.\n";
 std::string path_of(const std::string& text) {
     const Ran ran = run_text(radius_2 + text);
     std::string path;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands) {
             const Position* end = nullptr;
             if (const auto* move = std::get_if<StraightFeed>(&command)) end = &move->end;

@@ -18,7 +18,7 @@ std::string steps(const std::string& text, DialectId dialect = DialectId::fanuc)
     const auto place = [](char kind, const Position& end) {
         return fmt::format(" {}{:g},{:g}", kind, *end[0], *end[2]);
     };
-    for (const BlockResult& block : ran.run.blocks) {
+    for (const BlockCommands& block : ran.run.blocks) {
         if (block.line == 1) continue;
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
@@ -127,7 +127,7 @@ std::string holes(const std::string& text) {
     const Ran ran = run_text("G21 G0 X10 Y20 Z20\n" + text, DialectId::haas);
     if (ran.run.error) return ran.run.error->message;
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* feed = std::get_if<StraightFeed>(&command))
                 found += fmt::format(" {:.4g},{:.4g}", *feed->end[0], *feed->end[1]);

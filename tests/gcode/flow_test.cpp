@@ -15,7 +15,7 @@ using testing::HasSubstr;
 std::string rapids(std::string_view text, DialectId dialect = DialectId::linuxcnc) {
     const Ran ran = run_text("G21\n" + std::string(text), dialect);
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 found += std::to_string(static_cast<int>(*rapid->end[0])) + " ";
@@ -65,7 +65,7 @@ TEST(Flow, BlocksKnowTheirFileAndTheLinesThatCalledThem) {
     const Ran ran = run_text("o1 sub\no<deep> call [3]\no1 endsub\nG21\no1 call\nM2", environment);
     ASSERT_FALSE(ran.run.error) << ran.run.error->message;
     const auto moving =
-        std::find_if(ran.run.blocks.begin(), ran.run.blocks.end(), [](const BlockResult& block) {
+        std::find_if(ran.run.blocks.begin(), ran.run.blocks.end(), [](const BlockCommands& block) {
             return block.line == 2 && !block.file.empty();
         });
     ASSERT_NE(moving, ran.run.blocks.end());

@@ -21,7 +21,7 @@ std::vector<Motion> motions_of(std::string_view text, DialectId dialect = Dialec
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");
     Lowering lowering = initial_lowering(environment);
     std::vector<Motion> motions;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const core::Event& event : lower(block, lowering))
             if (const auto* motion = std::get_if<Motion>(&event)) motions.push_back(*motion);
     return motions;

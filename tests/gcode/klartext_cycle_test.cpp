@@ -16,7 +16,7 @@ std::string cycle(std::string_view lines) {
     const auto place = [](const Position& end) {
         return fmt::format("({:g},{:g},{:g}) ", *end[0], *end[1], *end[2]);
     };
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 text += "r" + place(rapid->end);

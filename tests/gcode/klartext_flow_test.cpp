@@ -16,7 +16,7 @@ using testing::HasSubstr;
 std::string way(std::string_view lines) {
     const Ran ran = run_text(klartext_program(lines), DialectId::heidenhain);
     std::string text;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 text += std::to_string(std::lround(*rapid->end[0] * 1000.0)) + " ";

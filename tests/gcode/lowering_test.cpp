@@ -17,7 +17,7 @@ std::vector<core::Event> events_of(std::string_view text, const Environment& env
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");
     Lowering lowering = initial_lowering(environment);
     std::vector<core::Event> events;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const core::Event& event : lower(block, lowering)) events.push_back(event);
     return events;
 }

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 std::string rapids(std::string_view text, DialectId dialect = DialectId::fanuc) {
     const Ran ran = run_text("G21\n" + std::string(text), dialect);
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 found += std::to_string(static_cast<int>(std::round(*rapid->end[0]))) + " ";

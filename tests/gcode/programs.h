@@ -47,7 +47,7 @@ inline Ran run_text(std::string_view text, DialectId dialect = DialectId::fanuc)
 /// program.
 inline std::string commands_of(const Run& run) {
     std::string text;
-    for (const BlockResult& block : run.blocks)
+    for (const BlockCommands& block : run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (!std::holds_alternative<ProgramEnd>(command)) text += to_text(command) + "\n";
     return text;
@@ -71,7 +71,7 @@ inline std::string error_of(std::string_view text, DialectId dialect = DialectId
 /// All warnings and notes, one on each line.
 inline std::string warnings_of(const Run& run) {
     std::string text;
-    for (const BlockResult& block : run.blocks)
+    for (const BlockCommands& block : run.blocks)
         for (const Warning& warning : block.warnings) text += warning.message + "\n";
     if (run.ending) text += run.ending->message + "\n";
     return text;

@@ -68,7 +68,7 @@ std::vector<core::Event> events_of(const std::string& text) {
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "") << "\n" << text;
     Lowering lowering = initial_lowering(environment);
     std::vector<core::Event> events;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const core::Event& event : lower(block, lowering)) events.push_back(event);
     return events;
 }

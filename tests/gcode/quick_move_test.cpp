@@ -38,7 +38,7 @@ std::string random_line(std::mt19937& random) {
 std::string outcome_of(const std::string& text, DialectId dialect) {
     const Ran ran = run_text(text, dialect);
     std::string outcome = commands_of(ran.run);
-    for (const BlockResult& block : ran.run.blocks) {
+    for (const BlockCommands& block : ran.run.blocks) {
         outcome += fmt::format("{}", block.line);
         for (const uint32_t column : block.columns) outcome += fmt::format(" {}", column);
         for (const Warning& warning : block.warnings)
@@ -74,7 +74,7 @@ TEST(QuickMove, LeavesWhatIsMoreThanAStraightMove) {
     state.rules.offset_is_fresh = false;
     ASSERT_TRUE(moves_quickly(state));
     const InterpreterState before = state;
-    BlockResult result;
+    BlockCommands result;
     for (const Word word : {Word{'I', 1.0}, Word{'S', 1.0}, Word{'G', 2.0}, Word{'X', 1.0}}) {
         Block block; // a feed without F, or a word that does not belong to a straight move
         block.words = {word};

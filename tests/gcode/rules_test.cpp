@@ -26,7 +26,7 @@ std::vector<std::string> rules_of(std::string_view text, DialectId dialect = Dia
     const Ran ran = run_text(text, shop(dialect));
     EXPECT_FALSE(ran.run.error) << ran.run.error->message;
     std::vector<std::string> rules;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const Warning& warning : block.warnings)
             if (warning.rule != "program")
                 rules.push_back(std::string(warning.rule) + "@"

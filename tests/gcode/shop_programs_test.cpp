@@ -25,7 +25,7 @@ std::string heights(std::string_view text, DialectId dialect) {
     const Ran ran = run_text(text, dialect);
     if (ran.run.error) return ran.run.error->message;
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* rapid = std::get_if<StraightTraverse>(&command))
                 found += fmt::format(" r{:g}", *rapid->end[2]);

@@ -104,7 +104,7 @@ std::string holes(const std::string& text) {
     const Ran ran = run_text(ready + text, DialectId::siemens);
     if (ran.run.error) return "error: " + ran.run.error->message;
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* feed = std::get_if<StraightFeed>(&command);
                 feed && *feed->end[2] == -5.0)

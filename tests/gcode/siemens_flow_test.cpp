@@ -15,7 +15,7 @@ using testing::HasSubstr;
 std::string places(std::string_view text) {
     const Ran ran = run_text(text, DialectId::siemens);
     std::string found;
-    for (const BlockResult& block : ran.run.blocks)
+    for (const BlockCommands& block : ran.run.blocks)
         for (const CanonicalCommand& command : block.commands)
             if (const auto* move = std::get_if<StraightTraverse>(&command))
                 found += std::to_string(static_cast<int>(*move->end[0])) + " ";

@@ -20,7 +20,7 @@ Lowered lowered(std::string_view text) {
     const Ran ran = run_text(text, environment);
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");
     Lowering lowering = initial_lowering(environment);
-    for (const BlockResult& block : ran.run.blocks) lower(block, lowering);
+    for (const BlockCommands& block : ran.run.blocks) lower(block, lowering);
     return {lowering.machine, lowering.moved_tilted};
 }
 

@@ -29,7 +29,7 @@ std::string contour(std::string_view entry) {
 /// The end points and centres of the motions of a trace along X and Z.
 std::vector<std::array<double, 2>> places(const Run& run) {
     std::vector<std::array<double, 2>> found;
-    for (const BlockResult& block : run.blocks)
+    for (const BlockCommands& block : run.blocks)
         for (const CanonicalCommand& command : block.commands) {
             if (const auto* move = std::get_if<StraightFeed>(&command))
                 found.push_back({*move->end[0], *move->end[2]});

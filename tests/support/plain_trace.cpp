@@ -139,7 +139,7 @@ gcode::Environment reference_environment() {
 PlainRun plain_run(const gcode::Run& run) {
     PlainRun plain;
     PlainState state;
-    for (const gcode::BlockResult& block : run.blocks)
+    for (const gcode::BlockCommands& block : run.blocks)
         for (const gcode::CanonicalCommand& command : block.commands)
             std::visit(
                 [&](const auto& said) {

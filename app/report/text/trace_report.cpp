@@ -142,12 +142,12 @@ void append_calls(const std::vector<uint32_t>& calls, JsonLine& json, std::strin
 
 } // namespace
 
-void append_trace_text(const gcode::BlockResult& block, std::string& text) {
+void append_trace_text(const gcode::BlockCommands& block, std::string& text) {
     for (const gcode::CanonicalCommand& command : block.commands)
         fmt::format_to(std::back_inserter(text), "{}: {}\n", block.line, gcode::to_text(command));
 }
 
-void append_trace_json(const gcode::BlockResult& block, std::string& text) {
+void append_trace_json(const gcode::BlockCommands& block, std::string& text) {
     for (size_t i = 0; i < block.commands.size(); ++i) {
         JsonLine json(text);
         json.add("block", int64_t(core::value_of(block.block)));

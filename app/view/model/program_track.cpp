@@ -36,7 +36,7 @@ ProgramTrack::ProgramTrack(const core::Setup& setup, size_t first,
                            std::optional<core::ToolNumber> tool)
     : setup_(setup), first_(first), tool_(tool ? tool : setup.tool_at_start) {}
 
-void ProgramTrack::add(const gcode::BlockResult& block, std::span<const core::Event> events) {
+void ProgramTrack::add(const gcode::BlockCommands& block, std::span<const core::Event> events) {
     BlockRow& row = rows.emplace_back();
     row.line = block.line;
     row.text = block.text;

@@ -26,7 +26,7 @@ public:
                           std::optional<core::ToolNumber> tool = {});
 
     /// Adds the next block.
-    void add(const gcode::BlockResult& block, std::span<const core::Event> events);
+    void add(const gcode::BlockCommands& block, std::span<const core::Event> events);
 
     std::vector<BlockRow> rows;
     std::vector<render::PathPoint> points;

@@ -45,7 +45,7 @@ ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
     ProgramTrack track(setup);
     BlockRunner(check).visit_ahead(
         gcode::initial_state(environment), gcode::initial_lowering(environment),
-        [&](const gcode::BlockResult& block, std::span<const core::Event> events) {
+        [&](const gcode::BlockCommands& block, std::span<const core::Event> events) {
             track.add(block, events);
             return track.rows.size() < most_early_blocks && !is_closing();
         });
@@ -235,7 +235,7 @@ void WorkerSession::follow_anew() {
     const size_t block = session_->at();
     ProgramTrack track(session_->setup_at(block), block, session_->place().machine.tool);
     session_->visit_ahead(
-        [&](const gcode::BlockResult& ahead, std::span<const core::Event> events) {
+        [&](const gcode::BlockCommands& ahead, std::span<const core::Event> events) {
             track.add(ahead, events);
             return track.rows.size() < most_early_blocks;
         });
