@@ -16,34 +16,34 @@ struct AssignmentUndo {
     Value value;
 };
 
-/// A block whose values are worked out, and where its parameters are.
+/// A block to be evaluated, and its parameters.
 struct Assigning {
     Block& block;
     const Dialect& dialect;
     ProgramParameters& parameters;
-    std::vector<AssignmentUndo>& undos; // gets what was set, in order
-    std::vector<Value>& values;         // room to work in
+    std::vector<AssignmentUndo>& undos; // receives the assignments in order
+    std::vector<Value>& values;         // scratch space
     BlockCommands& result;
-    bool inch; // what lengths are in
+    bool inch; // unit of lengths
 };
 
-/// Works out a block's words and sets its parameters: first the words, then all right-hand sides,
-/// then the parameters; on some controls one by one as they stand in the block.
+/// Evaluates the words of a block and sets its parameters: first the words, then all right-hand
+/// sides, then the parameters; on some controls one by one in the order written.
 ///
 /// Errors: those of the expressions and parameters.
 core::Result<void> work_out_block(const Assigning& assigning);
 
-/// Gives parameters their old values.
+/// Restores the old values of parameters.
 void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramParameters& parameters);
 
-/// What a program says by setting #3000, an alarm, or #3006, a stop with a message. The message is
-/// the block's comment.
+/// Executes an assignment to #3000, an alarm, or #3006, a stop with a message. The message is the
+/// comment of the block.
 ///
-/// Errors: invalid_value for an alarm: the control goes no further.
+/// Errors: invalid_value for an alarm, where the control stops.
 core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
                               Value value, core::SourceSpan where, BlockCommands& result);
 
-/// Says once that a program reads a clock, which stands still here.
+/// Warns once that the program reads a clock, which does not run here.
 void note_clock(const Block& block, InterpreterState& state, BlockCommands& result);
 
 /// Emits what changed in the offsets since a block began.

@@ -9,8 +9,8 @@
 
 namespace gcode {
 
-/// One block on its way: what it says, the state it changes and what comes of it. The functions
-/// below are the steps of a block; each does what its words ask for, or nothing.
+/// A block being executed: its words, the state it changes and its commands. The functions below
+/// are the steps of a block; each executes its words, or does nothing.
 struct Execution {
     ProgramLibrary& library;
     const Environment& environment;
@@ -19,7 +19,7 @@ struct Execution {
     const Statement& statement;
     InterpreterState& state;
     BlockCommands& result;
-    uint32_t column = 1; // of the word that is being carried out
+    uint32_t column = 1; // of the word being executed
 
     ModalState& modal() { return state.modal; }
     const ModalState& modal() const { return state.modal; }
@@ -39,7 +39,7 @@ struct Execution {
 /// Whether the block has G53.
 bool in_machine_coordinates(const Execution& execution);
 
-/// The word that makes this block move: its motion or cycle code, else its first axis word.
+/// The word that makes the block move: its motion or cycle code, else its first axis word.
 const Word& moving_word(const Execution& execution);
 
 /// The length a word gives, in mm.
@@ -48,20 +48,19 @@ double length_of(const Execution& execution, const Word& word);
 /// The same of the word with this letter; empty where the statement has none.
 std::optional<double> length_word(const Execution& execution, char letter);
 
-/// More commands are not made of one block.
+/// The most commands that one block makes.
 inline constexpr size_t most_commands = 200000;
 
-/// Whether the block's H word stands without G43 and changes the length offset that is on.
+/// Whether an H word without G43 changes the active length offset.
 bool changes_length_alone(const Execution& execution);
 
-/// What an axis word says: mm, degrees of a rotary axis, half of it for X under G7.
+/// The value of an axis word: mm, degrees for a rotary axis, half of it for X with G7.
 double axis_value(const Execution& execution, size_t axis, const Word& word);
 
-/// Where the axis words lead, axis by axis, in program coordinates.
+/// The end position given by the axis words, in program coordinates.
 core::Result<Position> target_of(const Execution& execution);
 
-/// Lets a straight move whose direction `,A` gives, degrees from the plane's first axis, end on its
-/// line.
+/// Completes the end of a straight move from `,A`, its angle from the first axis of the plane.
 ///
 /// Errors: missing_value, invalid_value, syntax or unsupported where no single end follows.
 core::Result<void> place_by_angle(const Execution& execution, Position& target);
@@ -76,11 +75,11 @@ std::optional<double> way_between(const Position& from, const Position& to);
 ///         without a known path length under G93; invalid_value for F0.
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length);
 
-/// Lets a change of offsets leave the machine where it is: program coordinates move instead.
+/// Changes the offsets without moving the machine: program coordinates change instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
 void change_offsets(ModalState& modal, const Offsets& offsets);
 
-core::Result<void> check_words(Execution& execution); // words nobody uses
+core::Result<void> check_words(Execution& execution); // unused words
 core::Result<void> note_assumed_units(Execution& execution);
 core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95
 core::Result<void> set_feed(Execution& execution);              // F

@@ -7,7 +7,7 @@
 namespace gcode {
 
 /// The value of a system variable of Fanuc or Haas, as the dialect says; empty when the number is
-/// not one of them, a vacant value where nobody knows what it would be.
+/// not one of them, a vacant value if it is unknown.
 ///
 /// Units:  lengths in those of the program, angles in degrees.
 /// Source: Fanuc B-64304, system variables, with tool compensation memory C; Haas mill operator's

@@ -6,7 +6,7 @@
 
 namespace gcode {
 
-/// A flow statement on its way.
+/// A flow statement being executed.
 struct FlowStep {
     ProgramLibrary& library;
     const Environment& environment;
@@ -27,25 +27,25 @@ core::Result<void> run_flow(const FlowStep& step);
 core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
                                    const Dialect& dialect);
 
-/// Goes to a level of its own, whose first line is given.
+/// Enters a new call level at its first line.
 ///
 /// Errors: invalid_value when calls go too deep.
 core::Result<void> enter(InterpreterState& state, const Environment& environment, Frame frame,
                          core::SourceSpan where);
 
-/// Leaves the level that runs for the line behind the call, or for another round of it.
+/// Returns from the current call level to the line after the call, or repeats the level.
 void leave(InterpreterState& state);
 
-/// Leaves the level that runs, whatever rounds were to come, for a line of the program that called.
+/// Returns from the current call level to a line of the caller, without further repetitions.
 void leave_to(InterpreterState& state, uint32_t line);
 
-/// The line of a block number in a program: looked for behind a line, then from the program's
-/// beginning; empty when there is none. A program of a file with several ends where the next one
+/// The line of a block number in a program, searched after a line, then from the start of the
+/// program; empty if there is none. In a file with several programs each ends where the next one
 /// begins.
 std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
                                       uint32_t from);
 
-/// Looks whether a jump back from a place has led to a state the program was in before.
+/// Checks whether a jump back has led to a state that the program was in before.
 ///
 /// Errors: invalid_value then: it will never end.
 core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from);

@@ -26,7 +26,7 @@ struct Place {
     auto operator<=>(const Place&) const = default;
 };
 
-/// A macro call that is made again after every motion (G66) or for every block (G66.1).
+/// A macro that is called after each motion (G66) or for each block (G66.1).
 struct ModalMacro {
     std::string name;
     Place begin;                 // its first line
@@ -45,22 +45,22 @@ struct Frame {
     LocalParameters locals{};
     bool shares_locals = false; // M98: #1 to #33 are those of the caller
     NamedValues named{};
-    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names that are no REAL
-    std::map<uint32_t, int64_t> repeats{};                   // line of `repeat`: rounds still to go
+    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names other than REAL
+    std::map<uint32_t, int64_t> repeats{};                   // line of `repeat`: repetitions left
     int64_t rounds_left = 0;                                 // of M98 L
-    std::optional<LocalParameters> again{};    // the locals that another round begins with
+    std::optional<LocalParameters> again{};    // locals at the start of each repetition
     Shared<std::optional<ModalState>> saved{}; // M70, M73
     bool restores = false;                     // M73: at the return
-    size_t modal_macro = 0;                    // which one of G66 called it, from 1; 0 for none
+    size_t modal_macro = 0;                    // the G66 that called it, from 1; 0 for none
 
     bool operator==(const Frame&) const = default;
 };
 
-/// The programs of a run: the main one, and the subprograms that were looked for so far. Files are
-/// read from the folders of the search path and from nowhere else.
+/// The programs of a run: the main one and the subprograms found so far. Files are only read from
+/// the folders of the search path.
 class ProgramLibrary {
 public:
-    /// The main program must stay where it is. Without a search path, the main program's own folder
+    /// The main program must outlive it. Without a search path, the main program's own folder
     /// is searched.
     ProgramLibrary(const Program& main, const Dialect& dialect,
                    std::vector<std::string> search_path = {});
@@ -81,7 +81,7 @@ public:
     /// Errors: io and syntax as read_program, and when names leave the search path.
     core::Result<std::optional<uint32_t>> find(const std::vector<std::string>& file_names);
 
-    /// Likewise, whatever the case of the letters is; the names are in capitals.
+    /// The same without regard to case; the names are in capitals.
     core::Result<std::optional<uint32_t>>
     find_in_any_case(const std::vector<std::string>& file_names);
 

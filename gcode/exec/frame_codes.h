@@ -5,7 +5,7 @@
 
 namespace gcode {
 
-/// Puts transforms into effect where the machine is, and says so if they change anything.
+/// Activates transforms at the current position and emits the change, if any.
 void use_transforms(Execution& execution, const ProgramTransforms& transforms);
 
 /// Takes the words of a motion under G16 into the state; nothing else.
@@ -15,7 +15,7 @@ void use_transforms(Execution& execution, const ProgramTransforms& transforms);
 ///         angle under G91 adds to the one before.
 core::Result<void> take_polar_words(Execution& execution);
 
-/// The target in the plane that the words of G16 have come to.
+/// The target in the plane given by radius and angle of G16.
 void place_by_radius_and_angle(const Execution& execution, Position& target);
 
 /// Errors: unsupported for an arc that is scaled to something else than an arc.
@@ -26,8 +26,8 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Tilted working plane command".
 core::Result<void> set_tilted_plane(Execution& execution);
 
-/// G53.1: rotary axes turn until the tool stands upright on the tilted plane, as far as the machine
-/// is known.
+/// G53.1: turns the rotary axes until the tool is normal to the tilted plane, if the machine is
+/// known.
 ///
 /// Errors: invalid_value without a plane, and for one to which no rotary axes can turn the tool
 ///         within their limits.
@@ -46,7 +46,7 @@ std::optional<size_t> axis_left_out_of_rotation(const Execution& execution);
 
 void warn_of_axis_left_out(Execution& execution);
 
-/// Once the plane was moved in, program and machine agree on the place again.
+/// Called after a move in the plane: program and machine agree on the position again.
 void forget_place_before_rotation(Execution& execution);
 
 } // namespace gcode

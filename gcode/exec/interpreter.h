@@ -23,44 +23,44 @@ struct Contour;
 struct Environment;
 struct SplineState;
 
-/// Whether and how a program came to its end.
+/// Whether and how a program ended.
 enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
 
-/// Remembers one state of a loop, at farther and farther intervals, so that a loop in which a state
-/// comes again is found in the end however long it is.
+/// Finds endless loops: stores the hash of one state at growing intervals, so that a state that
+/// recurs is found however long the loop is.
 ///
 /// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
 struct LoopWatch {
     uint64_t jumps = 0, next_note = 1, noted = 0;
 };
 
-/// Whether a program writes lengths with a decimal point, without one, or now so and now so.
+/// Whether a program writes lengths with a decimal point, without one, or both ways.
 struct DecimalPoints {
     bool present = false, missing = false, said = false;
 
     bool operator==(const DecimalPoints&) const = default;
 };
 
-/// Everything between two blocks. A plain value: copy it to go back in time; copies share what is
-/// large until one of them changes it.
+/// The state between two blocks. A plain value: copy it to go back in time. Copies share large
+/// parts until one of them changes them.
 struct InterpreterState {
     InterpreterState();
 
     ModalState modal;
     Place next; // the line that is read next
     uint32_t next_block = 0;
-    bool tape_open = false; // a % was seen
-    bool said_unit = false; // the note that units were assumed
-    bool said_home = false; // the warning that home was assumed
-    bool said_time = false; // the warning that the time is not known
+    bool tape_open = false; // after a %
+    bool said_unit = false; // the note about assumed units was issued
+    bool said_home = false; // the warning about an assumed home was issued
+    bool said_time = false; // the warning about an unknown time was issued
     DecimalPoints points;
     Ending ending = Ending::running;
     std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
-    std::vector<ModalMacro> modal_macros;              // G66, the one that was said last behind
-    LocalParameters said{}; // Fanuc: the words that were said last, by the numbers of arguments
+    std::vector<ModalMacro> modal_macros;              // G66, in the order programmed
+    LocalParameters said{}; // Fanuc: the last words, by the numbers of arguments
     Shared<Parameters> parameters;
     Shared<Tables> tables;
-    Shared<Contour> contour; // blocks on their way through cutter radius compensation
+    Shared<Contour> contour; // blocks held back by cutter radius compensation
     Shared<SplineState> spline;
     SharedLanguageState language;
     bool speaks_iso = false; // Siemens: ISO codes since G291
@@ -68,29 +68,29 @@ struct InterpreterState {
     RuleWatch rules;
 };
 
-/// Whether a program goes on in the same way from two states: all of them is equal but what the
-/// rules and the search for endless loops remember.
+/// Whether a program continues in the same way from two states: everything is equal except the
+/// memory of the rules and of the search for endless loops.
 bool continue_alike(const InterpreterState& a, const InterpreterState& b);
 
 /// Whether blocks wait for later ones, for cutter radius compensation or a corner.
 bool holds_blocks_back(const InterpreterState& state);
 
-/// A number that follows from all that decides how a program goes on: everything but the count of
-/// blocks and the watch over loops.
+/// A hash of everything that decides how a program continues: all but the count of blocks and the
+/// search for endless loops.
 uint64_t digest_of(const InterpreterState& state);
 
 /// The state before the first block.
 InterpreterState initial_state(const Environment& environment);
 
-/// Carries out programs block by block. It keeps no state of a program itself.
+/// Executes programs block by block. It holds no state of a program itself.
 class Interpreter {
 public:
     /// The library and the environment must outlive it.
     Interpreter(ProgramLibrary& library, const Environment& environment);
     ~Interpreter();
 
-    /// Executes the next block that does something, and gives what came of it until the next call;
-    /// null when the program has ended (see `state.ending`).
+    /// Executes the next block that does something. The result is valid until the next call; null
+    /// when the program has ended (see `state.ending`).
     ///
     /// Errors: those of parse_line and of the codes, with file, line, column and word; programs
     ///         that never end, as far as that can be seen. Nothing has changed then: `state` is as
@@ -103,7 +103,7 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// What is to be said about the way the program ended: no M2 or M30.
+/// A warning about the end of the program: no M2 or M30.
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state);
 

@@ -7,9 +7,9 @@
 namespace gcode {
 
 /// The numbered parameters in which LinuxCNC shows its state: home (5161, 5181), G92 (5210), work
-/// offsets (5220 to 5390), the tool (5400) and the place (5420). Empty for any other.
+/// offsets (5220 to 5390), the tool (5400) and the position (5420). Empty for others.
 ///
-/// Units: lengths of home and offsets in the machine's unit, of the place in the program's.
+/// Units: home and offsets in the unit of the machine, the position in that of the program.
 std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
                                         const Environment& environment, int number);
 

@@ -7,15 +7,15 @@
 
 namespace gcode {
 
-/// Puts back what M70 and M73 saved, as LinuxCNC does: modes, feed and speed with the digits it
+/// Restores what M70 and M73 saved, as LinuxCNC does: modes, feed and speed with the digits it
 /// keeps of them, spindle, coolant, overrides, the active work offset, and whether G92 and a tool
-/// length offset are on; not the place, the tool, or the values of the offsets.
+/// length offset are active; not the position, the tool, or the values of the offsets.
 void restore_modes(InterpreterState& state, const ModalState& saved);
 
-/// What a machinist would miss after modes are restored, each in a sentence.
+/// Warnings about what restoring the modes does not restore, one sentence each.
 std::vector<std::string> losses_of_restoring(const ModalState& now, const ModalState& saved);
 
-/// Says by commands what restored modes mean for the machine.
+/// Emits the commands for restored modes.
 void announce_modes(BlockCommands& result, uint32_t column, const ModalState& before,
                     const ModalState& after);
 

@@ -6,8 +6,7 @@
 
 namespace gcode {
 
-/// The parameters of a program as its expressions see them: its own ones, and those in which the
-/// control shows its state.
+/// The parameters as expressions of a program see them: its own ones and the system variables.
 class ProgramParameters : public ParameterReader {
 public:
     ProgramParameters(InterpreterState& state, const Environment& environment);
@@ -20,11 +19,11 @@ public:
     core::Result<void> set_numbered(double number, Value value, core::SourceSpan where);
     core::Result<void> set_named(std::string_view name, Value value, core::SourceSpan where);
 
-    /// What is kept under a number, without what a control shows there; empty when nothing is.
+    /// The stored value of a number, ignoring system variables; empty if there is none.
     Value kept(double number) const;
 
-    /// Gives a parameter what was kept there, or takes it away if nothing was. Offsets and modes
-    /// that followed a numbered one are not touched.
+    /// Restores the stored value of a parameter, or removes it. Offsets and modes that follow a
+    /// system variable are not touched.
     void restore_numbered(double number, Value kept);
     void restore_named(std::string_view name, Value value);
 

@@ -7,8 +7,8 @@ namespace gcode {
 struct Execution;
 struct ModalState;
 
-/// What the rules about a program remember from block to block: what they wait for, and what was
-/// said already. It has no part in how a program goes on.
+/// The memory of the modal rules: what they wait for, and what was reported already. It does not
+/// influence how the program continues.
 struct RuleWatch {
     bool lacks_length = false;     // a tool came into the spindle, no length offset since
     bool length_cancelled = false; // G49 with a tool in the spindle, no length offset since
@@ -22,9 +22,8 @@ struct RuleWatch {
     }
 };
 
-/// Warns of what a control accepts and a machinist regrets, as far as the program, the tool table
-/// and the work offsets show it: to be called after a block was carried out, with the modes before
-/// it.
+/// Warns of mistakes that a control accepts, as far as program, tool table and work offsets show
+/// them. To be called after a block was executed, with the modes before it.
 ///
 /// Rules: missing-length-offset, length-offset-cancelled, work-offset-unset, home-through-part,
 ///        machine-move-with-state, incremental-left-on, state-left-over, units-jump, block-delete.

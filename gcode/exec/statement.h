@@ -39,10 +39,10 @@ struct Statement {
     const Word* angle = nullptr;                 // ,A
     std::array<CodeWord, most_codes> code_words; // in the order written
     size_t code_count = 0;
-    uint64_t groups = 0;                        // a bit for each modal group that is there
-    uint32_t letters = 0;                       // a bit for each of `words` that is there
+    uint64_t groups = 0;                        // a bit for each modal group present
+    uint32_t letters = 0;                       // a bit for each of `words` present
     std::vector<const Word*> unknown_m_codes{}; // a machine builder's
-    std::vector<const Word*> arguments{};       // of a macro call: what stands behind G65 or G66
+    std::vector<const Word*> arguments{};       // of a macro call: the words after G65 or G66
 
     std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
     const Word* word(char letter) const { return words[static_cast<size_t>(letter - 'A')]; }
@@ -54,7 +54,7 @@ struct Statement {
         return (letters & axis_letter_bits) != 0 || polar_radius || polar_angle;
     }
 
-    /// The code that takes the axis words away from the motion: G10, G28, G30, G52, G92, G43.1, and
+    /// The code that uses the axis words instead of the motion: G10, G28, G30, G52, G92, G43.1, and
     /// a G4 that has no P.
     const CodeWord* taker_of_axis_words() const;
 

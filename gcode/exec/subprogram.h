@@ -9,7 +9,7 @@
 
 namespace gcode {
 
-/// Where the program of a number begins: the line behind its O word. It is looked for in the
+/// Where the program of a number begins: the line after its O word. It is searched in the
 /// program that asks, in the main program, then in the files of the search path that are named for
 /// the number; or in the files first. Empty when there is none.
 ///
@@ -17,7 +17,7 @@ namespace gcode {
 core::Result<std::optional<Place>> find_program(ProgramLibrary& library, uint32_t source,
                                                 int number, bool files_first = false);
 
-/// What to tell somebody whose program is not there: where it was looked for, and what there is.
+/// The message for a missing program: where it was searched, and what is there.
 std::string missing_program(ProgramLibrary& library, uint32_t source, int number);
 
 /// The number of the local variable that a letter of a macro call sets, 1 to 26: A is #1, Z #26.
@@ -25,7 +25,7 @@ std::string missing_program(ProgramLibrary& library, uint32_t source, int number
 size_t argument_number(char letter);
 
 /// The local variables of a macro call. I, J and K may come again, up to ten times: the second I is
-/// #7. What stands later wins.
+/// #7. Later words win.
 ///
 /// Errors: syntax for a word that cannot be an argument; invalid_value for an eleventh I, J or K.
 core::Result<LocalParameters> arguments_of(const std::vector<const Word*>& words);

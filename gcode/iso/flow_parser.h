@@ -12,7 +12,7 @@ namespace gcode {
 /// Errors: syntax with the column at fault.
 core::Result<bool> parse_flow(Lexer& lexer, const Dialect& dialect, Block& block);
 
-/// Only the label and the keyword of an O word, whatever stands behind them.
+/// Reads only the label and the keyword of an O word, whatever follows.
 core::Result<bool> parse_flow_head(Lexer& lexer, const Dialect& dialect, Block& block);
 
 } // namespace gcode

@@ -5,8 +5,8 @@
 
 namespace gcode {
 
-/// Reads a line of nothing but letters with numbers behind them, as most lines are, into an empty
-/// block; false when it holds anything else or a mistake, and the block is of no use then.
+/// Reads a line of letters with numbers, as most lines are, into an empty block; false if it has
+/// anything else or a mistake, and the block is then unusable.
 ///
 /// The words are those that the general parser gives.
 /// Cost: about a tenth of the general parser's.

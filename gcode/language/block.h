@@ -11,7 +11,7 @@
 
 namespace gcode {
 
-/// What a keyword of native Siemens asks for.
+/// What a keyword of native Siemens does.
 enum class SiemensAction : uint8_t {
     note,    // understood; no effect on positions
     warning, // likewise, but a person should know
@@ -19,7 +19,7 @@ enum class SiemensAction : uint8_t {
     // words with a value: CR=5
     address,
     noted_address,   // whose value has no effect on positions
-    refused_address, // not carried out
+    refused_address, // not supported
     // motions and modes
     arc_by_point,  // CIP
     tangent_arc,   // CT
@@ -59,18 +59,18 @@ struct SiemensKeywordUse {
     core::SourceSpan span;
 };
 
-/// A value in brackets or behind a keyword: an expression, a text, or nothing at all.
+/// A value in brackets or after a keyword: an expression, a text or nothing.
 struct SiemensArgument {
     enum class Kind : uint8_t { nothing, value, text };
 
     Kind kind = Kind::nothing;
     Expression expression{};
     double plain = 0.0;      // the value when it is a plain number
-    std::string_view text{}; // what stands between the quotation marks
+    std::string_view text{}; // between the quotation marks
     core::SourceSpan span{};
 };
 
-/// How a jump looks for its target.
+/// Where a jump searches for its target.
 enum class JumpWay : uint8_t { forward, backward, either, quietly, to_start };
 
 /// `GOTOF END`, `IF R1 > 5 GOTOB N100`.
@@ -114,12 +114,13 @@ enum class Addressing : uint8_t { modal, absolute, incremental };
 
 /// A letter and its value as written, in the units of the program.
 struct Word {
-    char letter = '\0'; // upper case; '@' and '^' of polar places, 'r' and 'c' of `,R` and `,C`
+    char letter =
+        '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and `,C`
     double value = 0.0;
     core::SourceSpan span{};
     bool has_point = false; // X5. rather than X5, or a computed value
     Addressing addressing = Addressing::modal;
-    Expression expression{}; // gives the value when it is there
+    Expression expression{}; // if present, gives the value
 
     bool operator==(const Word& other) const {
         return letter == other.letter && value == other.value && has_point == other.has_point
@@ -192,8 +193,8 @@ constexpr bool is_siemens_statement(FlowKind kind) {
     return kind >= FlowKind::for_loop && kind <= FlowKind::give_back;
 }
 
-/// The flow statement of a line. It stands alone on its line but for a block number and comments;
-/// behind IF..THEN stand assignments.
+/// The flow statement of a line. It is alone on its line except for a block number and comments;
+/// IF..THEN is followed by assignments.
 struct Flow {
     FlowKind kind = FlowKind::none;
     core::SourceSpan span{};

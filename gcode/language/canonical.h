@@ -15,7 +15,7 @@
 
 namespace gcode {
 
-/// Canonical commands: what a block means once modes and units are resolved. Lengths in mm, feed in
+/// Canonical commands: the meaning of a block with modes and units resolved. Lengths in mm, feed in
 /// mm/min, ends in program coordinates of the offsets that are active at the command.
 struct StraightTraverse {
     Position end;
@@ -31,14 +31,14 @@ struct ArcFeed {
     int turns;        // as LinuxCNC: +1 up to one turn counter-clockwise, -2 up to two clockwise
     double feed;
 };
-/// Towards a contact; without one, as a feed to its end.
+/// A probing move: towards contact, or a feed to its end without contact.
 struct StraightProbe {
     Position end;
     double feed;
     bool towards;      // until contact is made, else until it is lost
     bool must_succeed; // an error if it never is
 };
-/// A feed that keeps pace with the spindle.
+/// A feed synchronised with the spindle.
 struct ThreadFeed {
     Position end;
     double pitch;    // mm a revolution
@@ -53,7 +53,7 @@ struct SelectTool {
 struct ChangeTool {
     std::optional<core::ToolNumber> tool; // empty: T0, an empty spindle
 };
-/// M61: that tool is in the spindle already.
+/// M61: declares the tool in the spindle.
 struct NameTool {
     std::optional<core::ToolNumber> tool;
 };
@@ -67,9 +67,9 @@ struct Coolant {
 struct SelectPlane {
     Plane plane;
 };
-/// A work offset, G52 or G92 took new values, or another work offset became active.
+/// A work offset, G52 or G92 changed, or another work offset became active.
 struct SetOffset {
-    Offsets offsets; // all of them, as they are from here on
+    Offsets offsets; // all of them, from here on
 };
 struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
@@ -101,7 +101,7 @@ struct WaitForInput {
     bool is_analog;
     double seconds; // 0 waits for nothing
 };
-/// What a program says to the operator.
+/// A message of the program to the operator.
 struct Message {
     std::string text;
 };
@@ -129,13 +129,13 @@ std::string_view name_of(Plane plane);
 
 enum class Severity : uint8_t { note, warning };
 
-/// Something a person should know about a block that does not stop the program.
+/// A remark about a block that does not stop the program.
 struct Warning {
     Severity severity;
     core::SourceSpan where;
     std::string message;
-    std::string_view rule = "program"; // the stable name of what it is about
-    std::string cure{};                // what would make it go away; may be empty
+    std::string_view rule = "program"; // stable name of the rule
+    std::string cure{};                // may be empty
 };
 
 /// One block as executed.

@@ -7,7 +7,7 @@
 
 namespace gcode {
 
-/// Codes of one group replace one another; a block takes one of each.
+/// Codes of one group replace each other; a block may have one of each group.
 enum class ModalGroup : uint8_t {
     action, // does something once: G4, G10, G28, G52, G53, G92
     motion,
@@ -48,9 +48,9 @@ struct Code {
     char letter;
     int tenths; // 593 for G59.3
     ModalGroup group;
-    std::string_view words;   // that it uses besides F, S and T; "XYZ" stands for all axes
+    std::string_view words;   // that it uses besides F, S and T; "XYZ" means all axes
     DialectSet dialects;      // that know it
-    std::string_view refusal; // why it is not carried out; empty when it is
+    std::string_view refusal; // why it is not supported; empty if it is
     int last = 0;             // of several codes in a row that are one, the last, in tenths
 
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }

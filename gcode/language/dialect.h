@@ -14,7 +14,7 @@ struct Program;
 
 enum class DialectId : uint8_t { linuxcnc, fanuc, haas, grbl, siemens, heidenhain, siemens_iso };
 
-/// What the lines of a program look like: letters with numbers, or keywords.
+/// The syntax of lines: letters with numbers, or keywords.
 enum class Language : uint8_t { words, klartext, siemens };
 
 /// How far the radius to an arc's end may be from the radius to its start.
@@ -34,10 +34,10 @@ constexpr bool remembers_words(SystemParameters parameters) {
     return parameters >= SystemParameters::fanuc;
 }
 
-/// Which codes take the tool away from the contour between G41 and G40.
+/// Which codes interrupt the contour between G41 and G40.
 enum class ContourCodes : uint8_t { rs274, fanuc };
 
-/// How the tool comes to a contour and passes its outside corners.
+/// How the tool approaches a contour and passes its outside corners.
 enum class ContourStyle : uint8_t {
     rs274, // beside the end of the entry; round corners
     fanuc, // beside the start of the move after the entry; straight on at corners
@@ -49,17 +49,17 @@ struct Dialect {
     std::string_view name;
     bool supported;
     LengthUnit unit;       // until G20 or G21
-    bool unit_is_machines; // in place of that, the unit the machine is set up in
+    bool unit_is_machines; // instead, the unit that the machine is set up in
     RetractMode retract;   // until G98 or G99
     ArcTolerance arc;
     double peck_clearance; // mm left between a rapid back into the hole and its bottom
     bool dwell_without_point_is_milliseconds; // P500 is half a second, P0.5 as well
     bool dwell_takes_x_and_u;                 // G4 X1.5
     bool bare_length_offset_is_tool;          // G43 without H means the tool in the spindle
-    bool cycles_are_rs274;   // exact path, spindles that turn, G87 and G88 as NISTIR 6556 has them
-    bool begins_with_g0;     // axis words before any motion code are a rapid, else an error
-    bool motion_codes_move;  // G0 without axis words is a rapid to where it stands, G2 an error
-    bool cycles_are_motions; // G80-G89 share a modal group with G0-G3
+    bool cycles_are_rs274;  // exact path, spindles that turn, G87 and G88 as NISTIR 6556 has them
+    bool begins_with_g0;    // axis words before any motion code are a rapid, else an error
+    bool motion_codes_move; // G0 without axis words is a rapid to the current position, G2 an error
+    bool cycles_are_motions;          // G80-G89 share a modal group with G0-G3
     bool axis_words_serve_one_code;   // G0 and G28 in one block are refused
     bool unused_words_are_errors;     // a K word where nothing uses it
     bool machine_move_is_rapid;       // G53 under any motion code, G1 as well
@@ -68,7 +68,7 @@ struct Dialect {
     bool length_needs_g43;            // else a tool change puts its length on
     bool lone_h_is_length_offset;     // H without G43, while a length offset is on
     bool p_names_more_places;         // G54 P1, G30 P3
-    bool local_offset_is_axis_offset; // G52 and G92 write the same place
+    bool local_offset_is_axis_offset; // G52 and G92 write the same offset
     bool offset_writes_follow_g91;    // G10 L2 under G91 adds
     bool work_offsets_turn;           // G10 L2 R
     bool feed_before_units;           // F is read in the units of the blocks before
@@ -91,11 +91,11 @@ struct Dialect {
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
     bool tool_entries_by_axes;       // G10 L1, L10 and L11 take P and axis words
-    bool arc_after_contour_is_error; // a circle right behind G40
+    bool arc_after_contour_is_error; // an arc in the block after G40
     bool contour_breaks_are_errors;  // G28, G53 and the like between G41 and G40
     ContourCodes contour_codes;      // what is like G28 and G53 there
     ContourStyle contour_style;
-    bool radius_number_stays;              // G41 without D takes the D said last, D0 is none
+    bool radius_number_stays;              // G41 without D uses the last D, D0 cancels
     bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
     bool has_o_words;                      // o<name> sub, if, while ...
     bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
@@ -115,15 +115,15 @@ struct Dialect {
     std::string_view parameter_letter; // of numbered parameters: # or R
     bool has_parameter_zero;           // R0
     bool names_are_declared;           // DEF REAL X; names are of one level, also those with _
-    bool assigns_in_order;             // what a block assigns counts for what stands behind it
+    bool assigns_in_order;             // assignments take effect for the rest of the block
     bool machine_places_are_of_tip;    // G53 and SUPA leave the tool's length on
     bool text_end_returns;             // from a subprogram
     std::string_view radius_word;      // of an arc: R or CR=
     int first_alarm;                   // #3000=1 is the alarm after this
     int local_count;                   // #1 to this are of each level of calls
     size_t deepest_calls;
-    bool same_offset_stays;              // G54 while G54 is on does not look into the table again
-    bool offset_writes_miss_axis_offset; // G10 counts the place anew as if there were no G92
+    bool same_offset_stays;              // G54 while G54 is active does not reload the table
+    bool offset_writes_miss_axis_offset; // G10 recomputes the position without G92
     bool surface_speed_needs_s;          // G96 has its S in the same block
 };
 
@@ -137,7 +137,8 @@ struct Recognition {
     std::string reason; // "line 2 is a program number (O1000)"
 };
 
-/// The dialect a program looks like, and what in it says so. Looks at its first 10,000 blocks.
+/// The dialect that a program seems to be written in, and the evidence. Reads 10,000 blocks at
+/// most.
 Recognition recognise(const Program& program);
 
 } // namespace gcode

@@ -41,8 +41,8 @@ enum class Operation : uint8_t {
     truth_not,
     decimal_logarithm,
     sign,     // -1, 0 or 1
-    fraction, // what is behind the point
-    truncate, // what is before the point
+    fraction, // the digits after the point
+    truncate, // the digits before the point
     square,
     full_turn,          // an angle in degrees, from 0 to 360
     away_from_zero,     // the whole number that is not less in amount
@@ -76,7 +76,7 @@ enum class Operation : uint8_t {
 /// One step of an expression in postfix order.
 struct Instruction {
     Operation operation = Operation::number;
-    uint32_t column = 0; // where it stands, for messages
+    uint32_t column = 0; // for messages
     double number = 0.0;
     uint32_t name = 0; // index into ExpressionPool::names
 };
@@ -99,7 +99,7 @@ struct ExpressionPool {
     }
 };
 
-/// Where an expression reads its parameters.
+/// The source of parameters for expressions.
 class ParameterReader {
 public:
     virtual ~ParameterReader() = default;
@@ -110,25 +110,26 @@ public:
     virtual bool exists(std::string_view name) const = 0;
 };
 
-/// How the operators of a control behave where controls differ.
+/// How operators behave where controls differ.
 struct Arithmetic {
-    double equality = 0.0;                // EQ holds up to this difference
-    bool bitwise_logic = false;           // AND, OR and XOR work on bits, else on truth
-    bool fix_is_to_zero = false;          // FIX[-1.2] is -1 and FUP[-1.2] is -2, else -2 and -1
-    bool angles_have_no_sign = false;     // ASIN and ATAN[y]/[x] are from 0 to 360 degrees
-    bool rounds_lengths_to_steps = false; // ROUND behind X is to the smallest step, else to 1
-    double steps_in_one = 1.0;            // ROUND is to a whole number of these
+    double equality = 0.0;            // EQ holds up to this difference
+    bool bitwise_logic = false;       // AND, OR and XOR work on bits, else on truth
+    bool fix_is_to_zero = false;      // FIX[-1.2] is -1 and FUP[-1.2] is -2, else -2 and -1
+    bool angles_have_no_sign = false; // ASIN and ATAN[y]/[x] are from 0 to 360 degrees
+    bool rounds_lengths_to_steps =
+        false;                 // ROUND in an X word rounds to the smallest step, else to 1
+    double steps_in_one = 1.0; // ROUND is to a whole number of these
 };
 
-/// The value of an expression.
+/// Evaluates an expression.
 ///
 /// Units:  angles in degrees, lengths as the program has them.
 /// Errors: invalid_value with the column at fault: a division by zero, a root of a negative number,
-///         a parameter that is not there, a result that is no number.
+///         a missing parameter, a result that is not a number.
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
                              const ParameterReader& parameters, const Arithmetic& arithmetic);
 
-/// How programs count what holds (1) and what does not (0).
+/// The numeric value of a condition: 1 or 0.
 constexpr double truth(bool holds) { return holds ? 1.0 : 0.0; }
 
 } // namespace gcode

@@ -17,7 +17,7 @@ core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, Expr
                                      Number& number);
 
 /// Reads a value, or sums and products of values without brackets around them, as Fanuc and Siemens
-/// allow behind `=`.
+/// allow after `=`.
 ///
 /// Errors: syntax with the column at fault.
 core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
@@ -29,10 +29,10 @@ core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, Expres
 core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
                                          ExpressionPool& pool);
 
-/// Where Q0 and QR0 are kept among the numbered parameters; Q1 to Q1999 have their own numbers.
+/// The numbers under which Q0 and QR0 are stored; Q1 to Q1999 keep their own numbers.
 constexpr int q_zero = 2000, first_kept_q = 2001;
 
-/// Reads `Q5` or `QR5`, and gives the number under which it is kept.
+/// Reads `Q5` or `QR5` and gives the number under which it is stored.
 ///
 /// Errors: syntax without a number; unsupported for QL and QS; invalid_value when there is no such
 ///         parameter.

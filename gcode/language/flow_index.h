@@ -10,12 +10,12 @@
 
 namespace gcode {
 
-/// A flow statement and where it stands.
+/// A flow statement and its line.
 struct FlowMark {
     FlowKind kind = FlowKind::none;
     std::string name;
     uint32_t line = 0;
-    uint32_t scope = 0;          // line of the `sub` it stands in; 0 outside
+    uint32_t scope = 0;          // line of the `sub` around it; 0 outside
     bool closes_do_loop = false; // a `while` that ends a `do`
     uint32_t partner = 0;        // Siemens: line of the statement it belongs with; 0 when missing
 };
@@ -35,7 +35,7 @@ struct FlowIndex {
     /// The mark of a line; null when it has none.
     const FlowMark* at(uint32_t line) const;
 
-    /// The next mark behind a line, or the last one before it, of this scope and name that is one
+    /// The next mark after a line, or the last one before it, of this scope and name that is one
     /// of these kinds; null when there is none.
     const FlowMark* next(uint32_t line, uint32_t scope, std::string_view name,
                          std::initializer_list<FlowKind> kinds) const;
@@ -45,7 +45,7 @@ struct FlowIndex {
     /// The first mark of a kind and name in the program.
     const FlowMark* first(FlowKind kind, std::string_view name) const;
 
-    /// The line of the `sub` that a line stands in; 0 outside.
+    /// The line of the `sub` around a line; 0 outside.
     uint32_t scope_of(uint32_t line) const;
 
     /// The line with a block number: the first one from a line up to another.

@@ -11,7 +11,7 @@
 
 namespace gcode {
 
-/// A number as it stands in a program.
+/// A number in a program.
 struct Number {
     double value = 0.0;
     bool has_point = false;
@@ -29,7 +29,7 @@ constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c
 constexpr bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 constexpr bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
-/// A place in a line that moves on as things are read. A plain value: copy it to look ahead.
+/// A read position in a line. A plain value: copy it to look ahead.
 ///
 /// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, also inside numbers and
 ///         names.
@@ -41,26 +41,26 @@ struct Lexer {
     bool comma_is_point = false;     // Klartext: a comma may be the point as well
     bool has_exponents = false;      // Siemens: 1.5EX-3
 
-    /// The next character that is no blank, which stays to be read; NUL at the end.
+    /// The next character that is not blank, not consumed; NUL at the end.
     char peek() {
         while (at < line.size() && is_blank(line[at])) ++at;
         return at < line.size() ? line[at] : '\0';
     }
 
-    /// Whether the next character is this one, which is read then.
+    /// Consumes the next character if it is this one.
     bool accept(char wanted) {
         if (peek() != wanted) return false;
         ++at;
         return true;
     }
 
-    /// Whether these letters or signs come next, in any case, which are read then.
+    /// Consumes these letters or signs if they come next, in any case.
     bool accept_word(std::string_view wanted);
 
-    /// The letters from here on, upper case, blanks left out; they stay to be read.
+    /// The following letters in upper case without blanks, not consumed.
     std::string letters();
 
-    /// What stands from a place up to here.
+    /// The text from a position up to the current one.
     core::SourceSpan span_from(size_t begin) const { return span(begin, at); }
     core::SourceSpan span(size_t begin, size_t end) const {
         return {line_number, static_cast<uint32_t>(begin + 1), static_cast<uint32_t>(end - begin)};
@@ -69,10 +69,10 @@ struct Lexer {
         return std::string(line.substr(begin, at - begin));
     }
 
-    /// Whether a number stands here: a sign, a digit or a point.
+    /// Whether a number begins here: a sign, a digit or a point.
     bool is_at_number();
 
-    /// The number that stands here.
+    /// Reads a number.
     ///
     /// Errors: syntax when there is none, or it has too many digits.
     core::Result<Number> number();
@@ -83,10 +83,10 @@ struct Lexer {
     /// Errors: syntax when it has no end on the line.
     core::Result<Comment> bracket_comment();
 
-    /// All that is left of the line behind the character here.
+    /// The rest of the line after the current character.
     Comment line_comment();
 
-    /// That the character here has no meaning; says what it may have been.
+    /// The error for a character without a meaning, with a guess of what was intended.
     tl::unexpected<core::Error> unexpected_character();
 };
 

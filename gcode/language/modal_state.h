@@ -21,12 +21,12 @@ using core::AxisValues;
 using core::is_rotary;
 using core::is_secondary;
 
-/// mm and degrees, axis by axis; empty where nobody knows.
+/// mm and degrees, axis by axis; empty if unknown.
 using Position = core::AxisPosition;
 
 constexpr Position zero_position = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
-/// G54 to G59, G59.1 to G59.3; behind them the numbered ones, G54.1 P1 and on.
+/// G54 to G59, G59.1 to G59.3, then the numbered ones from G54.1 P1.
 constexpr size_t plain_offset_count = 9;
 constexpr size_t extended_offset_count = 300;
 constexpr size_t work_offset_count = plain_offset_count + extended_offset_count;
@@ -40,28 +40,28 @@ struct WorkOffset {
     bool operator==(const WorkOffset&) const = default;
 };
 
-/// What a program does to its coordinates by itself: scaling, mirror images, rotations, tilted
+/// The coordinate transforms of a program: scaling, mirror images, rotations, tilted
 /// planes. Maps the coordinates of the program to those of the work offset.
 struct ProgramFrame {
     core::Mat3 linear = core::Mat3(1.0);
     core::Vec3 shift = core::Vec3(0.0);
-    bool tilts_tool = false; // the tool is meant to leave the direction of Z
+    bool tilts_tool = false; // the tool axis leaves Z
 
     bool operator==(const ProgramFrame&) const = default;
 };
 
-/// Everything that stands between program and machine coordinates, as it is in effect:
+/// All active offsets between program and machine coordinates:
 /// machine = work + turned(frame(program) + axis + local) + tool.
 struct Offsets {
     size_t active = 0; // 0 is G54
     WorkOffset work;
     AxisValues local{};            // G52
-    Position axis = zero_position; // G92; empty when set from an unknown place
+    Position axis = zero_position; // G92; empty if set at an unknown position
     AxisValues tool{};             // length along Z, and along the other axes
     ProgramFrame frame;
     bool has_frame = false;    // whether `frame` is more than the identity
     bool tilted_plane = false; // G68.2
-    bool follows_tip = false;  // G43.4, G43.5: the tip goes straight, seen from the work
+    bool follows_tip = false;  // G43.4, G43.5: the tip moves straight relative to the work
     const core::Machine* machine = nullptr; // where the rotary axes are known; outlives all states
 
     bool operator==(const Offsets&) const = default;
@@ -78,7 +78,7 @@ inline bool mixes_axes(const Offsets& offsets) {
     return offsets.has_frame || offsets.work.rotation_deg != 0.0 || is_fixed_to_work(offsets);
 }
 
-/// Where the tip stands, in the frame of the table's link; the coordinates of work offsets, mm.
+/// The position of the tip in the frame of the table's link, given coordinates of work offsets, mm.
 core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work);
 
 /// What to add to program coordinates to reach machine coordinates of the gauge line, where nothing
@@ -100,7 +100,7 @@ struct Scaling {
     bool operator==(const Scaling&) const = default;
 };
 
-/// G51.1: coordinates are reflected at a place, axis by axis.
+/// G51.1: coordinates are mirrored at a point, axis by axis.
 struct MirrorImage {
     std::array<bool, 3> axes{};
     core::Vec3 place = core::Vec3(0.0);
@@ -118,7 +118,7 @@ struct PlaneRotation {
     bool operator==(const PlaneRotation&) const = default;
 };
 
-/// G68.2: coordinates of a plane that stands anywhere in the work coordinates.
+/// G68.2: the coordinate system of a tilted plane, in work coordinates.
 struct TiltedPlane {
     core::Mat3 axes = core::Mat3(1.0); // its directions as columns
     core::Vec3 origin = core::Vec3(0.0);
@@ -129,20 +129,20 @@ struct TiltedPlane {
 /// G16: positions in the plane are a radius and an angle.
 struct PolarPositions {
     std::array<double, 2> origin{};
-    std::optional<double> radius, angle_deg; // empty until the program says them
+    std::optional<double> radius, angle_deg; // empty until programmed
 
     bool operator==(const PolarPositions&) const = default;
 };
 
-/// What a program has said about its own coordinates, each until it is cancelled.
+/// The active coordinate transforms of a program.
 struct ProgramTransforms {
     std::optional<Scaling> scaling;
     MirrorImage mirror;
     std::optional<PlaneRotation> rotation;
     std::optional<TiltedPlane> tilt;
-    bool follows_vectors = false; // G43.5: motions say where the tool points to
+    bool follows_vectors = false; // G43.5: moves give the tool direction
     std::optional<PolarPositions> polar;
-    std::optional<Position> before_rotation; // what the program called the place where G68 stood
+    std::optional<Position> before_rotation; // program coordinates of the position at G68
 
     bool operator==(const ProgramTransforms&) const = default;
 };
@@ -158,7 +158,7 @@ core::Mat3 turned_about(int axis, double degrees);
 ///         reverses the angle of G68.
 ProgramFrame frame_of(const ProgramTransforms& transforms);
 
-/// Where mirror image and scaling put a place.
+/// A position after mirror image and scaling.
 core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place);
 
 enum class LengthUnit : uint8_t { inch, mm };                         // G20, G21
@@ -212,7 +212,7 @@ constexpr PlaneAxes axes_of(Plane plane) {
     return axes[static_cast<size_t>(plane)];
 }
 
-/// What a canned cycle keeps for the blocks after it; lengths as programmed, in mm.
+/// The modal words of a canned cycle; lengths as programmed, in mm.
 struct CannedCycle {
     int code = 0;                        // tenths: 810 for G81
     std::optional<double> bottom, r;     // Z and R in the XY plane
@@ -220,13 +220,13 @@ struct CannedCycle {
     std::optional<double> peck;          // Q
     std::array<double, 3> shift{};       // I, J, K of G76 and G87
     std::optional<double> initial_level; // where the axis was before the first of the cycles
-    bool r_is_way = false;               // R was said under G91: counts from there
-    bool bottom_is_way = false;          // Z was said under G91: counts from R
+    bool r_is_way = false;               // R was programmed with G91: relative to there
+    bool bottom_is_way = false;          // Z was programmed with G91: relative to R
 
     bool operator==(const CannedCycle&) const = default;
 };
 
-/// Everything one block leaves behind for the next. A plain value: copy it to go back in time.
+/// The modal state between two blocks. A plain value: copy it to go back in time.
 ///
 /// Lengths are stored in mm whatever G20/G21 says. What the program has not yet defined is empty,
 /// never zero.
@@ -234,7 +234,7 @@ struct ModalState {
     LengthUnit unit = LengthUnit::mm;
     bool unit_said = false;
     std::optional<MotionCode> motion;
-    std::optional<CannedCycle> cycle; // takes the axis words while it is there
+    std::optional<CannedCycle> cycle; // if present, uses the axis words
     Plane plane = Plane::xy;
     DistanceMode distance = DistanceMode::absolute;
     DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
@@ -244,8 +244,8 @@ struct ModalState {
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
     Side compensation = Side::none;
     double compensation_radius = 0.0; // mm; below zero it is on the other side
-    int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 is a mill
-    bool leaves_contour = false;      // since G40 no straight move was made
+    int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 for a mill
+    bool leaves_contour = false;      // no straight move since G40
     bool diameter_mode = false;       // G7: X words are diameters
     bool surface_speed = false;       // G96
     double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
@@ -253,7 +253,7 @@ struct ModalState {
 
     Position position;                       // tool tip, program coordinates
     Position home, second_home;              // G28, G30: machine coordinates
-    Position suspended_axis = zero_position; // kept by G92.2 for G92.3
+    Position suspended_axis = zero_position; // saved by G92.2 for G92.3
     bool axis_offset_on = false;             // G92 or G52 holds, be it zero
 
     std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
@@ -264,15 +264,15 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
     std::optional<core::OffsetNumber> length_number;
-    int radius_number = 0;    // the D said last, where it stays
+    int radius_number = 0;    // the last D, if it is modal
     double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
     Offsets offsets;
-    std::optional<Position> way_home; // where G28 passed, for G29; machine coordinates
+    std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is made of them
-    // Siemens: in which the last motion of the plane ended; 0, 0 when that is not known.
+    // Siemens: direction at the end of the last move in the plane; 0, 0 if unknown.
     std::array<double, 2> direction{};
 
-    /// Whether the length offset that is on is that of the tool in the spindle.
+    /// Whether the active length offset belongs to the tool in the spindle.
     bool length_is_tools() const {
         return length_sign != 0.0 && tool && length_number
                && core::value_of(*length_number) == core::value_of(*tool);

@@ -11,7 +11,7 @@
 
 namespace gcode {
 
-/// #1 to #33, index 0 unused. LinuxCNC has the first 30, which are 0 before anything is said.
+/// #1 to #33, index 0 unused. LinuxCNC has the first 30, initially 0.
 using LocalParameters = std::array<Value, 34>;
 
 using NamedValues = std::map<std::string, double, std::less<>>;

@@ -10,7 +10,7 @@
 namespace gcode {
 
 /// The file in a folder with this name, resolved; empty when there is none, or when it is a link
-/// that leads out of the folder. Who listens is told of the look.
+/// that leads out of the folder. File access observers are notified.
 std::optional<std::filesystem::path> file_in(const std::filesystem::path& folder,
                                              const std::string& name);
 

@@ -9,7 +9,7 @@
 
 namespace gcode {
 
-/// An entry of the control's offset table.
+/// An entry of the tool offset table.
 struct LengthOffset {
     double length = 0.0;   // mm along Z
     double wear = 0.0;     // mm, added to the length
@@ -22,9 +22,9 @@ struct LengthOffset {
     bool operator==(const LengthOffset&) const = default;
 };
 
-/// What a program reads and writes in the control beside its parameters.
+/// The tables of the control that programs read and write.
 struct Tables {
-    std::vector<WorkOffset> work{plain_offset_count}; // grows when a later one is written
+    std::vector<WorkOffset> work{plain_offset_count}; // grows when a higher one is written
     AxisValues external{}; // Fanuc's work offset that is added to all others
     std::map<core::OffsetNumber, LengthOffset> lengths;
     std::map<core::ToolNumber, double> tool_lengths, tool_diameters; // for numbers without one
@@ -32,7 +32,7 @@ struct Tables {
     bool operator==(const Tables&) const = default;
 };
 
-/// The work offset of an index; that of one never written is zero.
+/// The work offset of an index; zero if it was never written.
 WorkOffset work_offset(const Tables& tables, size_t index);
 WorkOffset& writable_work_offset(Tables& tables, size_t index);
 

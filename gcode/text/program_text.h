@@ -24,13 +24,13 @@ inline std::string_view without_line_end(std::string_view line) {
 /// text.
 std::string_view what_has_nuls(std::string_view text);
 
-/// Whether anything stands outside of comments, tape marks and blanks.
+/// Whether the text has anything besides comments, tape marks and blanks.
 bool has_a_block(std::string_view text);
 
 /// The number that a text is, if it is nothing but digits.
 std::optional<uint32_t> number_in(std::string_view text);
 
-/// The number of a block: behind N, or at the line's beginning where blocks are counted so.
+/// The number of a block: after N, or at the start of the line in languages without N.
 std::optional<uint32_t> block_number(std::string_view line, bool has_letter);
 
 /// Whether a character is a control character that no NC program has a use for. Tape readers left

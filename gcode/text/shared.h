@@ -21,7 +21,7 @@ public:
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
-    /// The value to write to, a copy of its own where others look at it as well.
+    /// The value for writing; copied first if it is shared.
     T& write() {
         if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
         return *value_;

@@ -24,10 +24,11 @@ public:
     LineWindows(const LineWindows&) = delete;
     LineWindows& operator=(const LineWindows&) = delete;
 
-    /// The text of a line, counted from 1, until the next call; empty behind the last one.
+    /// The text of a line, counted from 1, until the next call; empty after the last one.
     ///
-    /// Errors: io when the file cannot be read or is not as it was; syntax, as read_program, when
-    ///         what is read on the way is no NC program.
+    /// Errors: io when the file cannot be read or has changed; syntax, as read_program, when the
+    /// part
+    ///         read on the way is not an NC program.
     core::Result<std::optional<std::string_view>> line(size_t number);
 
 private:
@@ -86,7 +87,7 @@ struct Program {
     core::Result<bool> has_line(size_t number) const;
 
     /// The text of a line that it has, counted from 1, without its line end. When it is read in
-    /// windows the text stands until the next look at a line.
+    /// windows the text is valid until the next line is requested.
     std::string_view line(size_t number) const;
 
     /// The same, or empty when there is no such line.
