@@ -13,7 +13,7 @@ The first words after the ``` of a code block say what it is:
 
 All recipes go into one copy. Only the changed sources are compiled; they are linked in front of the
 libraries in BUILD. So an edit of a header must not change the size or order of anything that other
-sources read. Rows that a recipe adds to tests/planted/table.txt are run like those that are there.
+sources read, and an example must not change a function that the compiler inlines elsewhere. Rows that a recipe adds to tests/planted/table.txt are run like those that are there.
 """
 import json
 import os
@@ -28,10 +28,6 @@ import documentation
 import tutorial
 
 PLANTED = "tests/planted/table.txt"
-
-# Sources with short functions, which the compiler inlines into the other sources of their group: these
-# are compiled as well.
-INLINED = {"gcode/language/dialect.cpp"}
 
 
 class Stale(Exception):
@@ -146,55 +142,51 @@ def run(command, **options):
     return done.stdout
 
 
-def compile_entries(build):
-    """The entry of the compile database for each source, with the sources of its group."""
+def compile_commands(build):
+    """The command that compiles each source, and whether it is compiled in a group with others."""
     found = {}
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
         file = entry["file"]
         if "/tests/" in file:
             continue
-        group = [file]
-        if "/Unity/" in file:
-            group = re.findall(r'#include "(.*)"', pathlib.Path(file).read_text(encoding="utf-8"))
-        found.update({source: (entry, group) for source in group})
+        if "/Unity/" not in file:
+            found[file] = (entry["command"], False)
+            continue
+        for source in re.findall(r'#include "(.*)"', pathlib.Path(file).read_text(encoding="utf-8")):
+            found[source] = (entry["command"], True)
     return found
 
 
 def objects_of(overlay, build):
-    """Compiles the sources that the recipes change or add; new ones as their neighbours are compiled."""
-    entries = compile_entries(build)
-    neighbours = {str(pathlib.Path(source).parent): entry for source, (entry, _) in entries.items()}
+    """Compiles the sources that the recipes change or add, those of one library together where the build
+    has groups; new sources as their neighbours are compiled."""
+    commands = compile_commands(build)
+    neighbours = {os.path.dirname(source): command for source, command in commands.items()}
     listed = "".join((overlay.folder / name).read_text(encoding="utf-8") for name in overlay.names
                      if name.endswith("CMakeLists.txt"))
-    objects = []
-    for name in sorted(name for name in overlay.names if name.endswith(".cpp")):
+    groups = {}
+    for name in sorted(name for name in overlay.names if name.endswith(".cpp") and not name.startswith("tests/")):
         source = str(overlay.root / name)
-        if name in overlay.added:
-            if os.path.basename(name) not in listed:
-                raise Stale(f"{name}: a new source that no CMakeLists.txt of a recipe names")
-            entry, group = neighbours[os.path.dirname(source)], [source]
-        elif source in entries:
-            entry, group = entries[source]
-        elif name.startswith("tests/"):
-            continue
-        else:
+        if name in overlay.added and os.path.basename(name) not in listed:
+            raise Stale(f"{name}: a new source that no CMakeLists.txt of a recipe names")
+        if name not in overlay.added and source not in commands:
             raise Stale(f"{name}: no library has this source")
-        sources = group if name in INLINED else [source]
-        objects.append(compiled_object(overlay, entry, sources, len(objects)))
-    return objects
+        command, grouped = commands.get(source) or neighbours[os.path.dirname(source)]
+        library = re.search(r" -o (\S+\.dir)/", command)[1]
+        groups.setdefault(library if grouped else name, (command, []))[1].append(name)
+    return [compiled_object(overlay, build, command, names, number)
+            for number, (command, names) in enumerate(groups.values())]
 
 
-def compiled_object(overlay, entry, sources, number):
+def compiled_object(overlay, build, command, names, number):
     group, target = overlay.folder / f"group{number}.cpp", overlay.folder / f"group{number}.o"
-    names = [os.path.relpath(source, overlay.root) for source in sources]
-    group.write_text("".join(f'#include "{overlay.folder if name in overlay.names else overlay.root}/{name}"\n'
-                             for name in names), encoding="utf-8")
-    words = shlex.split(entry["command"])
+    group.write_text("".join(f'#include "{overlay.folder / name}"\n' for name in names), encoding="utf-8")
+    words = shlex.split(command)
     words[words.index("-o") + 1] = str(target)
     words[words.index("-c") + 1] = str(group)
     words = ["-O1" if re.fullmatch("-O[23]", word) else word for word in words if word != "-fpch-preprocess"]
-    at = next(i for i, word in enumerate(words) if word == f"-I{overlay.root}")
-    run([*words[:at], f"-I{overlay.folder}", *words[at:]], cwd=entry["directory"])
+    at = words.index(f"-I{overlay.root}")
+    run([*words[:at], f"-I{overlay.folder}", *words[at:]], cwd=build)
     return str(target)
 
 
