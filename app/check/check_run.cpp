@@ -59,9 +59,9 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
             return device->judge(block, before);
         });
         check.run.engine = Engine::coprocessor;
-        check.run.assumptions.push_back("clearances are judged by the coprocessor alone, which may "
-                                        "refuse what is clear: its models stand out of the bodies "
-                                        "by about a mesh size");
+        check.run.assumptions.push_back(
+            "the coprocessor alone judges clearances and may refuse a clear block: its models are "
+            "larger than the bodies by about a mesh size");
     }
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)

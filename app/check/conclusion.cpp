@@ -35,13 +35,12 @@ void look_for_judged_motions(CheckRun& run) {
     finding.rule = "undecided";
     finding.severity = core::Severity::error;
     finding.block = first->block;
-    finding.message = "No motion of the program could be judged.";
+    finding.message = "No motion of the program could be checked.";
     const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(),
                                      [](const auto& f) { return f.rule == "first-move"; });
-    finding.cure =
-        !is_lost ? "Mend first what the other findings name."
-                 : "Say where the axes stand at the first block: `start` under [program] in the "
-                   "set-up, or the machine's home.";
+    finding.cure = !is_lost ? "Correct the other findings first."
+                            : "State the axis positions at the first block: `start` under "
+                              "[program] in the set-up, or the machine's home position.";
     run.findings.push_back(finding);
 }
 
@@ -151,14 +150,15 @@ std::optional<core::Finding> doubt_about(const CheckedBlock& block, const Allowe
                                          bool comments_count) {
     if (!core::default_severity(rule.name)) {
         core::Finding finding = about_comment(block, rule, core::Severity::warning);
-        finding.message += ", and there is no rule of that name: nothing is allowed by it.";
-        finding.cure = fmt::format("Write {} if that is meant.", core::nearest_rule(rule.name));
+        finding.message += ", but there is no such rule; the comment has no effect.";
+        finding.cure =
+            fmt::format("Write {} if you mean that rule.", core::nearest_rule(rule.name));
         return finding;
     }
     if (comments_count) return std::nullopt;
     core::Finding finding = about_comment(block, rule, core::Severity::note);
-    finding.message += ", but the set-up does not permit that: the comment does not count.";
-    finding.cure = "Say allow_comments = true under [rules] if comments shall count.";
+    finding.message += ", but the set-up does not permit that; the comment has no effect.";
+    finding.cure = "Set allow_comments = true under [rules] to permit such comments.";
     return finding;
 }
 
@@ -191,9 +191,9 @@ void say_severities(CheckRun& run) {
         if (severity == own) continue;
         run.assumptions.push_back(
             severity == core::Severity::off
-                ? fmt::format("{} is switched off by the set-up; a collision is told all the same",
+                ? fmt::format("the set-up switches {} off; collisions are reported all the same",
                               rule)
-                : fmt::format("the set-up has {} told as {}, not as {}", rule,
+                : fmt::format("the set-up reports {} as {} instead of {}", rule,
                               core::name_of(severity), core::name_of(own)));
     }
 }
@@ -231,18 +231,18 @@ void apply_allowed_rules(CheckRun& run, bool comments_count) {
             allowed[finding.rule].push_back(line);
         else
             refused[collides ? "a collision is never allowed"
-                             : "the set-up does not say allow_comments = true under [rules]"]
+                             : "allow_comments = true is missing under [rules] of the set-up"]
                 .push_back(line);
         return comments_count && !collides;
     };
     std::erase_if(run.findings, judge);
     for (const auto& [rule, lines] : allowed)
         run.assumptions.push_back(fmt::format(
-            "comments in the program allow {} in {}: {} left out", rule, lines_text(lines),
+            "comments in the program allow {} in {}: {} omitted", rule, lines_text(lines),
             lines.size() == 1 ? "one finding is" : fmt::format("{} findings are", lines.size())));
     for (const auto& [why, lines] : refused)
         run.assumptions.push_back(fmt::format(
-            "a comment that allows a rule does not count in {}: {}", lines_text(lines), why));
+            "a comment that allows a rule has no effect in {}: {}", lines_text(lines), why));
 }
 
 namespace {
@@ -312,16 +312,16 @@ core::Finding finding_of(const core::DeviationRegion& region) {
     finding.rule = gouge ? "gouge" : "rest-material";
     if (region.block) finding.block = core::BlockIndex{*region.block};
     const std::string where =
-        fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over some {:.1f} mm2",
+        fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over about {:.1f} mm2",
                     region.place.x, region.place.y, region.place.z, region.area);
     finding.message =
         fmt::format("{} mm {} {}.", core::at_most(region.amount),
-                    gouge ? "of the part are missing" : "more than the part are left", where);
+                    gouge ? "of the part is missing" : "too much material is left", where);
     if (gouge)
         finding.cure = region.block
-                           ? "Look at the path, the tool's sizes and the offsets of this block."
-                           : "The raw stock does not hold the part here: a larger stock, or "
-                             "another place for the part.";
+                           ? "Check the path, the tool's dimensions and the offsets of this block."
+                           : "The raw stock does not contain the part here: use a larger stock or "
+                             "move the part.";
     finding.shortfall = region.amount;
     return finding;
 }
@@ -343,7 +343,7 @@ void add_findings(CheckRun& run, core::Deviation kind) {
     if (more == 0) return;
     core::Finding finding;
     finding.rule = kind == core::Deviation::gouge ? "gouge" : "rest-material";
-    finding.message = fmt::format("{} more regions are off the part by less than that.", more);
+    finding.message = fmt::format("{} more regions deviate from the part by less.", more);
     add(run, finding);
 }
 
@@ -399,8 +399,9 @@ core::Result<std::string> comparison_file(const CheckRun& run, const std::string
          fmt::format("yellow to red: part missing, {} to {} mm and more", tolerance,
                      5.0 * tolerance),
          fmt::format("cyan to blue: left over, {} to {} mm and more", tolerance, 5.0 * tolerance),
-         fmt::format("colours are the worst beside each corner; measured every {} mm",
-                     core::at_most_figures(run.comparison->between_samples, 2))},
+         fmt::format(
+             "each corner has the colour of the largest deviation next to it; measured every {} mm",
+             core::at_most_figures(run.comparison->between_samples, 2))},
         colours);
 }
 

@@ -81,13 +81,13 @@ core::Finding finding_of(const core::Setup& setup, size_t index, const OffsetUse
     finding.rule = "offset-implausible";
     finding.severity = core::severity_of(setup, finding.rule);
     finding.block = above ? use.above_block : use.below_block;
-    finding.message = fmt::format(
-        "Under {} the program feeds between Z{:.3f} and Z{:.3f}, the stock lies between Z{:.3f} "
-        "and Z{:.3f}: {} of it.",
-        names[index], use.lowest, use.highest, use.stock_bottom, use.stock_top,
-        above ? "all is cut above the top" : "the cuts lie below the bottom");
-    finding.cure = fmt::format("Look where the program has its datum, at the top or at the bottom "
-                               "of the stock, and set Z of {} there.",
+    finding.message =
+        fmt::format("In {} the program feeds between Z{:.3f} and Z{:.3f}, but the stock is between "
+                    "Z{:.3f} and Z{:.3f}: {}.",
+                    names[index], use.lowest, use.highest, use.stock_bottom, use.stock_top,
+                    above ? "all cuts are above the stock" : "the cuts are below the stock");
+    finding.cure = fmt::format("Check whether the program's zero is at the top or the bottom of "
+                               "the stock, and set Z of {} there.",
                                names[index]);
     return finding;
 }
@@ -173,11 +173,10 @@ std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const 
     finding.rule = "units-jump";
     finding.severity = core::severity_of(setup, finding.rule);
     finding.block = watch.first;
-    finding.message =
-        fmt::format("The program feeds over {:.1f} mm, the stock is {:.1f} mm: about "
-                    "25.4 times as {}, as if mm and inches were taken for each other.",
-                    longest, widest, large ? "much" : "little");
-    finding.cure = "Look at G20 and G21, and at the unit of the set-up.";
+    finding.message = fmt::format("The feed moves span {:.1f} mm and the stock {:.1f} mm, about "
+                                  "25.4 times as {}: mm and inches may be mixed up.",
+                                  longest, widest, large ? "much" : "little");
+    finding.cure = "Check G20 and G21, and the units of the set-up.";
     if (finding.severity == core::Severity::off) return std::nullopt;
     return finding;
 }

@@ -47,9 +47,9 @@ void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
                                           core::at_most(core::chord_error(setup.mesh_size), 4)));
     for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
-        "a clearance that keeps its allowance to within {:g} mm keeps it", core::resolution));
+        "clearances are compared with the minimum to within {:g} mm", core::resolution));
     if (setup.stock.tolerance == 0.0)
-        run.assumptions.push_back("the raw stock is exactly as large as the set-up says");
+        run.assumptions.push_back("the raw stock has exactly the size in the set-up");
     run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
                                   ? "rapids run straight"
                                   : "rapids run as dog-legs, each axis at its own speed");
@@ -117,7 +117,7 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     SetupFile& file = check.file;
     if (job.setup_was_found)
         run.assumptions.push_back(
-            fmt::format("the set-up is {}, because it stands beside the program", job.setup));
+            fmt::format("the set-up is {}, because it is next to the program", job.setup));
     if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
@@ -176,15 +176,15 @@ std::vector<std::string> timing_notes(const core::Machine& machine) {
         std::string& names = machine.axes[i].acceleration ? known : unknown;
         names += (names.empty() ? "" : ", ") + std::string(1, core::axis_letters[i]);
     }
-    if (known.empty()) return {"feeds and rapids run at full speed: accelerations are not counted"};
+    if (known.empty()) return {"feeds and rapids run at full speed: accelerations are ignored"};
     std::vector<std::string> notes;
     if (!unknown.empty())
         notes.push_back(fmt::format(
-            "axes whose acceleration is not stated are at full speed at once: {}", unknown));
-    notes.push_back(fmt::format("corners are passed within {} mm, unless the program says how "
+            "axes without a stated acceleration reach full speed at once: {}", unknown));
+    notes.push_back(fmt::format("corners are rounded within {} mm unless the program states it "
                                 "(G61, G61.1, G64 P); clearances are those of sharp corners",
                                 core::default_blend_tolerance));
-    notes.push_back("changes of tool and spindle take no time beyond coming to rest");
+    notes.push_back("tool and spindle changes take no time beyond stopping the axes");
     return notes;
 }
 

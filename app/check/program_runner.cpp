@@ -163,15 +163,14 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& bloc
     if (lowering.moved_tilted)
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
-                           "this block moves in a tilted plane or with a tool that is turned, "
-                           "and the machine of the set-up has no rotary axes that could: add "
-                           "them as [[axis]]",
+                           "this block moves in a tilted plane or with a tilted tool, but the "
+                           "machine in the set-up has no rotary axes: add them as [[axis]]",
                            std::string(block.file)};
     if (!lowering.other_axis) return std::nullopt;
     return core::Error{core::ErrorCode::unsupported,
                        {.line = block.line, .column = 1},
-                       fmt::format("this block moves axis {}, which the machine of the set-up "
-                                   "does not have: add an [[axis]] of that name to its machine",
+                       fmt::format("this block moves axis {}, which the machine in the set-up does "
+                                   "not have: add an [[axis]] of that name",
                                    gcode::axis_letters[*lowering.other_axis]),
                        std::string(block.file)};
 }
@@ -275,9 +274,8 @@ std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& 
     finding.severity = core::severity_of(setup, finding.rule);
     if (finding.severity == core::Severity::off) return std::nullopt;
     finding.message = error.message + ". The control stops here with an alarm.";
-    finding.cure = finding.rule == "no-feed" ? "Say F in this block, in the unit of the feed mode."
-                                             : "Look at the end, the centre and the plane of this "
-                                               "arc.";
+    finding.cure = finding.rule == "no-feed" ? "Add F to this block, in the unit of the feed mode."
+                                             : "Check the end point, centre and plane of this arc.";
     return finding;
 }
 
@@ -308,9 +306,8 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
                                  run_.setup.tool_at_start));
     state_.control = restart.state;
     state_.lowering = gcode::initial_lowering(state_.control);
-    run_.assumptions.push_back(fmt::format("the program is started at line {}, on a control "
-                                           "that was just switched on",
-                                           number));
+    run_.assumptions.push_back(fmt::format(
+        "the program starts at line {}, with the control in its power-on state", number));
     make_moves_before(number);
     if (restart.missing.empty()) return {};
     core::Finding finding;
@@ -318,10 +315,9 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     finding.severity = core::severity_of(run_.setup, finding.rule);
     finding.block = core::BlockIndex{0};
     finding.message =
-        fmt::format("Started here, the program cuts without what the lines before have said: "
-                    "{}.",
+        fmt::format("Started here, the program cuts without settings of earlier lines: {}.",
                     fmt::join(restart.missing, ", "));
-    finding.cure = "Enter that by hand first, or start at the tool change before.";
+    finding.cure = "Enter them by hand first, or start at the previous tool change.";
     if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
     return {};
 }
@@ -339,7 +335,7 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         state_.machine.fixtures_there[move.from] = false;
         if (move.to) state_.machine.fixtures_there[*move.to] = true;
         run_.assumptions.push_back(
-            fmt::format("{} has been moved, as the lines before the start say",
+            fmt::format("{} has been moved, as stated in lines before the start",
                         run_.setup.fixtures[move.from].name));
     }
 }
@@ -421,11 +417,10 @@ void ProgramRunner::report_missing_moves() {
         if (finding.severity == core::Severity::off) continue;
         finding.message =
             fmt::format("{} is never moved: the program {}.", run_.setup.fixtures[move.from].name,
-                        move.line ? fmt::format("carries out no block of line {}", *move.line)
+                        move.line ? fmt::format("runs no block of line {}", *move.line)
                                   : fmt::format("has no M{}", *move.code));
-        finding.cure = move.line ? "Let the set-up name a line with a block that runs, or an "
-                                   "M code."
-                                 : "Write the M code that stops the program for the move.";
+        finding.cure = move.line ? "Name a line that is run in the set-up, or an M code."
+                                 : "Add the M code that stops the program for the move.";
         run_.findings.push_back(std::move(finding));
     }
 }
@@ -492,12 +487,12 @@ void ProgramRunner::end() {
 
 void ProgramRunner::stop_here() {
     const CheckedBlock& last = run_.blocks.back();
-    run_.stopped = named({core::ErrorCode::io,
-                          {.line = last.line, .column = 1},
-                          "the check was stopped after this block: the rest of the program is "
-                          "not checked",
-                          last.file},
-                         check_.program->file);
+    run_.stopped =
+        named({core::ErrorCode::io,
+               {.line = last.line, .column = 1},
+               "the check was stopped after this block; the rest of the program is not checked",
+               last.file},
+              check_.program->file);
     end();
 }
 

@@ -21,7 +21,7 @@ core::Result<std::string> text_of_file(const std::string& path) {
     std::string text(std::istreambuf_iterator<char>(file), {});
     if (file.bad() || !file.is_open())
         return tl::unexpected<core::Error>(
-            {core::ErrorCode::io, {}, "cannot be read any more", path});
+            {core::ErrorCode::io, {}, "can no longer be read", path});
     return text;
 }
 
@@ -63,15 +63,16 @@ std::string proposed_setup_path(const CheckJob& job) {
 core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                               const FileWriter& write) {
     std::error_code failure;
-    if (path.empty()) return setup_error(path, "a file needs a name");
+    if (path.empty()) return setup_error(path, "the file name is empty");
     if (are_one_file(path, job.program)) return setup_error(path, "is the program itself");
-    if (!may_replace && fs::exists(path, failure)) return setup_error(path, "is there already");
+    if (!may_replace && fs::exists(path, failure)) return setup_error(path, "already exists");
     FEELER_TRY(const std::string text, setup_file_text(job));
     const bool is_elsewhere =
         !job.setup.empty() && !are_one_file(folder_of(path), folder_of(job.setup));
     if (is_elsewhere && names_relative_files(text))
-        return setup_error(path, fmt::format("the set-up names files beside it: save it in {}",
-                                             folder_of(job.setup).string()));
+        return setup_error(path,
+                           fmt::format("the set-up names files by relative paths: save it in {}",
+                                       folder_of(job.setup).string()));
     return write(path, text);
 }
 

@@ -68,9 +68,9 @@ TEST_F(Batch, ChecksAFolderWithASetupBesideEachProgram) {
 }
 
 TEST_F(Batch, SaysThatItFoundTheSetup) {
-    EXPECT_THAT(check({all(), "--verbose"}).out, HasSubstr("because it stands beside the"));
+    EXPECT_THAT(check({all(), "--verbose"}).out, HasSubstr("because it is next to the"));
     EXPECT_THAT(check({folder / "near.nc", "--format", "json"}).out,
-                HasSubstr("because it stands beside the program"));
+                HasSubstr("because it is next to the program"));
 }
 
 TEST_F(Batch, EndsWithTwoAndGoesOnAfterABadProgram) {

@@ -89,9 +89,9 @@ TEST(CycleTime, SaysWhatIsNotKnown) {
             if (assumption.find(words) != std::string::npos) return true;
         return false;
     };
-    EXPECT_TRUE(says(SetupWriter::mill(), "accelerations are not counted"));
-    EXPECT_FALSE(says(quick_mill(), "accelerations are not counted"));
-    EXPECT_TRUE(says(quick_mill(), "corners are passed within 0.05 mm"));
+    EXPECT_TRUE(says(SetupWriter::mill(), "accelerations are ignored"));
+    EXPECT_FALSE(says(quick_mill(), "accelerations are ignored"));
+    EXPECT_TRUE(says(quick_mill(), "corners are rounded within 0.05 mm"));
     EXPECT_TRUE(says(SetupWriter::axis("X", "acceleration = 100\n"), "at once: Y, Z"));
 }
 

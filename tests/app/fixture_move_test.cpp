@@ -84,7 +84,7 @@ TEST(FixtureMove, OfALineBeforeARestartHasBeenMade) {
             check(with_post(move + "remove = true\n"), text, {"--start-line", "N10"});
         EXPECT_EQ(away.at_line(12).verdict, "clear") << when;
         EXPECT_NE(std::find(away.assumptions.begin(), away.assumptions.end(),
-                            "post has been moved, as the lines before the start say"),
+                            "post has been moved, as stated in lines before the start"),
                   away.assumptions.end());
         const Checked beside =
             check(with_post(move + "at = [0, 0, 5]\n"), text, {"--start-line", "N10"});

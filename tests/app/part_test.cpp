@@ -48,7 +48,7 @@ TEST(Part, IsAnErrorWhereItIsGouged) {
     EXPECT_EQ(checked.findings[0].rule, "gouge");
     EXPECT_EQ(checked.findings[0].severity, "error");
     EXPECT_EQ(checked.findings[0].line, test_support::first_line + 2);
-    EXPECT_EQ(checked.findings[0].message.find("5.000 mm of the part are missing"), 0u);
+    EXPECT_EQ(checked.findings[0].message.find("5.000 mm of the part is missing"), 0u);
     const auto part = part_of(slot, part_up_to("0"));
     EXPECT_NEAR(part["largest_gouge"].get<double>(), 5.0, 1e-6);
     ASSERT_EQ(part["regions"].size(), 1u);

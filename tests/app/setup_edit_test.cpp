@@ -357,7 +357,7 @@ TEST(SavedSetup, NeverReplacesAFileUnasked) {
     const std::string path = own.folder.write("s.toml", "mine\n");
     const auto refused = app::save_setup(own.job, path, false, app::write_output);
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("is there already"));
+    EXPECT_THAT(refused.error().message, HasSubstr("already exists"));
     EXPECT_EQ(bytes_of(path), "mine\n");
     EXPECT_FALSE(app::save_setup(own.job, own.job.program, true, app::write_output));
     EXPECT_EQ(bytes_of(own.job.program), pocket);

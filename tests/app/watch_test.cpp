@@ -73,7 +73,7 @@ TEST_F(Watch, SeesASetupThatChangesGoesAndComes) {
     std::filesystem::remove(folder / "plate.toml");
     EXPECT_THAT(pass(terminal), HasSubstr("no set-up"));
     folder.write("plate.toml", setup("42"));
-    EXPECT_THAT(pass(terminal), HasSubstr("because it stands beside"));
+    EXPECT_THAT(pass(terminal), HasSubstr("because it is next to"));
     EXPECT_EQ(end(terminal), 0);
 }
 

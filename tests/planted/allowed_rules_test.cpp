@@ -63,7 +63,7 @@ TEST(AllowedRules, DoNotCountWhereTheSetUpIsSilent) {
     const Checked checked =
         checked_with("(feeler: allow rapid-near-clamp)", "allow_comments = false\n");
     EXPECT_EQ(checked.errors(), "rapid-near-clamp 8");
-    EXPECT_TRUE(says(checked, "does not count in line 8"));
+    EXPECT_TRUE(says(checked, "has no effect in line 8"));
 }
 
 TEST(AllowedRules, CoverTheirRuleAndTheirLineOnly) {
@@ -92,7 +92,7 @@ TEST(AllowedRules, SayWhichNameIsNoRule) {
         if (finding.rule != "program") continue;
         EXPECT_THAT(finding.message, testing::HasSubstr("Line 8, column 22: "));
         EXPECT_THAT(finding.message, testing::HasSubstr("rapid-near-clmp"));
-        EXPECT_EQ(finding.cure, "Write rapid-near-clamp if that is meant.");
+        EXPECT_EQ(finding.cure, "Write rapid-near-clamp if you mean that rule.");
     }
 }
 
@@ -110,8 +110,9 @@ TEST(AllowedRules, SayOnceWhichCommentIsNotPermittedAlsoWhereNothingWasFound) {
 TEST(AllowedRules, SayWhichSeveritiesTheSetUpChanged) {
     const Checked lowered = checked_with("", "rapid-near-clamp = \"warning\"\n");
     EXPECT_EQ(lowered.of_severity("warning"), "rapid-near-clamp 8");
-    EXPECT_TRUE(says(lowered, "rapid-near-clamp told as warning, not as error"));
-    EXPECT_TRUE(says(checked_with("", "rapid-near-clamp = \"off\"\n"), "switched off"));
+    EXPECT_TRUE(says(lowered, "reports rapid-near-clamp as warning instead of error"));
+    EXPECT_TRUE(
+        says(checked_with("", "rapid-near-clamp = \"off\"\n"), "switches rapid-near-clamp off"));
 }
 
 } // namespace
