@@ -47,8 +47,8 @@ core::Transform read_frame(TableReader& table, const BodyContext& context) {
     if (const auto found = context.frames.find(frame)) return *found;
     std::vector<std::string> known;
     for (const auto& [name, transform] : context.frames.machine_from) known.push_back(name);
-    table.refuse("frame",
-                 fmt::format("\"{}\" is not known; frames here: {}", frame, fmt::join(known, " ")));
+    table.refuse("frame", fmt::format("\"{}\" is not known; known frames: {}", frame,
+                                      fmt::join(known, " ")));
     return {};
 }
 
@@ -125,7 +125,7 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
                         const core::Transform& frame_from_body) {
     const bool rotated = frame_from_body.rotation != core::Mat3(1.0);
     if (shape == "cylinder") {
-        if (rotated) table.refuse("rotate_deg", "turns no cylinder: say its axis instead");
+        if (rotated) table.refuse("rotate_deg", "cannot turn a cylinder: state its axis instead");
         const CylinderKey c = read_cylinder(table);
         return {core::SolidCylinder{frame_from_body.translation, c.radius, c.height, c.axis}, 0.0};
     }
@@ -166,9 +166,9 @@ bool has_no_shape(const TableReader& table) {
 void read_envelope(TableReader& table, BodyContext& context, const Placement& placement) {
     SetupFile& file = context.file;
     if (!has_no_shape(table))
-        table.refuse("margin", "is for a stock that is inferred from the program, without a shape");
+        table.refuse("margin", "applies only to an inferred stock, which has no shape here");
     for (const char* key : {"at", "rotate_deg"})
-        if (table.has(key)) table.refuse(key, "means nothing for a stock without a shape");
+        if (table.has(key)) table.refuse(key, "does not apply to a stock without a shape");
     if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= 1000.0))
         table.refuse("margin", "must lie between 0 and 1000 mm");
     file.needs_stock = true;
@@ -207,7 +207,7 @@ std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup,
     if (table.has("line") == table.has("code")) table.need("one of line, code");
     const bool removed = table.boolean("remove").value_or(false);
     if (removed && (table.has("at") || table.has("rotate_deg")))
-        table.refuse("remove", "takes the fixture away: it has no place then");
+        table.refuse("remove", "removes the fixture: do not give a position as well");
     if (!removed) move.to = setup.fixtures.size();
     const core::Transform to = read_pose(table);
     table.finish();
@@ -251,8 +251,8 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
     for (const core::MachineBody& body : setup.machine.bodies) {
         for (const core::Fixture& other : setup.fixtures)
             if (other.name == body.name)
-                table.refuse("fixture",
-                             fmt::format("\"{}\" is the name of a body of the machine", body.name));
+                table.refuse("fixture", fmt::format("\"{}\" is already the name of a machine body",
+                                                    body.name));
         if (body.link == core::LinkId::base || core::is_on_table_side(setup.machine, body.link))
             setup.fixtures.push_back({.name = body.name,
                                       .body = body.body,
@@ -300,8 +300,8 @@ void read_part(TableReader& table, BodyContext& context) {
         if (!(*tolerance > 0.0)) table.refuse("tolerance", "must be above 0");
         part.tolerance = *tolerance;
     } else {
-        context.file.assumptions.push_back(
-            fmt::format("the result may be off the part by {} mm either way", part.tolerance));
+        context.file.assumptions.push_back(fmt::format(
+            "the result may deviate from the part by {} mm either way", part.tolerance));
     }
     table.finish();
     if (mesh.triangles.empty()) return;
@@ -314,11 +314,10 @@ void read_fixture(TableReader& table, BodyContext& context) {
     core::Fixture fixture;
     fixture.name = table.string("name").value_or("");
     if (fixture.name.empty()) return table.need("name");
-    if (core::names_a_kind(fixture.name))
-        table.refuse("name", "is a word with a meaning of its own");
+    if (core::names_a_kind(fixture.name)) table.refuse("name", "is a reserved word");
     for (const core::Fixture& other : setup.fixtures)
         if (other.name == fixture.name)
-            table.refuse("name", fmt::format("\"{}\" is there twice", fixture.name));
+            table.refuse("name", fmt::format("\"{}\" is defined twice", fixture.name));
     fixture.expendable = table.boolean("expendable").value_or(false);
     const core::Transform machine_from_frame = read_frame(table, context);
     const core::Transform stock_from_frame =

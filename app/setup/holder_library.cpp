@@ -43,7 +43,7 @@ void read_holder(TableReader& table, HolderLibrary& library) {
     if (cones.empty()) table.refuse_whole("has no height");
     table.finish();
     if (!library.emplace(name, std::move(cones)).second)
-        table.refuse("name", fmt::format("\"{}\" is there twice", name));
+        table.refuse("name", fmt::format("\"{}\" is defined twice", name));
 }
 
 core::Result<HolderLibrary> read_library(const toml::table& parsed) {
@@ -101,7 +101,7 @@ cones_of_outline(const std::vector<std::vector<double>>& points) {
     std::vector<core::ConeStep> cones;
     for (size_t i = 0; i < points.size(); ++i) {
         const double r = points[i][0], z = points[i][1];
-        if (r < 0.0) return core::fail(ErrorCode::invalid_value, "has an r below 0");
+        if (r < 0.0) return core::fail(ErrorCode::invalid_value, "has a negative r");
         if (i == 0) continue;
         const double r_below = points[i - 1][0], z_below = points[i - 1][1];
         if (z < z_below)

@@ -94,8 +94,8 @@ core::Result<IniFile> read_ini(const std::string& path) {
         if (text.starts_with("#INCLUDE"))
             return tl::unexpected(core::Error{core::ErrorCode::unsupported,
                                               {.line = static_cast<uint32_t>(line)},
-                                              "#INCLUDE is not followed; give the file with the "
-                                              "sections RS274NGC, EMCIO and TRAJ in it",
+                                              "#INCLUDE is not supported; give the file that has "
+                                              "the sections RS274NGC, EMCIO and TRAJ",
                                               path});
         if (text.empty() || text[0] == '#' || text[0] == ';') continue;
         if (text[0] == '[') {
@@ -184,11 +184,11 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
     }
     std::string note;
     if (!taken.empty())
-        note = fmt::format("{} of {} are those of the ini file",
+        note = fmt::format("{} of {} are from the ini file",
                            places ? "limits, speeds and homes" : "speeds", taken);
     if (!without_place.empty())
-        note += fmt::format("{}the ini file has axis {}, but does not say where it turns: add it "
-                            "as [[machine.axis]] if the program moves it",
+        note += fmt::format("{}the ini file has axis {} but not the position of its rotation axis: "
+                            "add it as [[machine.axis]] if the program moves it",
                             note.empty() ? "" : "; ", without_place);
     return note;
 }

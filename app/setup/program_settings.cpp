@@ -52,7 +52,7 @@ void take_places(gcode::Environment& environment) {
 std::string existing(const std::string& path, const ProgramSettings& settings,
                      std::vector<std::string>& notes) {
     if (path.empty() || core::is_there(path)) return path;
-    notes.push_back(fmt::format("{}: there is no {}; it is taken as empty", settings.ini, path));
+    notes.push_back(fmt::format("{}: {} does not exist and is taken as empty", settings.ini, path));
     return {};
 }
 
@@ -68,14 +68,13 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
     stated.tool_table = existing(ini.tool_table, settings, notes);
     stated.search_path = ini.search_path;
     if (!ini.startup_code.empty())
-        notes.push_back(fmt::format("{}: RS274NGC_STARTUP_CODE is not run before the program; if "
-                                    "it matters, put it there: {}",
-                                    settings.ini, ini.startup_code));
+        notes.push_back(fmt::format(
+            "{}: RS274NGC_STARTUP_CODE is not run; if it matters, add it to the program: {}",
+            settings.ini, ini.startup_code));
     if (!ini.wrapped_axes.empty())
-        notes.push_back(
-            fmt::format("{}: WRAPPED_ROTARY of {} is not followed: an absolute place is "
-                        "taken as so many degrees, not as a direction and an angle",
-                        settings.ini, ini.wrapped_axes));
+        notes.push_back(fmt::format("{}: WRAPPED_ROTARY of {} is ignored: an absolute position is "
+                                    "an angle in degrees, not a direction and an angle",
+                                    settings.ini, ini.wrapped_axes));
     return overlaid(stated, settings);
 }
 
@@ -227,7 +226,7 @@ core::Result<std::map<int, double>> read_variables(const std::string& path) {
                 line_error(path, line, fmt::format("there is no parameter #{}", words[0])));
         if (!variables.emplace(static_cast<int>(*number), *value).second)
             return tl::unexpected(
-                line_error(path, line, fmt::format("#{} is there twice", words[0])));
+                line_error(path, line, fmt::format("#{} is defined twice", words[0])));
     }
     return variables;
 }

@@ -29,20 +29,20 @@ bool is_size(double value) { return value > 0.0 && value <= largest_stock; }
 
 void check_stock(const core::Solid& stock, std::vector<EditRefusal>& refused) {
     const std::string sizes =
-        fmt::format("sizes must lie above 0 and up to {:g} mm", largest_stock);
+        fmt::format("sizes must be above 0 and at most {:g} mm", largest_stock);
     if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
         const core::Vec3 size = box->box.size();
         if (!is_place(box->box.min))
-            refused.push_back({{}, "box", "the corner must be a place"});
+            refused.push_back({{}, "box", "the corner must have finite coordinates"});
         else if (!is_size(size.x) || !is_size(size.y) || !is_size(size.z))
             refused.push_back({{}, "box", sizes});
     } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
         if (!is_place(round->base))
-            refused.push_back({{}, "cylinder", "the foot must be a place"});
+            refused.push_back({{}, "cylinder", "the base must have finite coordinates"});
         else if (!is_size(2.0 * round->radius) || !is_size(round->height))
             refused.push_back({{}, "cylinder", sizes});
     } else {
-        refused.push_back({{}, "mesh", "a mesh is stated in a set-up file only"});
+        refused.push_back({{}, "mesh", "a mesh can only be stated in a set-up file"});
     }
 }
 
@@ -89,7 +89,7 @@ std::vector<EditRefusal> refusals_of(const SetupEdits& edits) {
         refused.push_back(
             {{},
              "allowance",
-             fmt::format("an allowance lies between 0 and {:g} mm", core::largest_allowance)});
+             fmt::format("an allowance must be between 0 and {:g} mm", core::largest_allowance)});
     return refused;
 }
 
@@ -113,7 +113,7 @@ core::Result<void> apply(const SetupEdits& edits, SetupFile& file) {
         renew_notes(file, tool.description);
         file.assumptions.push_back(fmt::format(
             "tool {} is as stated: {}{}", core::value_of(number), fmt::join(stated.stated, ", "),
-            stated.stated.empty() ? "all of it" : "; the rest of it as it was"));
+            stated.stated.empty() ? "all of it" : "; the rest is unchanged"));
         file.environment.tool_lengths[number] = tool.length;
         file.environment.tool_diameters[number] = tool.description.diameter;
         file.setup.tools.insert_or_assign(number, std::move(tool));
@@ -217,8 +217,8 @@ core::Result<std::string> new_stock(const toml::table& root, const core::Solid& 
     const bool is_placed = std::holds_alternative<core::SolidCylinder>(stock.shape);
     if ((was_placed || is_placed) && others_stand_on_stock(root))
         return core::fail(core::ErrorCode::unsupported,
-                          "other bodies stand in the stock's frame, which would move: write the "
-                          "stock into the file by hand");
+                          "other bodies are positioned in the stock's frame, which would move: "
+                          "edit the stock in the file by hand");
     core::Solid with_tolerance = stock;
     if (old) with_tolerance.tolerance = (*old)["tolerance"].value_or(0.0);
     const std::string frame = old ? (*old)["frame"].value_or(std::string("G54")) : "G54";

@@ -66,7 +66,7 @@ void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
     if (!name) return table.need("name");
     const size_t index = core::axis_letters.find((*name)[0]);
     if (std::find(list.order.begin(), list.order.end(), index) != list.order.end())
-        table.refuse("name", fmt::format("\"{}\" is there twice", *name));
+        table.refuse("name", fmt::format("\"{}\" is defined twice", *name));
     const bool rotary = core::is_rotary(index);
     if (const auto kind = table.word("kind", {"linear", "rotary"}))
         if ((*kind == "rotary") != rotary)
@@ -93,7 +93,7 @@ void check_directions(TableReader& table, const core::Machine& machine) {
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = i + 1; j < 3; ++j)
             if (std::abs(glm::dot(machine.axes[i].direction, machine.axes[j].direction)) > 1e-9)
-                table.refuse("axis", "directions must stand at right angles to each other");
+                table.refuse("axis", "directions must be perpendicular to each other");
 }
 
 /// The link that a text names; empty for one that is no axis of this machine.
@@ -118,9 +118,11 @@ void connect(TableReader& table, core::Machine& machine, AxisList list) {
         if (const std::string& parent = list.parents[index]; !parent.empty()) {
             const auto link = link_named(machine, parent);
             if (!link || *link == core::link_of(index))
-                return table.refuse("axis", fmt::format("{}: parent \"{}\" is no other axis of "
-                                                        "this machine, nor \"base\"",
-                                                        core::axis_letters[index], parent));
+                return table.refuse(
+                    "axis",
+                    fmt::format(
+                        "{}: parent \"{}\" is neither another axis of this machine nor \"base\"",
+                        core::axis_letters[index], parent));
             if (*link != LinkId::base && machine.axes[static_cast<size_t>(*link)].side != axis.side)
                 return table.refuse("axis", fmt::format("{}: parent \"{}\" is on the other side "
                                                         "of the machine",
@@ -135,7 +137,7 @@ void connect(TableReader& table, core::Machine& machine, AxisList list) {
         LinkId link = core::link_of(index);
         for (size_t steps = 0; link != LinkId::base; ++steps) {
             if (steps > core::axis_count)
-                return table.refuse("axis", fmt::format("{}: its parents lead round to itself",
+                return table.refuse("axis", fmt::format("{}: its chain of parents is a loop",
                                                         core::axis_letters[index]));
             link = machine.axes[static_cast<size_t>(link)].carrier;
         }
@@ -145,8 +147,8 @@ void connect(TableReader& table, core::Machine& machine, AxisList list) {
         if (end != LinkId::base)
             return table.refuse(
                 "axis",
-                fmt::format("{} and {} both end the {} side: say with `parent` which of "
-                            "them stands on the other",
+                fmt::format("{} and {} are both at the end of the {} side: state with `parent` "
+                            "which of them carries the other",
                             core::axis_letters[static_cast<size_t>(end)], core::axis_letters[index],
                             machine.axes[index].side == core::Side::tool ? "tool" : "table"));
         end = core::link_of(index);
@@ -159,15 +161,15 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
     body.name = table.string("name").value_or("");
     if (body.name.empty()) return table.need("name");
     if (core::names_a_kind(body.name) && body.name != "nose")
-        table.refuse("name", "is a word with a meaning of its own");
+        table.refuse("name", "is a reserved word");
     for (const core::MachineBody& other : machine.bodies)
         if (other.name == body.name)
-            table.refuse("name", fmt::format("\"{}\" is there twice", body.name));
+            table.refuse("name", fmt::format("\"{}\" is defined twice", body.name));
     const std::string axis = table.string("axis").value_or("base");
     const auto link = link_named(machine, axis);
     if (!link)
         table.refuse("axis",
-                     fmt::format("= \"{}\" is no axis of this machine, nor \"base\"", axis));
+                     fmt::format("= \"{}\" is neither an axis of this machine nor \"base\"", axis));
     body.link = link.value_or(LinkId::base);
     if (const auto shape = read_exact_body(table, source, core::Transform())) {
         body.body = *shape;
@@ -237,7 +239,7 @@ void read_offsets(TableReader& table, SetupFile& file) {
             origin[axis] = offset->number_or(axis_keys[axis], 0.0);
         if (of_variables != gcode::AxisValues{} && of_variables != origin)
             file.assumptions.push_back(
-                fmt::format("{} is where [offsets] puts it; the variables file puts it elsewhere",
+                fmt::format("{} is taken from [offsets]; the variables file has another value",
                             offset_names[i]));
         offset->finish();
         file.offsets_set.insert(static_cast<int>(i));
@@ -348,7 +350,7 @@ void settle_start(SetupFile& file) {
         if (i < 3 || !file.setup.machine.axes[i].present || file.environment.start[i]) continue;
         file.environment.start[i] = 0.0;
         file.assumptions.push_back(
-            fmt::format("axis {} stands at 0 at the first block", core::axis_letters[i]));
+            fmt::format("axis {} is at 0 at the first block", core::axis_letters[i]));
     }
     if (file.setup.machine.has_rotary())
         file.environment.machine = std::make_shared<const core::Machine>(file.setup.machine);

@@ -45,15 +45,14 @@ std::vector<std::string> notes_on(const core::ToolDescription& tool) {
     const int number = core::value_of(tool.number);
     if (tool.holder.empty())
         notes.push_back(fmt::format(
-            "tool {} has no holder in the set-up: only what is described is checked", number));
+            "tool {} has no holder in the set-up: only the tool itself is checked", number));
     if (!tool.cuts_at_centre)
-        notes.push_back(
-            fmt::format("tool {} does not cut within {:g} mm of its axis, where its face "
-                        "is taken to stand back by {:.3g} mm",
-                        number, tool.centre_radius, core::centre_recess(tool)));
+        notes.push_back(fmt::format("tool {} does not cut within {:g} mm of its axis; its face is "
+                                    "assumed to be {:.3g} mm higher there",
+                                    number, tool.centre_radius, core::centre_recess(tool)));
     if (tool.shape == core::ToolShape::threadmill && !tool.pitch)
-        notes.push_back(fmt::format("tool {} has no pitch: it cuts as the cylinder round its "
-                                    "crests, so the threads are gone after it",
+        notes.push_back(fmt::format("tool {} has no pitch: it cuts like a cylinder around its "
+                                    "crests, which removes the threads",
                                     number));
     return notes;
 }
@@ -78,7 +77,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     const auto assembled = core::assemble(tool);
     if (!assembled) return table.refuse_whole(assembled.error().message);
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
-        table.refuse("number", fmt::format("= {} is there twice", *number));
+        table.refuse("number", fmt::format("= {} is defined twice", *number));
     file.environment.tool_lengths[tool.number] = assembled->length;
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
     for (std::string& note : notes_on(tool)) file.assumptions.push_back(std::move(note));
@@ -96,7 +95,7 @@ void read_length_offset(TableReader& table, SetupFile& file) {
     table.finish();
     const core::OffsetNumber key{*number};
     if (!file.lengths_set.insert(key).second)
-        table.refuse("number", fmt::format("= {} is there twice", *number));
+        table.refuse("number", fmt::format("= {} is defined twice", *number));
     file.environment.length_offsets[key] = offset; // a tool table may have had another
 }
 
@@ -108,7 +107,7 @@ constexpr double same_level = 0.01;      // mm; meshes come in single precision
 void read_named(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
     const std::string name = table.string("holder").value_or("");
     HolderLibrary library;
-    std::string where = "among those that come with the program";
+    std::string where = "among the holders that come with Feeler";
     if (const auto file = table.string("holder_file")) {
         auto read = read_holder_library((context.folder / *file).string());
         if (!read) return table.refuse_with(read.error());
@@ -133,13 +132,14 @@ void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescri
         context.file.assumptions.push_back(fmt::format("{}: {}", name, repair));
     const double lowest = read->mesh.bounds().min.z;
     if (std::abs(lowest) > same_level)
-        return table.refuse("holder_mesh",
-                            fmt::format("= \"{}\": the origin must lie in its lower face, but it "
-                                        "begins at Z {:g}",
-                                        name, lowest));
+        return table.refuse(
+            "holder_mesh",
+            fmt::format(
+                "= \"{}\": the origin must be in its lower face, but the mesh begins at Z {:g}",
+                name, lowest));
     tool.holder = cones_of_profile(core::revolved_hull(read->mesh, mesh_tolerance));
     context.file.assumptions.push_back(
-        fmt::format("tool {}: its holder is the smallest body of revolution that holds {}",
+        fmt::format("tool {}: its holder is the smallest body of revolution around {}",
                     core::value_of(tool.number), name));
 }
 
@@ -159,10 +159,10 @@ std::vector<core::ConeStep> read_steps(TableReader& table, const char* key) {
 
 void read_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
     if (table.has("holder") && table.has("holder_mesh"))
-        return table.refuse("holder_mesh", "and holder exclude each other");
+        return table.refuse("holder_mesh", "cannot be combined with holder");
     if (table.is_text("holder")) return read_named(table, context, tool);
     if (table.has("holder_file"))
-        return table.refuse("holder_file", "needs holder = \"NAME\", which of its holders it is");
+        return table.refuse("holder_file", "needs holder = \"NAME\" to choose one of its holders");
     if (table.has("holder_mesh")) return read_mesh_holder(table, context, tool);
     for (const char* absent : {"holder_file", "holder_mesh"}) table.string(absent);
     tool.holder = read_steps(table, "holder");

@@ -79,10 +79,10 @@ TEST(InferredSetup, TakesAnUnknownToolByItsUse) {
 TEST(InferredSetup, AssumesHandworkWhereTheProgramLeavesIt) {
     const Inferred run = infer("G21 G90\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\nX3\nM2\n");
     EXPECT_TRUE(run.assumes("never starts the spindle"));
-    EXPECT_TRUE(run.assumes("offsets no tool's length"));
+    EXPECT_TRUE(run.assumes("uses no tool length offset"));
     EXPECT_EQ(run.status, 0) << run.report["findings"].dump();
     const Inferred speed = infer("G21 G90\nM3\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\nX3\nM2\n");
-    EXPECT_TRUE(speed.assumes("how fast the spindle turns"));
+    EXPECT_TRUE(speed.assumes("has no spindle speed"));
     EXPECT_EQ(speed.status, 0) << speed.report["findings"].dump();
 }
 

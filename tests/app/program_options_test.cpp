@@ -152,7 +152,7 @@ TEST(IniFile, MayNameFilesThatAreNotThereYet) {
         traced.folder.write("mill.ini", "[RS274NGC]\nPARAMETER_FILE = new.var\nwhat is this\n");
     traced.run("g21 g0 x1\nm2\n", {"--ini", ini});
     EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
-    EXPECT_TRUE(traced.warns("new.var; it is taken as empty"));
+    EXPECT_TRUE(traced.warns("new.var does not exist and is taken as empty"));
 }
 
 TEST(MaxBlocks, StopsAProgramThatRunsLonger) {
@@ -222,7 +222,7 @@ TEST(ProgramOptions, OfCheckMoveWhatStandsInAWorkOffset) {
     const Checked both = check_files(nc, stated, {"--parameters", other});
     EXPECT_EQ(both.errors(), check_files(nc, stated).errors());
     EXPECT_NE(std::find(both.assumptions.begin(), both.assumptions.end(),
-                        "G54 is where [offsets] puts it; the variables file puts it elsewhere"),
+                        "G54 is taken from [offsets]; the variables file has another value"),
               both.assumptions.end());
 }
 
@@ -266,14 +266,14 @@ TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
     refused("--parameters", "5221 1 1\n", "bad.txt:1: ");
     refused("--parameters", "0 1\n", "there is no parameter #0");
     refused("--parameters", "99999 1\n", "there is no parameter #99999");
-    refused("--parameters", "31 1\n31 2\n", "bad.txt:2: #31 is there twice");
-    refused("--tool-table", "T1 Z1\nT1 Z2\n", "bad.txt:2: T1 is there twice");
+    refused("--parameters", "31 1\n31 2\n", "bad.txt:2: #31 is defined twice");
+    refused("--tool-table", "T1 Z1\nT1 Z2\n", "bad.txt:2: T1 is defined twice");
     refused("--tool-table", "P1 Z1\n", "needs a T word");
     refused("--tool-table", "T1 K1\n", "'K1': K is no letter");
     refused("--tool-table", "T1 Zlong\n", "'Zlong': is no letter and number");
     refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
     refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
-    refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not followed");
+    refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not supported");
 }
 
 } // namespace

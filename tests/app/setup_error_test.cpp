@@ -158,16 +158,17 @@ TEST(SetupFile, RefusesSizesThatAreNotAboveZero) {
 }
 
 TEST(SetupFile, RefusesTwoOfOneName) {
-    expect_error(SetupWriter().also(fixture(box)).also(fixture(box)), {"\"vise\" is there twice"});
-    expect_error(SetupWriter().also_tool(flat_10), {"1 is there twice"});
+    expect_error(SetupWriter().also(fixture(box)).also(fixture(box)),
+                 {"\"vise\" is defined twice"});
+    expect_error(SetupWriter().also_tool(flat_10), {"1 is defined twice"});
     expect_error(SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 1\n"
                                        "[[length_offset]]\nnumber = 1\nlength = 2\n"),
-                 {"1 is there twice"});
+                 {"1 is defined twice"});
 }
 
 TEST(SetupFile, RefusesWordsOfItsOwnAsNames) {
     for (const char* name : {"stock", "flutes", "shank", "holder", "nose", "fixture", "machine"})
-        expect_error(SetupWriter().fixture(name, box), {"meaning of its own"});
+        expect_error(SetupWriter().fixture(name, box), {"reserved word"});
 }
 
 TEST(SetupFile, RefusesAllowancesOfBodiesThatAreNotThere) {
@@ -188,19 +189,19 @@ TEST(SetupFile, RefusesToSwitchCollisionsOff) {
 TEST(SetupFile, RefusesAMachineThatCannotBe) {
     using W = SetupWriter;
     expect_error(W().machine(W::axis("X", "direction = [1, 1, 0]\n")), {"direction"});
-    expect_error(W().machine(W::axis("X", "direction = [0, 1, 0]\n")), {"right angles"});
+    expect_error(W().machine(W::axis("X", "direction = [0, 1, 0]\n")), {"perpendicular"});
     expect_error(W().machine(W::axis("X", "min = 5\nmax = 5\n")), {"min must be below max"});
     expect_error(W().machine(W::axis("A", "kind = \"linear\"\n")), {"A, B and C are the rotary"});
-    expect_error(W().machine(W::axis("A", "") + W::axis("A", "")), {"there twice"});
-    expect_error(W().machine(W::axis("A", "parent = \"Q\"\n")), {"no other axis"});
+    expect_error(W().machine(W::axis("A", "") + W::axis("A", "")), {"defined twice"});
+    expect_error(W().machine(W::axis("A", "parent = \"Q\"\n")), {"neither another axis"});
     expect_error(W().machine(W::axis("A", "parent = \"Z\"\n")), {"other side"});
     expect_error(W().machine(W::axis("A", "parent = \"C\"\n") + W::axis("C", "parent = \"A\"\n")),
-                 {"round to itself"});
+                 {"is a loop"});
     expect_error(W().machine(W::axis("A", "") + W::axis("C", "parent = \"base\"\n")),
-                 {"both end the table side"});
+                 {"are both at the end of the table side"});
     expect_error(W().machine("[[machine.body]]\nname = \"bed\"\naxis = \"A\"\n"
                              "box = [[0, 0, 0], [1, 1, 1]]\n"),
-                 {"no axis of this machine"});
+                 {"neither an axis of this machine"});
     expect_error(W().machine("[[machine.body]]\naxis = \"Z\"\nbox = [[0, 0, 0], [1, 1, 1]]\n"),
                  {"name"});
     EXPECT_NE(error_of(W().machine("file = \"nope.toml\"\n").text()).find("nope.toml: there is"),

@@ -110,7 +110,7 @@ TEST(ToolTable, TakesAHolderFromAMesh) {
     EXPECT_EQ(core::bounds(holder(tool_of(mesh))).max.x, 5.0);
     EXPECT_EQ(tool_of(mesh).length, 50.0);
     EXPECT_TRUE(assumes(mesh, "smallest body of revolution that holds holder.stl"));
-    expect_refused(mesh + "holder = [[5, 5, 5]]\n", "exclude each other");
+    expect_refused(mesh + "holder = [[5, 5, 5]]\n", "cannot be combined with holder");
     folder().write("low.stl",
                    test_support::binary_stl(test_support::box_mesh({-3, -4, -1}, {3, 4, 30})));
     expect_refused(flat + "holder_mesh = \"low.stl\"\n", "begins at Z -1");
@@ -152,7 +152,7 @@ TEST(HolderLibrary, HasWhatComesWithTheProgram) {
         holders += library->size();
     }
     EXPECT_GE(holders, 40U);
-    EXPECT_EQ(shipped_holder_library().size(), holders); // no name is there twice
+    EXPECT_EQ(shipped_holder_library().size(), holders); // no name is defined twice
     for (const char* spindle : {"BT40", "HSK63A"})
         for (const char* kind : {"ER32", "EM20", "SF12", "SM22"})
             EXPECT_TRUE(shipped_holder_library().contains(std::string(spindle) + "-" + kind));

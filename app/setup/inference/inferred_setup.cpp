@@ -75,7 +75,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     if (file.is_inferred && seen.calls_tools) {
         file.setup.tool_at_start = missing.back().tool.number;
         file.assumptions.push_back(
-            fmt::format("the program cuts before it calls a tool: tool {} is in the spindle then",
+            fmt::format("the program cuts before its first tool call: tool {} is in the spindle",
                         core::value_of(*file.setup.tool_at_start)));
     }
     return missing;
@@ -119,9 +119,9 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
                                                       const ProgramSurvey& seen,
                                                       const SurveyTools& tools) {
     if (!seen.feeds && !file.is_inferred)
-        return core::fail(core::ErrorCode::invalid_value,
-                          "[stock] is missing, and the program has no cutting move that it could "
-                          "be inferred from");
+        return core::fail(
+            core::ErrorCode::invalid_value,
+            "[stock] is missing, and the program has no cutting move to infer it from");
     const Vec3 frame = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
     const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
@@ -152,16 +152,14 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     if (!file.is_inferred) return std::nullopt;
     std::string why;
     if (const auto turning = turning_reason(program)) {
-        why =
-            fmt::format("this is a program for a lathe, because {}. Turning is not checked: there "
-                        "is no stock, and only what the codes themselves tell is judged",
-                        *turning);
+        why = fmt::format("this is a lathe program, because {}. Turning is not checked: there is "
+                          "no stock, and only the codes are checked",
+                          *turning);
         file.not_judged = why;
     } else if (const auto line = line_that_asks_for_places(program); line && file.needs_stock) {
-        why =
-            fmt::format("line {} asks where the axes stand, so what is done depends on where they "
-                        "were jogged: no stock is assumed",
-                        *line);
+        why = fmt::format("line {} reads the axis positions, so the motions depend on where the "
+                          "axes were jogged: no stock is assumed",
+                          *line);
     } else {
         return std::nullopt;
     }
@@ -180,13 +178,12 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
             "the program never starts the spindle: it is switched on by hand");
     } else if (!seen.states_speed) {
         file.speed_by_hand = true;
-        file.assumptions.push_back("the program never says how fast the spindle turns: that is set "
-                                   "by hand");
+        file.assumptions.push_back("the program has no spindle speed: it is set by hand");
     }
     if (seen.offsets_lengths) return;
     file.setup.rules["missing-length-offset"] = core::Severity::off;
     file.assumptions.push_back(
-        "the program offsets no tool's length: the work offset is set again with every tool");
+        "the program uses no tool length offset: the work offset is set anew for each tool");
 }
 
 /// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small

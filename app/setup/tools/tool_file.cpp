@@ -76,7 +76,7 @@ read_tool_file(const std::string& path, gcode::LengthUnit unit) {
             return tl::unexpected(line_error(path, line, "a line of a tool table needs a T word"));
         if (!offsets.emplace(*tool.number, tool.offset).second)
             return tl::unexpected(line_error(
-                path, line, fmt::format("T{} is there twice", core::value_of(*tool.number))));
+                path, line, fmt::format("T{} is defined twice", core::value_of(*tool.number))));
     }
     return offsets;
 }

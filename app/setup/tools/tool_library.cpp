@@ -152,7 +152,7 @@ core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
             ErrorCode::invalid_value, {}, fmt::format("tool {} {}", number, why), path.string()});
     };
     if (!(tool.tool.diameter > 0.0)) return refuse("has no diameter");
-    if (!tools.emplace(tool.tool.number, tool).second) return refuse("is there twice");
+    if (!tools.emplace(tool.tool.number, tool).second) return refuse("is defined twice");
     return {};
 }
 
