@@ -14,9 +14,9 @@ namespace {
 
 using core::ConvexShape;
 
-constexpr double safety = 1e-6; // mm: more than lines and rounding may be off
+constexpr double safety = 1e-6; // mm: larger than all errors of lines and rounding
 
-/// The columns of an upright piece of revolution that stands somewhere.
+/// The columns of an upright piece of revolution at a given position.
 core::ColumnFunction columns_at(const core::ProfileElement& element, const core::Vec3& at) {
     const core::ColumnFunction columns = columns_of(core::RevolvedProfile{{element}});
     return [columns, at](int axis, const core::Square& square) {
@@ -48,7 +48,7 @@ core::ColumnFunction columns_of_turned(const core::RevolvedProfile& profile,
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
         core::IntervalList matter;
         for (core::ProfileElement element : profile.elements) {
-            // A cone with a margin is within the cone that is grown by it.
+            // A cone with a margin is inside the cone grown by the margin.
             const double margin = element.z0 < element.z1 ? element.margin : 0.0;
             element.margin -= margin;
             const auto heights = line_interval(
@@ -59,7 +59,7 @@ core::ColumnFunction columns_of_turned(const core::RevolvedProfile& profile,
     };
 }
 
-/// The cubes of a grid that something meets.
+/// The cubes of a grid that a body overlaps.
 struct CubeGrid {
     std::array<int, 3> count{};
     std::vector<bool> met =
@@ -69,7 +69,7 @@ struct CubeGrid {
     size_t index(int i, int j, int k) const {
         return static_cast<size_t>((i * count[1] + j) * count[2] + k);
     }
-    /// Takes all that a box meets, which is counted in cubes.
+    /// Adds all cubes that a box overlaps; the box is in units of cubes.
     void add(const core::Aabb& box) {
         std::array<int, 3> low{}, high{};
         for (int axis = 0; axis < 3; ++axis) {
@@ -86,10 +86,10 @@ struct CubeGrid {
     }
 };
 
-/// Whether the surface of a convex shape does not pass through a cube: all of the cube is outside,
-/// or corners a little beyond its own are inside, and then all of it is.
+/// Whether the surface of a convex shape misses a cube: the cube is wholly outside, or corners
+/// slightly beyond its own are inside, so that it is wholly inside.
 bool is_off_surface(const ConvexShape& shape, const core::Vec3& centre, double side) {
-    constexpr double about = 1e-5; // mm: far more than distances are off
+    constexpr double about = 1e-5; // mm: far larger than the errors of distances
     const core::Vec3 half(0.5 * side + about);
     const core::Aabb cube{centre - half, centre + half};
     const core::ExactBody body = shape;
@@ -165,7 +165,7 @@ CubeCover cubes_round(const core::ExactBody& body, double side) {
 
 core::Result<std::vector<Record>> cylinders_round(const CubeCover& cubes,
                                                   const core::Mat3& orientation) {
-    core::Vec3 half(0.0); // of the box round a turned cube
+    core::Vec3 half(0.0); // of the box around a rotated cube
     for (int i = 0; i < 3; ++i) half += 0.5 * cubes.side * glm::abs(orientation[i]);
     const double radius =
         std::min(std::hypot(half.x, half.y), 0.5 * std::numbers::sqrt3 * cubes.side) + safety;

@@ -48,7 +48,7 @@ Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t
     const DecodedSegment decoded = segment_in(words);
     if (decoded.fault != Stop::none) return decoded.fault;
     if (fifo.entries.full()) return Stop::fifo_overrun;
-    // Behind the last number comes 0, which is none: a permit must never fall.
+    // After the last number comes 0, which is none: a permit must never decrease.
     if (decoded.segment.sequence != fifo.next_sequence || fifo.next_sequence == 0)
         return Stop::sequence;
     fifo.entries.push({decoded.segment, cycle, lines});
@@ -58,7 +58,7 @@ Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t
 
 namespace {
 
-/// The sequence number that a fault of the whole device is put down to: the first not permitted.
+/// The sequence number reported for a fault of the whole device: the first not permitted.
 uint32_t next_to_permit(const CoprocessorState& s) { return s.permits.permit_sequence + 1; }
 
 void watch(CoprocessorState& s, const DeviceConfig& config) {
@@ -69,7 +69,7 @@ void watch(CoprocessorState& s, const DeviceConfig& config) {
         halt(s, Stop::memory_stalled, next_to_permit(s));
 }
 
-/// The answer to the first entry, if it is there.
+/// The answer to the first entry, if available.
 std::optional<Answer> first_answer(const CoprocessorState& s) {
     if (s.permits.in_order.empty()) return {};
     const Dispatched& first = s.permits.in_order.front();
@@ -122,9 +122,8 @@ bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry
     return false;
 }
 
-/// The first entry of the FIFO leaves it: a model for its slot, once all lines that came before it
-/// are written, or a
-/// segment for a thread.
+/// Takes the first entry of the FIFO: a model goes into its slot once all lines before it are
+/// written, a segment to a thread.
 void dispatch(CoprocessorState& s) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
     if (s.fifo.entries.empty() || s.permits.in_order.full()) return;
@@ -142,7 +141,8 @@ void dispatch(CoprocessorState& s) {
     s.fifo.entries.pop();
 }
 
-/// Whose request is taken in, in turn; `none` if nobody asks or the memory takes nothing.
+/// The element whose request is accepted, in rotation; `none` if there is no request or the memory
+/// accepts none.
 constexpr size_t none = SIZE_MAX;
 size_t granted_element(const CoprocessorState& s) {
     if (!accepts(s.memory)) return none;
@@ -169,7 +169,7 @@ CoprocessorState power_up(const DeviceConfig& config) {
 
 void tick(CoprocessorState& s, const DeviceConfig& config) {
     ++s.cycle;
-    // What the units showed before the edge.
+    // The outputs of the units before the edge.
     const size_t granted = granted_element(s);
     const ReadRequest request = granted == none ? ReadRequest{} : s.elements[granted].request;
     const ReadResponse& response = s.memory.response;
@@ -237,7 +237,7 @@ namespace {
 constexpr uint32_t segment_base = address_of(Register::segment);
 constexpr uint32_t counter_base = address_of(Register::counter);
 
-/// What elements count, none for what they do not.
+/// The counter of the elements, or null.
 uint64_t ElementCounts::*element_count(Counter which) {
     switch (which) {
     case Counter::busy:
@@ -365,7 +365,7 @@ uint32_t read_of_stop(CoprocessorState& s, Register r) {
     }
 }
 
-/// Host and memory have their whole time from now on.
+/// Restarts the watchdogs of host and memory.
 void watch_from_here(CoprocessorState& s) { s.host.heartbeat = s.memory.watched_from = s.cycle; }
 
 void clear(CoprocessorState& s) {
@@ -395,7 +395,7 @@ void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t val
     s.host.enabled = enable;
 }
 
-/// A push that is refused stops the device; one into a stopped device does nothing.
+/// A refused push stops the device; a stopped device ignores pushes.
 void write_push(CoprocessorState& s) {
     if (s.permits.stopped != Stop::none) return;
     const Stop fault = push(s.fifo, s.host.segment, s.cycle, lines_given(s.memory));

@@ -11,7 +11,7 @@
 namespace hwsim {
 namespace {
 
-/// An emulated device with whoever looks on.
+/// An emulated device with its observer.
 struct WatchedDevice {
     EmulatedDevice& device;
     std::function<void(const CoprocessorState&)> after_cycle;
@@ -41,7 +41,7 @@ void answer_first(FunctionalDevice& device) {
     retire_with(s, answer);
 }
 
-/// Whatever can be done is done.
+/// Processes all entries that can be processed.
 void settle(FunctionalDevice& device) {
     CoprocessorState& s = device.state;
     for (; !s.memory.writes.empty(); s.memory.writes.pop()) {
@@ -92,7 +92,7 @@ DevicePort port_of(FunctionalDevice& device) {
         .write =
             [&device](uint32_t address, uint32_t value) {
                 write(device.state, device.config, address, value);
-                device.state.elements.clear(); // a reset makes them anew
+                device.state.elements.clear(); // a reset creates them again
                 settle(device);
             },
         .store =
@@ -136,7 +136,7 @@ core::Result<void> store(Driver& driver, const std::vector<AddressedLine>& lines
     return {};
 }
 
-/// Gives back the lines of models that no search needs any more. Counts may wrap round.
+/// Frees the lines of models that no search needs any more. Counts may wrap around.
 void reclaim(Driver& driver) {
     if (driver.released.empty()) return;
     const uint32_t retired = read(driver, Register::retired);
@@ -147,7 +147,7 @@ void reclaim(Driver& driver) {
     }
 }
 
-/// Puts an entry into the FIFO when there is room. A stopped device takes nothing in.
+/// Puts an entry into the FIFO when there is room. A stopped device ignores it.
 void push_entry(Driver& driver, const Segment& entry) {
     uint32_t status = read(driver, Register::status);
     while ((status & status_fifo_full) != 0 && (status & status_stopped) == 0) {
@@ -173,7 +173,7 @@ void push_model(Driver& driver, SlotNumber slot) {
                         .model_header = model.header});
 }
 
-/// A model that has been made: its lines go into the memory first, then it goes into a slot.
+/// Loads a new model: first its lines into the memory, then its header into a slot.
 core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace space,
                                   const std::vector<AddressedLine>& lines) {
     const auto free = std::find_if(driver.slots.begin(), driver.slots.end(),
@@ -202,7 +202,7 @@ core::Result<FixedVec> place_of(const core::Vec3& p) {
     return place;
 }
 
-/// The entry for one pair, but for its number and whether it is the last.
+/// The entry for one pair, except its number and the `last` flag.
 core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
                                const PairToKeep& pair) {
     const auto holds = [&](SlotNumber slot, Side side) {
@@ -393,7 +393,7 @@ void recover(Driver& driver) {
     if (reason == Stop::bad_check && line < driver.written.size())
         store(driver, {line, driver.written[line]});
     driver.next_sequence = read(driver, Register::next_seq);
-    // Nothing is under way any more, so nothing needs the models of before.
+    // Nothing is pending any more, so the old models are not needed.
     driver.entries = read(driver, Register::retired);
     for (Driver::Released& old : driver.released) old.entries = driver.entries;
     reclaim(driver);

@@ -22,7 +22,7 @@ double rounded(double steps, Rounding rounding) {
 } // namespace
 
 core::Result<int32_t> fixed(double length, Rounding rounding) {
-    // A product with a power of two is exact, so the only rounding is the one asked for.
+    // A product with a power of two is exact, so the only rounding is the requested one.
     const double steps = rounded(length * (1 << fraction_bits), rounding);
     if (!(steps >= least_coordinate && steps <= greatest_coordinate))
         return core::fail(core::ErrorCode::invalid_value,

@@ -14,7 +14,7 @@ void answer_read(MemoryUnit& unit, uint64_t cycle) {
     ++unit.reads_done;
 }
 
-/// Reads go first; while the queue of writes is full they go in turn.
+/// Reads have priority; while the write queue is full, reads and writes alternate.
 void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
     unit.has_written = false;
     if (unit.free_at > cycle) return;
@@ -65,7 +65,7 @@ bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cyc
     const auto is_read_late = [&](const Ring<MemoryUnit::Pending>& queue) {
         return !queue.empty() && is_late(queue.front().cycle);
     };
-    // Reads may keep the port from a write, and then it is not free for long.
+    // Reads may delay a write; then the port is not idle for long.
     return is_read_late(unit.asked) || is_read_late(unit.under_way)
            || (!unit.writes.empty() && is_late(std::max(unit.writes.front().cycle, unit.free_at)));
 }

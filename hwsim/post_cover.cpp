@@ -20,7 +20,7 @@ struct FixedRectangle {
     int32_t x0, x1, y0, y1;
 };
 
-/// The columns of a tile, rounded outwards, and what covers them.
+/// The columns of a tile, rounded outwards, and their posts.
 class TileCover {
 public:
     TileCover(const ColumnCells& cells, size_t tile) : cells_(cells) {
@@ -57,7 +57,7 @@ private:
         return {};
     }
 
-    /// A block of columns by one stack of posts if they are equal, else quarter by quarter.
+    /// Covers a block of columns by one stack of posts if they are equal, else quarter by quarter.
     core::Result<void> cover(int i0, int j0, int size) {
         if (!is_there(i0, j0)) return {};
         FEELER_TRY(const FixedRectangle r, rectangle(i0, j0, size));
@@ -72,7 +72,7 @@ private:
         return {};
     }
 
-    /// The cells of a block that are there.
+    /// The existing cells of a block.
     core::Result<FixedRectangle> rectangle(int i0, int j0, int size) const {
         int i1 = i0 + size - 1, j1 = j0 + size - 1;
         while (!is_there(i1, j0)) --i1;
@@ -106,19 +106,19 @@ private:
         const int32_t longer = std::max(width, depth);
         int32_t square =
             std::max({std::min(width, depth), (longer + most_squares - 1) / most_squares, 1});
-        square += square % 2; // so that its middle is a whole step
+        square += square % 2; // so that its centre is a whole step
         const int32_t count = std::max((longer + square - 1) / square, 1);
         for (int32_t n = 0; n < count; ++n) {
             const auto place = [&](int32_t from, int32_t length) {
                 if (length < square || count == 1) return from + length / 2;
-                const int64_t room = length - square; // of the middles, end to end
+                const int64_t room = length - square; // of the centres, end to end
                 return static_cast<int32_t>(from + square / 2 + room * n / (count - 1));
             };
             add_stack({place(r.x0, width), place(r.y0, depth), heights.low}, square / 2, heights);
         }
     }
 
-    /// A post longer than the numbers allow is several.
+    /// Splits a post that exceeds the number range.
     void add_stack(FixedVec base, int32_t half, const FixedInterval& heights) {
         int64_t low = heights.low;
         do {

@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    /// Divides a pair, or compares its records. Returns the pair to go on with.
+    /// Divides a pair, or compares its records. Returns the next pair.
     std::optional<SearchPair> visit(const SearchPair& pair) {
         const Division division = division_of(pair, query_.segment);
         if (division == Division::none) {

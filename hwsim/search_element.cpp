@@ -38,7 +38,7 @@ void tick(PairUnit& unit, const PairUnit::Output& in) {
 
 namespace {
 
-/// How many records a line of a leaf holds.
+/// The number of records in a line of a leaf.
 uint32_t records_in_line(const Reference& leaf, uint32_t line) {
     return std::min(records_per_line, leaf.count() - line * records_per_line);
 }
@@ -54,7 +54,7 @@ bool push(SearchThread& thread, const SearchPair& pair, uint32_t stack_depth) {
     return true;
 }
 
-/// Behind the last pair of two lines: the next line of the work, or of the tool, or none.
+/// After the last pair of two lines: the next line of the work, or of the tool, or none.
 void next_lines(SearchThread& thread) {
     thread.tool_place = thread.work_place = 0;
     if (++thread.work_line < leaf_lines(thread.pair.work.count())) {
@@ -202,7 +202,7 @@ void take_distance(SearchThread& thread, const PairUnit::Output& distance) {
 
 namespace {
 
-/// What has been given away in this cycle.
+/// Units already used in this cycle.
 struct Ports {
     bool nodes = false, records = false;
     BoxUnit::Output box;
@@ -211,7 +211,7 @@ struct Ports {
 
 constexpr uint32_t bit(uint32_t thread) { return 1U << thread; }
 
-/// std::popcount calls a library where the processor is not known to have it. For 16 bits.
+/// std::popcount for 16 bits; the standard one calls a library function without -mpopcnt.
 constexpr uint32_t count_of(uint32_t set) {
     set = set - ((set >> 1) & 0x5555U);
     set = (set & 0x3333U) + ((set >> 2) & 0x3333U);
@@ -230,7 +230,7 @@ void sort_in(SearchElement& e, uint32_t number) {
     e.waiting = is_waiting ? e.waiting | bit(number) : e.waiting & ~bit(number);
 }
 
-/// Reads from a cache, or lets the thread ask the memory.
+/// Reads from a cache, or makes the thread request the line from memory.
 void read_line(SearchElement& e, const DeviceConfig& config, SearchThread& thread, Ports& ports) {
     const bool is_node = thread.phase == Phase::open;
     bool& taken = is_node ? ports.nodes : ports.records;
@@ -341,7 +341,7 @@ void tick(SearchElement& e, const DeviceConfig& config, const ElementInput& in) 
         ++e.counts.busy;
         e.counts.wait_retire += count_of(e.done);
         e.counts.wait_memory += count_of(e.waiting);
-        // What becomes ready in this cycle acts in the next.
+        // Threads that become ready in this cycle act in the next.
         const uint32_t acting = e.acting;
         if (in.granted) e.request.valid = false;
         if (in.response) take_response(e, in);

@@ -28,7 +28,7 @@ bool fits(const Record& record) {
     return is_extent(record.run) && is_extent(record.half);
 }
 
-/// Twice the middle of a record along an axis.
+/// Twice the centre of a record along an axis.
 int64_t middle(const Record& record, size_t axis) {
     return 2 * int64_t{record.base[axis]} + (axis == 2 ? record.run : 0);
 }
@@ -55,7 +55,7 @@ core::Result<Branch> subtree(ModelWriter& writer, std::span<Record> records, uin
     const auto by_place = [axis](const Record& r) {
         return std::tuple(middle(r, axis), middle(r, 0), middle(r, 1), middle(r, 2), r.run, r.half);
     };
-    // Whole lines on the left, so that few places of the leaves stay empty.
+    // Whole lines on the left, so that leaves are well filled.
     const size_t half =
         (records.size() / 2 + records_per_line - 1) / records_per_line * records_per_line;
     const size_t left = records.size() > size_t{2} * records_per_line ? half : records.size() / 2;
@@ -119,12 +119,12 @@ namespace {
 
 using core::ScanLines;
 
-/// A rectangle of tiles, by their places.
+/// A rectangle of tiles, by their indices.
 struct TileRange {
     size_t u0, u1, v0, v1;
 };
 
-/// One update, on copies: a model that could not be written stays as it was.
+/// One update, on copies: on an error the model is unchanged.
 class Update {
 public:
     Update(StockModel& model, LineSpace& space, const ScanLines& columns)
@@ -158,7 +158,7 @@ private:
         return !model_.header || columns_.tile(tile) != model_.columns.tile(tile);
     }
 
-    /// What `make` puts into the memory takes the place of a part's lines.
+    /// Replaces the lines of a part by those that `make` creates.
     template <typename Make>
     core::Result<void> replace(StockModel::Part& part, const Make& make) {
         done_.released.insert(done_.released.end(), part.runs.begin(), part.runs.end());
@@ -186,7 +186,7 @@ private:
         return true;
     }
 
-    /// Halves the longer side. Parts above are counted as they are met.
+    /// Halves the longer side. Parts above are numbered in order of traversal.
     core::Result<bool> refresh(const TileRange& r) {
         const size_t own = next_++;
         const size_t width = r.u1 - r.u0, depth = r.v1 - r.v0;

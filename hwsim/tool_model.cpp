@@ -32,7 +32,7 @@ public:
         return radius;
     }
 
-    /// How far a point of the half plane lies outside.
+    /// The signed distance of a point of the half plane.
     double outside(double r, double z) const {
         const double z_in = std::clamp(z, e_.z0, e_.z1);
         const double r_in = radius_of_core(z_in);
@@ -80,7 +80,7 @@ private:
     std::array<double, 6> borders_{};
 };
 
-constexpr double model_safety = 1e-9; // mm: more than the doubles here may be off
+constexpr double model_safety = 1e-9; // mm: larger than the rounding of the doubles here
 
 core::Result<Record> cylinder(double low, double high, double radius) {
     FEELER_TRY(const int32_t z0, fixed(low - model_safety, Rounding::down));

@@ -7,7 +7,7 @@
 namespace hwsim {
 namespace {
 
-/// Short names of printable characters, as the format wants them.
+/// Short names of printable characters, as required by the format.
 std::string identifier(size_t number) {
     std::string id;
     do {
@@ -48,7 +48,7 @@ constexpr DeviceSignal device_signals[] = {
     {"retired_seq", 32,
      [](const CoprocessorState& s) { return uint64_t{s.retired.segment.sequence}; }}};
 
-/// A signal of an element: of how many of its threads something is true.
+/// A signal of an element: the number of threads in a state.
 struct ElementSignal {
     const char* name;
     uint32_t SearchElement::*threads;

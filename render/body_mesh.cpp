@@ -77,7 +77,7 @@ core::Mesh directions(int divisions) {
     return revolved(outline, 0.003);
 }
 
-/// The surface of a shape as its farthest points in directions all round.
+/// The surface of a shape from its farthest points in directions all around.
 TriangleMesh supported(const core::ConvexShape& shape, double margin) {
     const core::Mesh ball = directions(24);
     TriangleMesh made;
@@ -91,7 +91,7 @@ TriangleMesh supported(const core::ConvexShape& shape, double margin) {
 }
 
 /// The corners of the face that lies in the plane of three points, in order; empty if other points
-/// stand beyond it.
+/// are beyond it.
 std::vector<uint32_t> face_through(const std::vector<Vec3>& points, const Vec3& at,
                                    const Vec3& normal, double near) {
     std::vector<uint32_t> on;
@@ -242,12 +242,12 @@ Outline outline_of(const core::ProfileElement& e, double sag) {
     return outline;
 }
 
-/// A straight stretch of an outline between two heights.
+/// A straight segment of an outline between two heights.
 struct Line {
     double r0, r1;
 };
 
-/// What a piece has between two heights at which none of its stretches begins or ends.
+/// The segment of a piece between two heights at which none of its segments begins or ends.
 std::optional<Line> line_between(const Outline& outline, double z0, double z1) {
     const double middle = 0.5 * (z0 + z1);
     for (size_t i = 1; i < outline.size(); ++i) {
@@ -292,7 +292,7 @@ void add(Outline& outline, const OutlinePoint& p) {
     if (!outline.empty() && std::abs(outline.back().r - p.r) < tiny
         && std::abs(outline.back().z - p.z) < tiny)
         return;
-    // A point between two others on the same line says nothing.
+    // A point between two others on the same line is redundant.
     while (outline.size() >= 2) {
         const OutlinePoint &a = outline[outline.size() - 2], &b = outline.back();
         const double cross = (b.r - a.r) * (p.z - a.z) - (b.z - a.z) * (p.r - a.r);

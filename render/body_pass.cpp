@@ -11,7 +11,7 @@
 namespace render {
 namespace {
 
-/// Pictures after which a mesh that none of them showed is given back.
+/// Number of pictures after which an unused mesh is freed.
 constexpr uint64_t patience = 30;
 
 template <typename T>
@@ -100,8 +100,8 @@ double shine_of(const Body* body) {
     }
 }
 
-/// Counts, for each pixel, how often the sight enters the body beyond the plane less how often it
-/// leaves it: what stays is where the plane lies within.
+/// Counts for each pixel how often the ray of sight enters the body beyond the plane minus how
+/// often it leaves it: the remainder marks where the plane is inside the body.
 void begin_counting() {
     glEnable(GL_STENCIL_TEST);
     glClear(GL_STENCIL_BUFFER_BIT);
@@ -218,14 +218,14 @@ void BodyPass::draw_edges(const ViewFrame& frame, const Item& item) {
     for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_lines(); });
 }
 
-/// The face that the plane makes in a body, hatched.
+/// The hatched section face of a body.
 void BodyPass::draw_cap(const ViewFrame& frame, const Item& item) {
     const SectionPlane& section = *frame.scene.section;
     if (!item.closed || !is_cut(section, item.box) || !sees_face(frame.camera, section)) return;
     begin_counting();
     set_material(frame, item, false);
     set_section(faces_, section, item.pose);
-    // What overlaps would be counted twice.
+    // Overlapping parts would be counted twice.
     for_meshes(
         frame, item, [](const GpuMesh& mesh) { mesh.draw_faces(); }, true);
     end_counting();
@@ -339,7 +339,7 @@ void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, 
 
 namespace {
 
-/// How far corners darken, as a share of the height of what is seen at the target.
+/// Reach of the ambient occlusion, as a fraction of the visible height at the target.
 constexpr double reach_share = 0.055;
 
 GlTexture texture(const Viewport& size, GLint format, GLenum channels, GLenum type) {

@@ -11,15 +11,15 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Nobody needs to see a thousandth of a millimetre or a kilometre.
+/// Limits of the zoom: a thousandth of a millimetre and a kilometre.
 constexpr double least_distance = 0.05, most_distance = 1e6;
 
 double half_angle_tangent(const Camera& camera) { return std::tan(0.5 * camera.view_angle); }
 
-/// Half the picture's height where the target stands, mm.
+/// Half the height of the picture at the target, mm.
 double half_height(const Camera& camera) { return camera.distance * half_angle_tangent(camera); }
 
-/// The place in the picture as shares of its half height from its middle, Y upwards.
+/// The position in the picture in units of half its height from its centre, Y up.
 Vec2 from_middle(const Viewport& viewport, const Vec2& place) {
     const double unit = 0.5 * viewport.height;
     return {(place.x - 0.5 * viewport.width) / unit, (0.5 * viewport.height - place.y) / unit};
@@ -91,7 +91,7 @@ Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& plac
     const Vec3 across = at.x * a.right + at.y * a.up;
     if (camera.projection == Projection::perspective)
         return {eye(camera), glm::normalize(half_angle_tangent(camera) * across - a.backward)};
-    // From far behind the eye: without perspective nothing is too near to be seen.
+    // From far behind the eye: without perspective nothing is too close.
     const Vec3 from = eye(camera) + half_height(camera) * across;
     return {from + most_distance * 0.1 * a.backward, -a.backward};
 }

@@ -19,15 +19,15 @@ struct TintedMesh {
     std::vector<uint8_t> tints; // of triangles
 };
 
-/// The mesh as it is drawn: with normals, and twin corners between tints.
+/// The mesh for display: with normals, and twin corners between tints.
 TriangleMesh shaded(const TintedMesh& tinted);
 
-/// About the same surface as that of several meshes, of about `triangles` triangles at most, and of
-/// fewer where nothing is lost by that.
+/// Roughly the surface of several meshes with about `triangles` triangles at most, or fewer if that
+/// loses nothing.
 ///
 /// Shape: all that lies in a cell becomes one corner, where the planes of the triangles there meet
-///        best: faces stay flat and edges sharp. Cells are large where the surface is flat. What is
-///        thinner than the smallest cell may go.
+///        best: faces stay flat and edges sharp. Cells are large where the surface is flat. Parts
+///        thinner than the smallest cell may vanish.
 /// Cost:  linear in the triangles.
 TintedMesh clustered(std::span<const TriangleMesh* const> parts, size_t triangles);
 
@@ -37,7 +37,7 @@ TriangleMesh coarse(std::span<const TriangleMesh* const> parts, size_t triangles
 
 namespace {
 
-/// Gives the corners of a mesh tints, and those that need two a twin.
+/// Assigns tints to the corners of a mesh; corners with two tints get a twin.
 class TintPainter {
 public:
     explicit TintPainter(TriangleMesh& mesh)
@@ -116,18 +116,18 @@ struct ClusterCell {
     size_t corners = 0;
 
     void add(const ClusterCell& other);
-    /// The place that stands for all of its corners, in a cell of this width.
+    /// The position that represents all of its corners, in a cell of this width.
     core::Vec3 place(double width) const;
 };
 
-/// The cells that corners end up in.
+/// The final cells of the corners.
 struct Clusters {
     std::vector<core::Vec3> places;
     std::vector<uint32_t> of_leaf; // the place of each cell that was given
 };
 
-/// Joins cells by eight to larger ones, and these again, as long as one place stands for all of
-/// their planes. `tolerance`: the most that PlaneSum::at may give there; `width`: of the cells
+/// Merges cells by eight into larger ones, repeatedly, as long as one position fits all of their
+/// planes. `tolerance`: the most that PlaneSum::at may give there; `width`: of the cells
 /// given.
 ///
 /// Cost:   linear, but for sorting.
@@ -140,7 +140,7 @@ namespace {
 struct ClusterNode {
     ClusterCell cell;
     std::vector<uint32_t> leaves;
-    bool is_one = true; // one place stands for all of it; else what is in it has been settled
+    bool is_one = true; // one position represents all of it; else its contents are final
 };
 
 uint64_t order_of(const CellKey& key) {
@@ -156,7 +156,7 @@ void settle(const ClusterNode& node, double width, Clusters& clusters) {
     clusters.places.push_back(node.cell.place(width));
 }
 
-/// The cells of one parent as one, if that may be; else they are settled.
+/// Merges the cells of one parent if possible; otherwise they are final.
 ClusterNode join(std::span<ClusterNode> children, double width, double tolerance,
                  Clusters& clusters) {
     ClusterNode parent;
@@ -279,7 +279,7 @@ public:
             const auto& places = clusters.places;
             const Vec3 across = glm::cross(places[corners[1]] - places[corners[0]],
                                            places[corners[2]] - places[corners[0]]);
-            // What has been turned over lies upon others that have not.
+            // Inverted triangles lie on others that are not inverted.
             if (glm::dot(across, triangle.across) <= 0.0) continue;
             made.mesh.triangles.push_back(corners);
             made.tints.push_back(triangle.tint);

@@ -14,7 +14,7 @@ namespace {
 
 using Texel = std::array<uint32_t, 4>;
 
-/// As the shader of lines reads it.
+/// The format of the line shader.
 Texel texel_of(const PathPoint& p) {
     return {std::bit_cast<uint32_t>(p.place.x), std::bit_cast<uint32_t>(p.place.y),
             std::bit_cast<uint32_t>(p.place.z),
@@ -60,7 +60,7 @@ void GpuLines::draw(size_t first, size_t last) const {
 
 namespace {
 
-/// Points that one piece may stand for: bounds the search, which looks at all of them again.
+/// The most points that one piece may replace: bounds the search, which examines all of them again.
 constexpr size_t most = 48;
 
 bool go_together(const PathPoint& a, const PathPoint& b) {
@@ -74,7 +74,7 @@ double distance_to(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b) {
     return glm::distance(p, a + share * by);
 }
 
-/// Whether the piece from one point to another passes all between them by.
+/// Whether the piece from one point to another is close enough to all points between.
 bool stands_for(const std::vector<PathPoint>& points, size_t from, size_t to, double tolerance) {
     for (size_t i = from + 1; i < to; ++i)
         if (distance_to(points[i].place, points[from].place, points[to].place) > tolerance)
@@ -165,7 +165,7 @@ std::vector<PathPoint> urgent_pieces(const ToolPath& path) {
     return pieces;
 }
 
-/// Paths of fewer points are always drawn as they are.
+/// Paths with fewer points are never simplified.
 constexpr size_t short_path = 5000;
 
 constexpr double path_share = 6e-4, block_share = 9e-4;
@@ -193,7 +193,7 @@ void LinePass::bring(const SharedPath& path) {
     urgent_.fill(urgent_pieces(*path));
 }
 
-/// The one with the fewest points that looks the same.
+/// The level with the fewest points that looks the same.
 const LinePass::Level& LinePass::level_for(const ViewFrame& frame) const {
     const double pixel = nearest_pixel(*shown_, frame.camera, frame.viewport);
     size_t best = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double turn_step = std::numbers::pi / 60.0;
 
-/// How far apart two places may be and still be one, mm.
+/// Positions closer than this are equal, mm.
 constexpr double joined = 1e-3;
 
 class PathMaker {

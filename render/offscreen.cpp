@@ -39,7 +39,7 @@ struct Offscreen::Context {
         if (context == EGL_NO_CONTEXT) return;
         if (eglGetCurrentContext() == context)
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        // The display stays: other contexts of this program share it.
+        // The display is kept: other contexts of this program share it.
         eglDestroyContext(display, context);
     }
 };

@@ -72,7 +72,7 @@ std::optional<SurfaceHit> hit_before(const TriangleMesh& mesh, const Ray& ray,
     return best;
 }
 
-/// Where a ray comes through the plane of a section from the side that is cut away.
+/// Where a ray crosses the plane of a section from the side that is cut away.
 std::optional<SurfaceHit> plane_hit(const SectionPlane& section, const Ray& ray) {
     const double towards = -glm::dot(section.normal, ray.direction);
     const double above = glm::dot(section.normal, ray.origin) - section.offset;
@@ -81,8 +81,8 @@ std::optional<SurfaceHit> plane_hit(const SectionPlane& section, const Ray& ray)
     return SurfaceHit{along, ray.origin + along * ray.direction, section.normal};
 }
 
-/// The face that a section makes where a ray leaves a mesh before it has entered it: it was within
-/// when it came through the plane.
+/// The section face where a ray leaves a mesh without having entered it: the ray was inside when it
+/// crossed the plane.
 std::optional<SurfaceHit> cap_before(const TriangleMesh& mesh, const Ray& ray,
                                      const std::optional<SectionPlane>& section, double limit) {
     if (!section) return std::nullopt;
@@ -92,7 +92,7 @@ std::optional<SurfaceHit> cap_before(const TriangleMesh& mesh, const Ray& ray,
     return is_within ? cap : std::nullopt;
 }
 
-/// The box as the picture shows it; everything when a part of it is behind the eye.
+/// The box in the picture; everything if a part of it is behind the eye.
 struct Rectangle {
     Vec2 min = Vec2(core::infinity), max = Vec2(-core::infinity);
 
@@ -167,7 +167,7 @@ void PathSearch::try_piece(size_t end) {
     const double share =
         size > 0.0 ? std::clamp(glm::dot(cursor_ - from->place, by) / size, 0.0, 1.0) : 0.0;
     const double pixels = glm::distance(cursor_, from->place + share * by);
-    // Evenly in the picture is not evenly in space: farther pieces are seen shorter.
+    // Linear in the picture is not linear in space: farther pieces look shorter.
     const double along =
         camera_.projection == Projection::perspective
             ? share * from->depth / (share * from->depth + (1.0 - share) * to->depth)
@@ -230,7 +230,7 @@ std::optional<BodyHit> pick_body(const Scene& scene, const Ray& ray, bool throug
                            - glm::dot(scene.section->normal, body.stock_from_body.translation)};
         const double limit = best ? best->at.distance : core::infinity;
         size_t triangle = 0;
-        // A section's face lies before whatever the ray meets within, be that too far away or not.
+        // A section face is in front of anything that the ray hits inside, at any distance.
         auto hit = hit_before(*body.mesh, own, section, section ? core::infinity : limit, triangle);
         if (body.mesh->closed)
             if (const auto cap =

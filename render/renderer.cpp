@@ -99,7 +99,7 @@ Image Canvas::pixels() const {
 
 namespace {
 
-/// What all passes start from, whatever somebody else has left.
+/// The initial state of all passes, independent of earlier state.
 void set_state() {
     glActiveTexture(GL_TEXTURE0);
     glDisable(GL_SCISSOR_TEST);

@@ -30,7 +30,7 @@ constexpr size_t step_of(size_t axis) {
     return steps[axis];
 }
 
-/// The cells round an edge, anticlockwise seen from its end, and which of each cell's edges it is.
+/// The cells around an edge, counter-clockwise seen from its end, and its number in each cell.
 struct Around {
     GridNode cell;
     uint8_t edge;
@@ -40,8 +40,8 @@ constexpr std::array<std::array<Around, 4>, 3> cells_around = {
      {{{{-1, 0, -1}, 7}, {{-1, 0, 0}, 5}, {{0, 0, 0}, 4}, {{0, 0, -1}, 6}}},
      {{{{-1, -1, 0}, 11}, {{0, -1, 0}, 10}, {{0, 0, 0}, 8}, {{-1, 0, 0}, 9}}}}};
 
-/// The edges in the side of a cell that faces down an axis, and the same ones as the cell there
-/// counts them.
+/// The edges in the face of a cell towards lower values of an axis, and their numbers in the
+/// adjacent cell.
 struct Shared {
     uint8_t here, there;
 };
@@ -54,8 +54,8 @@ struct Piece {
     Vec3 place;
     std::array<int32_t, 12> edges{};
     size_t count = 0;
-    bool flat = true;               // one normal all over
-    int32_t first_vertex = nowhere; // that stands there, one for each normal
+    bool flat = true;               // one normal everywhere
+    int32_t first_vertex = nowhere; // at its position, one for each normal
 };
 
 class BrickContour {
@@ -111,7 +111,7 @@ private:
     std::vector<LatticeQuad> quads_; // of the result
 };
 
-/// Marks the nodes that the lines along an axis hold.
+/// Marks the nodes inside according to the lines along an axis.
 void BrickContour::vote(int axis) {
     auto& votes = room_.votes[static_cast<size_t>(axis)];
     votes.assign(static_cast<size_t>(side) * side, 0);
@@ -139,7 +139,7 @@ void BrickContour::vote(int axis) {
         }
 }
 
-/// A node is inside where most of its lines say so. Returns whether any surface can pass.
+/// A node is inside if most of its lines are. Returns whether there can be any surface.
 bool BrickContour::mark_inside() {
     for (int axis = 0; axis < 3; ++axis) vote(axis);
     room_.inside.resize(static_cast<size_t>(side) * side);
@@ -154,7 +154,7 @@ bool BrickContour::mark_inside() {
     return any && !all;
 }
 
-/// The surface where a line passes it; what is known of the same end is taken over.
+/// The surface where a line crosses it; a known result for the same end is reused.
 void BrickContour::cross(int axis, const GridNode& node, std::vector<BrickMemory::Known>& now,
                          size_t& next) {
     const auto number = static_cast<uint32_t>(at(node) + nodes * static_cast<size_t>(axis));
@@ -245,8 +245,8 @@ Piece& BrickContour::piece_at(size_t cell, uint8_t edge) {
     return pieces_[static_cast<size_t>(room_.cells[cell]) + piece];
 }
 
-/// The vertex of a piece as a quad sees it: its normal is the mean of those in the piece that go
-/// on smoothly from the quad's own.
+/// The vertex of a piece for a quad: its normal is the mean of those in the piece within the crease
+/// angle of the quad's own.
 uint32_t BrickContour::corner(Piece& piece, const CrossedEdge& edge_of_quad, uint8_t tint) {
     static const double limit = std::cos(crease_angle);
     Vec3 sum = edge_of_quad.plane.normal;
@@ -313,8 +313,8 @@ void BrickContour::add_quads() {
     }
 }
 
-/// A line from the piece of a cell to that of the next one down the axis, where what passes the
-/// side between them has a bend.
+/// A feature line from the piece of a cell to that of the previous one along the axis, if the
+/// surface bends at the face between them.
 void BrickContour::add_crease(size_t axis, size_t cell) {
     static const double limit = std::cos(crease_angle);
     const size_t other = cell - step_of(axis);
@@ -383,7 +383,7 @@ struct MarkedEnd {
     bool operator==(const MarkedEnd&) const = default;
 };
 
-/// The ends on a line, upwards; the same line is asked for its ends again and again.
+/// The ends on a line, upwards; caches the last line.
 class LineEnds {
 public:
     LineEnds(const ScanLines& lines, int u, int v)
@@ -403,7 +403,7 @@ private:
     int u_, v_;
 };
 
-/// Where two states of a line differ; empty if they do not.
+/// The range in which two states of a line differ; empty if equal.
 std::optional<Interval> changed(const ScanLines& was, const ScanLines& is, int u, int v) {
     const LineEnds a(was, u, v), b(is, u, v);
     const size_t common = std::min(a.size(), b.size());
@@ -420,14 +420,14 @@ std::optional<Interval> changed(const ScanLines& was, const ScanLines& is, int u
     return range;
 }
 
-/// Which bricks hold a node among those first .. last, along one axis.
+/// The bricks that contain any of the nodes first .. last along one axis.
 core::IndexRange bricks_with(int first, int last, int count) {
     const auto floor_div = [](int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); };
     return {std::max(0, -floor_div(brick_cells - first, brick_cells)),
             std::min(count - 1, floor_div(last + 1, brick_cells))};
 }
 
-/// Marks the bricks in which a change of one family of lines can be seen.
+/// Marks the bricks affected by a change of one family of lines.
 class TouchedBricks {
 public:
     TouchedBricks(const core::ScanGrid& grid, const std::array<int, 3>& counts)
@@ -468,7 +468,7 @@ void TouchedBricks::touch(int axis, int u, int v, const Interval& range) {
                    std::clamp(lines, -2.0, static_cast<double>(grid_.count(axis)) + 2.0)))
                + 1;
     };
-    // Two nodes more: an end is taken for an edge's own a little beyond it.
+    // Two more nodes: an end slightly beyond an edge counts as on the edge.
     bricks[place(axis)] =
         bricks_with(node(range.lower) - 1, node(range.upper) + 2, counts_[place(axis)]);
     bricks[place(core::u_axis(axis))] =

@@ -16,7 +16,7 @@ core::Aabb box_of(const std::vector<PathPoint>& points, size_t first, size_t las
     return box;
 }
 
-/// Where the points of a block are, or would be: first and one past the last.
+/// The range of the points of a block, possibly empty: first and one past the last.
 std::pair<size_t, size_t> place_of_block(const std::vector<PathPoint>& points, uint32_t block) {
     const auto first = std::partition_point(points.begin(), points.end(),
                                             [&](const PathPoint& p) { return p.block < block; });

@@ -9,7 +9,7 @@ namespace {
 
 using core::Vec3;
 
-/// A corner of a triangle, gathered by the vertex that it stands on.
+/// A corner of a triangle, grouped by vertex.
 struct Corner {
     uint32_t vertex, triangle, corner;
 };
@@ -49,7 +49,7 @@ double angle_at(const core::Mesh& mesh, const Corner& at) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// The mean of the normals round a corner that belong to the same smooth stretch.
+/// The mean of the normals around a corner that belong to the same smooth region.
 Vec3 smooth_normal(const core::Mesh& mesh, const Faces& faces, const Corner& at, double limit) {
     const Vec3 own = faces.normals[at.triangle];
     Vec3 sum(0.0);
@@ -182,7 +182,7 @@ private:
         return mesh_.vertices[mesh_.triangles[triangle][i == 3 ? 2 : i]];
     }
 
-    /// Whether all corners say the same of a plane across the quad's axis.
+    /// Whether all corners agree on a plane across the axis of the quad.
     bool is_mergeable(uint32_t quad) const {
         if (!quads_[quad].flat) return false;
         const auto axis = static_cast<glm::length_t>(quads_[quad].axis);
@@ -219,7 +219,7 @@ private:
         }
     }
 
-    /// The quads of a layer as rectangles: each as wide as it goes, then as high.
+    /// The quads of a layer as rectangles: each as wide as possible, then as high as possible.
     void merge(size_t axis, const std::vector<uint32_t>& quads) {
         const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
         Layer layer;
@@ -277,7 +277,7 @@ private:
 
     const TriangleMesh& mesh_;
     std::span<const LatticeQuad> quads_;
-    std::vector<uint32_t> taken_; // by vertex: its number in what is made
+    std::vector<uint32_t> taken_; // by vertex: its number in the result
     std::array<std::array<std::vector<uint32_t>, lattice_side>, 3> layers_;
     TriangleMesh made_;
 };

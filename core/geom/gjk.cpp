@@ -133,12 +133,12 @@ namespace {
 
 constexpr int max_steps = 100;
 
-/// Nearer than this the bodies touch: a point of the simplex that should be the origin is off by
+/// Bodies closer than this touch: a point of the simplex that should be the origin is off by
 /// rounding.
 constexpr double gjk_touching = 1e-10;
 
 Simplex::Vertex support_pair(const ConvexShape& a, const ConvexShape& b, const Vec3& towards_a) {
-    // The vertex of A - B that lies farthest back along the line from the origin to A - B.
+    // The vertex of A - B nearest to the origin along the search direction.
     const SupportPoint on_a = support(a, -towards_a);
     const SupportPoint on_b = support(b, towards_a);
     return {on_a.point - on_b.point, on_a.point, on_b.point, on_a.time, 1.0};
@@ -150,7 +150,7 @@ bool already_in(const Simplex& simplex, const Simplex::Vertex& vertex) {
     return false;
 }
 
-/// The vertex that stands for the nearest point of the simplex; it is a point of A - B as well.
+/// The nearest point of the simplex as a vertex; it is also a point of A - B.
 Simplex::Vertex nearest_vertex(const Simplex& simplex) {
     Simplex::Vertex sum{Vec3(0.0), Vec3(0.0), Vec3(0.0), 0.0, 1.0};
     for (size_t i = 0; i < static_cast<size_t>(simplex.count); ++i) {
@@ -163,7 +163,7 @@ Simplex::Vertex nearest_vertex(const Simplex& simplex) {
     return sum;
 }
 
-/// Takes `w` into the simplex and returns its nearest point, shorter than `v` if that can be had.
+/// Adds `w` to the simplex and returns its nearest point, closer than `v` if possible.
 Vec3 advance(Simplex& simplex, const Simplex::Vertex& w, const Vec3& v) {
     const Simplex before = simplex;
     if (simplex.count < 4 && !already_in(simplex, w)) {
@@ -171,14 +171,15 @@ Vec3 advance(Simplex& simplex, const Simplex::Vertex& w, const Vec3& v) {
         const Vec3 next = reduce_to_nearest(simplex);
         if (glm::length(next) < glm::length(v)) return next;
     }
-    // The simplex is so flat that its faces are rounding. The way from v to w is sound.
+    // The simplex is so flat that its faces are dominated by rounding; the segment from v to w is
+    // valid.
     simplex.vertices[0] = nearest_vertex(before);
     simplex.vertices[1] = w;
     simplex.count = 2;
     return reduce_to_nearest(simplex);
 }
 
-/// The pair of points behind the nearest point of the simplex, moved out by the margins.
+/// The pair of points for the nearest point of the simplex, moved out by the margins.
 void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, double margin_a,
                  double margin_b) {
     const Simplex::Vertex nearest = nearest_vertex(simplex);
@@ -214,7 +215,7 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
         }
         if (found.upper == 0.0) break;
 
-        // All of A - B lies beyond the plane through w across v: a bound for any v whatever.
+        // All of A - B lies beyond the plane through w perpendicular to v: a bound for any v.
         const Simplex::Vertex w = support_pair(a, b, v);
         found.lower = std::max(found.lower, glm::dot(v, w.difference) / length - margins);
         if (found.lower >= goal.limit || found.upper - found.lower <= goal.tolerance) break;
@@ -226,10 +227,10 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
     return found;
 }
 
-/// Where bodies all but touch, the way between them is rounding and shows no direction. From a step
-/// back it does: the nearest points found there are points of the bodies here as well, and their
-/// direction gives a plane. Each round brings the direction nearer to the one across the contact:
-/// over a surface of radius R an angle is left step / R times as large.
+/// Where bodies almost touch, the vector between them is dominated by rounding and gives no
+/// direction. After one body is moved back by a step it does: the nearest points found there are
+/// also points of the bodies here, and their direction gives a plane. Each iteration improves the
+/// direction: on a surface of radius R its angle error is multiplied by step / R.
 void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal,
                Separation& found) {
     const double step =
@@ -333,8 +334,8 @@ bool hold_origin(Simplex& s) {
                               volume(at(0), at(1), at(3)) / all, volume(at(0), at(2), at(1)) / all};
     for (const double weight : weights)
         if (!(weight >= 0.0)) return false;
-    // Of a flat tetrahedron far away these are nothing but rounding. Only the point they stand for
-    // proves anything.
+    // For a flat tetrahedron far away these are dominated by rounding. Only the point that they
+    // give proves anything.
     const double sum = weights[0] + weights[1] + weights[2] + weights[3];
     Vec3 point(0.0);
     double reach = 0.0;

@@ -28,10 +28,10 @@
 
 namespace core {
 
-/// What a binary STL whose bytes are in order holds.
+/// The contents of a valid binary STL.
 struct StlCount {
     size_t triangles = 0;
-    size_t degenerate = 0; // those that name a corner twice
+    size_t degenerate = 0; // with two equal corners
 };
 
 /// Whether the bytes have the length that a binary STL states in its own header.
@@ -103,8 +103,8 @@ namespace {
 
 void turn(Mesh::Corners& triangle) { std::swap(triangle[1], triangle[2]); }
 
-/// Joins the pieces that need each other at an edge of more than two uses: those that do not pass
-/// it as often one way as the other.
+/// Joins pieces at an edge of more than two uses that do not use it equally often in both
+/// directions.
 void join_at_edge(std::span<const EdgeUse> uses, UnionFind& pieces) {
     std::map<uint32_t, int> balance;
     for (const EdgeUse& use : uses) balance[pieces.root(use.triangle)] += use.upwards ? 1 : -1;
@@ -260,7 +260,7 @@ size_t turn_outwards(Mesh& mesh) {
 
 namespace {
 
-constexpr double farthest_coordinate = 1e6; // mm; a kilometre is no workpiece
+constexpr double farthest_coordinate = 1e6; // mm; no workpiece is a kilometre long
 
 std::string place_of(const Vec3& p) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
@@ -323,8 +323,8 @@ size_t drop_degenerate(Mesh& mesh) {
     });
 }
 
-/// How many edges an odd number of triangles meets, and how many are not passed as often one way as
-/// the other.
+/// The number of edges with an odd number of triangles, and of edges not used equally often in both
+/// directions.
 struct EdgeCount {
     size_t open = 0;
     size_t unbalanced = 0;
@@ -352,7 +352,8 @@ tl::unexpected<Error> fail_at_edge(const Mesh& mesh, size_t edges, const char* w
                             place_of(mesh.vertices[at.low]), place_of(mesh.vertices[at.high])));
 }
 
-/// Errors unless every edge is passed as often one way as the other; turns triangles if that helps.
+/// Errors unless every edge is used equally often in both directions; flips triangles if that
+/// helps.
 Result<bool> close(Mesh& mesh, std::vector<std::string>& repairs) {
     EdgeCount count = count_edges(mesh);
     if (count.open > 0)
@@ -423,7 +424,7 @@ Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view
                 fmt::format("'{}' is not a supported mesh format (stl, obj, ply, off)", extension));
 }
 
-/// What OpenMesh is given to read, and how much it must find there.
+/// The input of OpenMesh, and the expected counts.
 Result<MeshText> plain_form(std::string bytes, MeshFormat format) {
     switch (format) {
     case MeshFormat::stl_ascii:
@@ -441,7 +442,7 @@ Result<MeshText> plain_form(std::string bytes, MeshFormat format) {
     return MeshText{std::move(bytes), 0, count.triangles, count.degenerate};
 }
 
-/// The soup, known to hold all that the file states.
+/// The soup, checked to be complete.
 Result<PolygonSoup> complete_soup(const MeshText& plain, MeshFormat format) {
     FEELER_TRY(PolygonSoup soup, read_soup(plain.text, format));
     const size_t faces = plain.faces - plain.degenerate_faces;

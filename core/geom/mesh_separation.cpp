@@ -21,7 +21,7 @@ double reach(const TriangleBvh& tree) {
     return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
 }
 
-/// What a bound of the search can be off by: see README.md, "Two meshes".
+/// The error of a bound of the search: see README.md, "Two meshes".
 double rounding_of(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
                    const Vec3& sweep) {
     const double lengths =
@@ -32,8 +32,8 @@ double rounding_of(const TriangleBvh& a, const TriangleBvh& b, const Transform& 
 
 Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * t.b, by * t.c}; }
 
-/// Depth first through pairs of boxes, the nearer first. Nearest of all first would open a third
-/// fewer, but keeping them in order costs more than that.
+/// Depth first through pairs of boxes, the nearer one first. Best-first would open a third fewer,
+/// but the priority queue costs more than that.
 class MeshPairSearch {
 public:
     MeshPairSearch(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
@@ -59,7 +59,7 @@ private:
         uint32_t a, b; // a node of each tree
     };
 
-    /// At this bound or beyond, nothing is worth a look.
+    /// Pairs with this bound or more are skipped.
     double enough() const {
         return std::min(goal_.limit + rounding_, best_.upper - goal_.tolerance);
     }
@@ -79,8 +79,8 @@ private:
         return true;
     }
 
-    /// The gap along the way between the nearest points so far: next to them it is tighter than
-    /// what the boxes say alone.
+    /// The gap along the direction of the nearest points so far: close to them it is tighter than
+    /// the bound of the boxes.
     double gap_along_witness(const Pair& pair) const {
         const OrientedBox& a = a_.oriented[pair.a];
         const OrientedBox& b = b_.oriented[pair.b];

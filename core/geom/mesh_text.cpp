@@ -89,7 +89,7 @@ namespace {
 
 using namespace OpenMesh;
 
-/// Ends OpenMesh's reading at the first thing that is wrong; never leaves this file.
+/// Stops OpenMesh at the first error; never leaves this file.
 struct ReadingStopped : std::exception {
     explicit ReadingStopped(std::string reason) : why(std::move(reason)) {}
     std::string why;
@@ -112,7 +112,7 @@ public:
         return VertexHandle(static_cast<int>(soup.vertices.size() - 1));
     }
     void set_point(VertexHandle vertex, const Vec3f& p) override {
-        // The readers themselves do not look whether a number was there.
+        // The readers do not check whether a number was read.
         if (stream_.fail())
             throw ReadingStopped(fmt::format("vertex {} is not there", vertex.idx() + 1));
         const Vec3 point(p[0], p[1], p[2]);
@@ -139,7 +139,7 @@ public:
     size_t n_faces() const override { return soup.faces.size(); }
     size_t n_edges() const override { return 0; }
 
-    // What a body does not have.
+    // Properties that a body does not have.
     HalfedgeHandle add_edge(VertexHandle, VertexHandle) override { return HalfedgeHandle(); }
     FaceHandle add_face(HalfedgeHandle) override { return FaceHandle(); }
     void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec2f>&) override {}
@@ -216,7 +216,7 @@ Result<PolygonSoup> read_soup(const std::string& bytes, MeshFormat format) {
 
 namespace {
 
-/// Cuts the ears off one outline, seen along its normal.
+/// Ear clipping of one outline, seen along its normal.
 class EarCutter {
 public:
     EarCutter(const std::vector<Vec3>& vertices, std::span<const uint32_t> face) : face_(face) {

@@ -84,7 +84,7 @@ public:
     }
 
 private:
-    /// Moves to the next line that says something.
+    /// Moves to the next line that is not empty.
     bool advance() {
         while (lines_.next(words_, '#'))
             if (!words_.empty()) return true;

@@ -58,8 +58,8 @@ Mat3 eigenvectors(Mat3 m) {
     return vectors;
 }
 
-/// Axes along the longest side and the normal of the triangle that has the longest side; anything
-/// at all when it has no area.
+/// Axes along the longest side and the normal of the triangle with the longest side; arbitrary if
+/// it is degenerate.
 Mat3 axes_along_side(std::span<const Triangle> triangles) {
     Vec3 longest(0.0), normal(0.0);
     for (const Triangle& t : triangles)
@@ -71,8 +71,8 @@ Mat3 axes_along_side(std::span<const Triangle> triangles) {
     return Mat3(longest, normal, Vec3(0.0));
 }
 
-/// Gram-Schmidt on the first two columns, twice: after the first pass what is left of a short
-/// second column may still lean.
+/// Gram-Schmidt on the first two columns, twice: after one pass a short second column may still be
+/// inaccurate.
 Mat3 at_right_angles(Mat3 m) {
     for (int pass = 0; pass < 2; ++pass) {
         const Vec3 x = glm::normalize(m[0]);
@@ -217,7 +217,7 @@ private:
     TriangleBvh bvh_;
 };
 
-/// Keeps the best pair, and the least lower bound among all that was looked at.
+/// Keeps the best pair and the least lower bound of all examined triangles.
 struct NearestTriangleSearch {
     SeparationGoal goal;
     Separation best;

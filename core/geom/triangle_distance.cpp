@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// Nearer than this triangles touch, as for convex shapes.
+/// Triangles closer than this touch, as for convex shapes.
 constexpr double touching = 1e-10;
 
 /// A triangle with its sides; side i leads from corner i to the next, the other corner is `across`.
@@ -138,7 +138,8 @@ Candidate between_face_and_sides(const Triangle& face, const Sides& a, const Sid
     return best;
 }
 
-/// The gap between two planes across `way` with all of A before one and all of B behind the other.
+/// The gap between two planes perpendicular to `way` with all of A before one and all of B after
+/// the other.
 double gap_along(const Sides& a, const Sides& b, const Vec3& way) {
     const Vec3 u = glm::normalize(way);
     const auto along = [&](const Vec3& p) { return glm::dot(p, u); };
@@ -155,7 +156,7 @@ struct PairSearch {
     Sides a{triangle_a}, b{triangle_b};
     Separation found{.lower = 0.0};
 
-    /// Takes a candidate into both bounds; whether they now are near enough.
+    /// Updates both bounds with a candidate; returns whether they are close enough.
     bool offer(const Candidate& c) {
         const double distance = std::sqrt(c.square);
         if (distance < found.upper) {
@@ -169,8 +170,8 @@ struct PairSearch {
         return found.upper - found.lower <= goal.tolerance || found.lower >= goal.limit;
     }
 
-    /// Next to touching, the difference of the nearest points is nothing but rounding; the
-    /// directions across two sides are better known.
+    /// Close to contact, the difference of the nearest points is dominated by rounding; the
+    /// directions across two sides are more accurate.
     bool try_planes_across_sides() {
         for (const Vec3& side_a : a.along)
             for (const Vec3& side_b : b.along) {
