@@ -31,7 +31,7 @@
 #include "app/library/result/batch_result.h"
 #include "app/library/run/batch_job.h"
 #include "app/library/watch/watched_files.h"
-#include "app/report/html/html_cards.h"
+#include "app/report/html/html_report.h"
 #include "app/report/html/pictured_run.h"
 #include "app/report/text/batch_text.h"
 

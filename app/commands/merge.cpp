@@ -10,7 +10,6 @@
 #include "app/commands/progress.h"
 #include "app/commands/report_formats.h"
 #include "app/library/shard/shard.h"
-#include "app/library/shard/shard_merge.h"
 #include "app/library/store/result_key.h"
 #include "core/base/file_reads.h"
 

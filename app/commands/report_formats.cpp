@@ -5,12 +5,9 @@
 #include <filesystem>
 
 #include "app/library/result/batch_result.h"
-#include "app/report/exchange/csv_report.h"
-#include "app/report/exchange/junit_report.h"
-#include "app/report/exchange/sarif_report.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "app/report/html/html_batch.h"
 #include "app/report/html/html_report.h"
-#include "app/report/json/batch_report.h"
 #include "app/report/json/json_report.h"
 #include "app/report/text/batch_text.h"
 #include "app/report/text/text_report.h"

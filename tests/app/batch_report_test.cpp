@@ -7,10 +7,9 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/report/exchange/junit_report.h"
-#include "app/report/exchange/sarif_report.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "app/report/html/html_batch.h"
-#include "app/report/json/batch_report.h"
+#include "app/report/json/json_report.h"
 #include "app/report/text/batch_text.h"
 #include "core/sim/finding.h"
 #include "tests/support/scoped_folder.h"
@@ -263,7 +262,8 @@ TEST(Junit, HasACaseForEachProgram) {
     EXPECT_THAT(xml, HasSubstr("<failure message=\"violation: 2 errors\" type=\"violation\">"));
     EXPECT_THAT(xml, HasSubstr("&lt;clamp-1&gt; &amp; &quot;more&quot;"));
     EXPECT_THAT(xml, HasSubstr("<error message=\"line 3: G999: no such &lt;code&gt;\""));
-    EXPECT_THAT(xml, HasSubstr("<error message=\"was not checked: the batch was stopped first\"/>"));
+    EXPECT_THAT(xml,
+                HasSubstr("<error message=\"was not checked: the batch was stopped first\"/>"));
     EXPECT_THAT(xml, HasSubstr("bell ? and line\nend"));
 }
 

@@ -7,7 +7,7 @@
 #include "app/check/check_run.h"
 #include "app/library/run/batch_job.h"
 #include "app/library/run/batch_run.h"
-#include "app/report/json/batch_report.h"
+#include "app/report/json/json_report.h"
 #include "app/report/text/batch_text.h"
 #include "tests/support/program_writer.h"
 #include "tests/support/scoped_folder.h"

@@ -5,7 +5,7 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/report/html/html_cards.h"
+#include "app/report/html/html_report.h"
 #include "app/report/html/pictured_run.h"
 #include "render/body_mesh.h"
 #include "render/camera.h"

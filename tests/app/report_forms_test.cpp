@@ -10,7 +10,7 @@
 #include "app/check/check_run.h"
 #include "app/commands/progress.h"
 #include "app/commands/report_formats.h"
-#include "app/report/exchange/csv_report.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "app/report/json/json_report.h"
 #include "app/report/text/text_report.h"
 

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 
 #include "app/library/shard/shard.h"
-#include "app/library/shard/shard_merge.h"
 
 namespace {
 

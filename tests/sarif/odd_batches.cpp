@@ -1,7 +1,7 @@
 #include <fstream>
 #include <string>
 
-#include "app/report/exchange/sarif_report.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "tests/support/large_batch.h"
 
 namespace {

@@ -1,10 +1,10 @@
-#include "app/library/shard/shard_merge.h"
-
 #include <algorithm>
 #include <unordered_set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "app/library/shard/shard.h"
 
 namespace app {
 namespace {

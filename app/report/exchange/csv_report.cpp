@@ -1,9 +1,8 @@
-#include "app/report/exchange/csv_report.h"
-
 #include <fmt/format.h>
 
 #include "app/base/text.h"
 #include "app/check/check_run.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "app/report/json/json_report.h"
 
 namespace app {

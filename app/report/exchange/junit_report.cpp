@@ -1,10 +1,9 @@
-#include "app/report/exchange/junit_report.h"
-
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/report/exchange/exchange_reports.h"
 
 namespace app {
 namespace {

@@ -1,5 +1,3 @@
-#include "app/report/exchange/sarif_report.h"
-
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -10,6 +8,7 @@
 #include "app/base/sha256.h"
 #include "app/base/version.h"
 #include "app/library/result/program_diff.h"
+#include "app/report/exchange/exchange_reports.h"
 #include "app/report/text/batch_text.h"
 #include "core/sim/finding.h"
 

@@ -1,11 +1,10 @@
-#include "app/report/html/html_cards.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "app/base/text.h"
 #include "app/check/check_run.h"
+#include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"
 #include "app/view/model/finding_group.h"
 #include "core/sim/verdict.h"

@@ -8,7 +8,6 @@
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/check/check_run.h"
-#include "app/report/html/html_cards.h"
 #include "app/report/html/html_facts.h"
 #include "app/report/html/html_page.h"
 #include "app/report/html/html_text.h"

@@ -1,12 +1,30 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
-#include "app/report/html/html_cards.h"
+namespace app::viewer {
+struct FindingGroup;
+}
 
 namespace app {
 
 struct CheckRun;
+
+/// What a report shows of one block.
+struct BlockView {
+    size_t block = 0;
+    std::string picture; // a JPEG's bytes; empty: there is none
+    std::string scene;   // a JSON object for the page's 3D view; empty: there is none
+};
+
+/// Everything that a report has to look at.
+struct ReportViews {
+    std::vector<BlockView> views;
+    std::string meshes;      // a JSON array that the scenes refer to
+    std::string no_pictures; // why there are none, in a sentence; else empty
+};
 
 /// The report of a check as one HTML file that needs nothing else: no network, no other file.
 ///
@@ -22,5 +40,19 @@ std::string html_report(const CheckRun& run, const ReportViews& views);
 ///         limit. Columns with many equal values are runs (NumberRuns, StepRuns).
 /// Cost:   linear; some 20 bytes for a block, and each different text once.
 std::string blocks_json(const CheckRun& run);
+
+/// The findings of a check as the window groups them.
+std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
+
+/// The blocks that have a card of their own: the worst one of each group of findings; without any,
+/// the block with the least margin.
+std::vector<size_t> blocks_of_cards(const CheckRun& run);
+
+/// The blocks that a report should show, at most so many, the most telling ones first: those of
+/// cards, then those of the groups' other stretches.
+std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most);
+
+/// A card for each group of findings, as HTML.
+std::string html_cards(const CheckRun& run, const ReportViews& views);
 
 } // namespace app

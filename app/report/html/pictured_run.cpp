@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "app/check/check_run.h"
-#include "app/report/html/html_cards.h"
+#include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"

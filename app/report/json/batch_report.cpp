@@ -1,10 +1,10 @@
-#include "app/report/json/batch_report.h"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
 #include "app/base/version.h"
+#include "app/library/result/batch_result.h"
+#include "app/report/json/json_report.h"
 
 namespace app {
 namespace {
