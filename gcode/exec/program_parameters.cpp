@@ -6,6 +6,7 @@
 
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/language/block.h"
 #include "gcode/language/language.h"
 
 namespace gcode {
