@@ -138,7 +138,7 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// A contour that is moved aside cannot change its shape on the way.
+/// Refuses changes of the frame while cutter radius compensation is on.
 core::Result<void> check_contour_is_off(const Execution& execution, const CodeWord& entry) {
     const ModalState& modal = execution.modal();
     const int code = entry.code->tenths;

@@ -7,7 +7,7 @@
 namespace gcode {
 namespace {
 
-/// Home in machine coordinates; machine zero where nobody said, which is said once.
+/// Home in machine coordinates; if not stated, machine zero, with a warning once.
 Position home_of(Execution& execution, const CodeWord& entry) {
     Position home =
         entry.code->tenths == tenths(28) ? execution.modal().home : execution.modal().second_home;

@@ -22,7 +22,7 @@
 
 namespace gcode {
 
-/// What a block may change, kept until it has succeeded.
+/// The parts of the state that a block may change, saved until the block has succeeded.
 struct BeforeBlock {
     ModalState modal;
     Place next;
@@ -61,13 +61,13 @@ namespace {
 
 using core::ErrorCode;
 
-/// Whether a flow statement goes to another level of calls.
+/// Whether a flow statement may change the call level.
 bool changes_level(FlowKind kind) {
     return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
            || kind == FlowKind::call_program || is_siemens_statement(kind);
 }
 
-/// Whether a line is skipped without a look at its words: they may be of another machine.
+/// Whether a line is skipped without parsing its words, which may be for another machine.
 bool is_deleted(std::string_view line) {
     const size_t first = line.find_first_not_of(" \t");
     return first != std::string_view::npos && line[first] == '/';
@@ -107,7 +107,7 @@ struct Interpreter::Scratch {
     void place_in_lines();
 };
 
-/// Who reads the program's language where it stands: a control may have two.
+/// The scratch data of the language at the current block: a control may have two.
 Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
     if (!state.speaks_iso) return *this;
     if (!iso) {
@@ -396,7 +396,7 @@ InterpreterState initial_state(const Environment& environment) {
         modal.offsets.machine = environment.machine.get();
     begin_with_kept_offsets(state, environment);
     Position start = environment.start;
-    // Axes beyond X, Y and Z that nobody speaks of stand at zero, or are not there.
+    // Axes beyond X, Y and Z without a stated position are at zero, or absent.
     for (size_t axis = 3; axis < axis_count; ++axis)
         if (!start[axis]) start[axis] = 0.0;
     modal.position = program_from_machine(modal.offsets, start);

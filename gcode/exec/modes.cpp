@@ -178,7 +178,7 @@ core::Result<void> select_plane(Execution& execution) {
 
 namespace {
 
-/// LinuxCNC keeps the numbers of a cycle when the units change, so they count in the new ones.
+/// Reinterprets the stored words of a cycle in other units: LinuxCNC keeps the numbers.
 void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
     const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
     for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})
@@ -274,13 +274,13 @@ namespace {
 
 bool has_tool_offset(const ModalState& modal) { return modal.offsets.tool != AxisValues{}; }
 
-/// F as the control notes it: a number of the units and the mode it was said in.
+/// F as the control stores it: in the units and the feed mode in which it was programmed.
 double feed_number(const ModalState& modal) {
     const double feed = modal.feed.value_or(0.0);
     return modal.feed_mode == FeedMode::inverse_time ? feed : from_mm(feed, modal.unit);
 }
 
-/// The feed comes back with one digit behind the point, and not at all out of G93.
+/// The feed is restored with one decimal, and not at all from G93.
 std::optional<double> restored_feed(const ModalState& now, const ModalState& saved) {
     if (saved.feed_mode == FeedMode::inverse_time) return std::nullopt;
     const double number = feed_number(saved);

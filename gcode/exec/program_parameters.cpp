@@ -34,7 +34,7 @@ core::Result<int> parameter_number(double number, int lowest, const Dialect& dia
 ProgramParameters::ProgramParameters(InterpreterState& state, const Environment& environment)
     : state_(state), environment_(environment), dialect_(gcode::dialect(environment.dialect)) {}
 
-/// The level whose local parameters count: M98 goes on with those of its caller.
+/// The call level whose local parameters apply: M98 uses those of its caller.
 Frame& ProgramParameters::locals() {
     size_t level = state_.frames.size() - 1;
     while (level > 0 && state_.frames[level].shares_locals) --level;

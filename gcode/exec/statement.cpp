@@ -95,7 +95,7 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
     return {};
 }
 
-/// Whether all words that follow are arguments: behind G65, G66 and G66.1.
+/// Whether all following words are arguments: after G65, G66 and G66.1.
 bool calls_macro(const Statement& statement) {
     const CodeWord* macro = statement.of(ModalGroup::macro);
     return macro && macro->code->tenths != tenths(67);

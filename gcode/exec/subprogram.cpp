@@ -36,7 +36,7 @@ std::vector<std::string> file_names(int number) {
     return names;
 }
 
-/// The first line behind a tape mark and a program number.
+/// The first line after a tape mark and a program number.
 uint32_t first_line(const Program& program, const FlowIndex& index) {
     uint32_t line = 1;
     for (; line <= program.line_count(); ++line) {
@@ -354,7 +354,7 @@ core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, si
     return enter(execution.state, execution.environment, std::move(frame), where);
 }
 
-/// What G66 calls behind a motion, and G66.1 for every block.
+/// The macro that G66 calls after a motion, and G66.1 for each block.
 core::Result<void> call_modal_macro(Execution& execution) {
     const size_t modal = modal_macro_in_effect(execution.state);
     if (modal == 0) return {};

@@ -73,7 +73,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     return {};
 }
 
-/// G43.1: the offset stands in the block.
+/// G43.1: the offset is in the block.
 core::Result<void> use_given_offset(Execution& execution) {
     AxisValues offset = execution.modal().offsets.tool;
     for (size_t axis = 0; axis < axis_count; ++axis)

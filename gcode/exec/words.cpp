@@ -16,7 +16,7 @@ constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
 constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R are often none
 
-/// The code of the motion or cycle that a block without one goes on with.
+/// The code of the active motion or cycle.
 const Code* going_on(const Execution& execution) {
     const ModalState& modal = execution.modal();
     if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);

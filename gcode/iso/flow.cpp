@@ -234,7 +234,7 @@ core::Result<void> Flowing::take_branch() {
     }
 }
 
-/// `endif`, and `elseif` and `else` behind a branch that was run.
+/// `endif`, and `elseif` and `else` after a branch that was run.
 core::Result<void> Flowing::end_if_statement() {
     if (!index_.previous(line_, scope_, name_, {if_branch}))
         return refuse(fmt::format("'if' of {} is missing before this line", name_));
@@ -377,7 +377,7 @@ namespace {
 
 bool is_program_number(char c) { return upper(c) == 'O' || c == ':'; }
 
-/// What an O word is whose line goes on with something that cannot be read.
+/// Reads only the head of an O word whose line has an error later on.
 bool parse_head(Lexer lexer, const Dialect& dialect, Block& block) {
     if (!dialect.has_o_words || upper(lexer.peek()) != 'O') return false;
     block = {};

@@ -13,7 +13,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// Where a control goes on with a feed of its own, the first feed without F takes that.
+/// On controls with a default feed rate, the first feed move without F uses it.
 void assume_feed(Execution& execution) {
     ModalState& modal = execution.modal();
     const double assumed = execution.dialect.assumed_feed;
@@ -43,14 +43,14 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     return {};
 }
 
-/// A motion code without a place to go to, where that is a move to where the machine stands.
+/// Whether the block has a motion code without an end, which is a move to the current position.
 bool stands_alone(const Execution& execution) {
     const CodeWord* motion = execution.statement.of(ModalGroup::motion);
     return execution.dialect.motion_codes_move && motion
            && (is_straight(motion->code->motion()) || is_arc(motion->code->motion()));
 }
 
-/// G2 alone, of which nobody knows where it leads.
+/// Refuses G2 or G3 without any words of the arc.
 core::Result<void> refuse_lone_arc(const Execution& execution) {
     const Statement& statement = execution.statement;
     const CodeWord* motion = statement.of(ModalGroup::motion);
@@ -83,7 +83,7 @@ bool acts_once(int code) {
            || (code >= tenths(70) && code < tenths(73));
 }
 
-/// Begins with a motion code, or goes on with none.
+/// Activates a motion code, or none.
 void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     std::optional<MotionCode>& active = state.modal.motion;
     if (active == MotionCode::spline_control_point && motion != active)

@@ -59,7 +59,7 @@ public:
     }
 
 private:
-    /// A jump or a loop shares its block with its number only; behind THEN something is done.
+    /// A jump or a loop shares its block with its number only; assignments follow THEN.
     core::Result<void> check_flow() const {
         const FlowKind kind = block_.flow.kind;
         if (!dialect_.has_fanuc_flow || kind == FlowKind::none || kind == FlowKind::if_then)
@@ -282,7 +282,7 @@ core::Result<void> parse_iso(std::string_view text, uint32_t line, const Dialect
 
 namespace {
 
-/// The parameter whose `#` stands here, written out; as it stands where there is none.
+/// The value of the parameter at this `#` as text; the text itself if there is no parameter.
 std::string parameter_text(Lexer& lexer, const ProgramParameters& parameters, int decimals) {
     const size_t begin = lexer.at++;
     core::Result<Value> value = Value{};

@@ -28,8 +28,8 @@ constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
     return bits;
 }
 
-/// What one kind of words does. It is asked only where the block has one of its groups of codes or
-/// of its letters. One with neither is asked always, or where the state makes it due.
+/// The step for one kind of words. It runs only if the block has one of its groups or letters. A
+/// step with neither always runs, or when the state makes it due.
 struct ExecutionStep {
     core::Result<void> (*take)(Execution&);
     uint64_t groups = 0;
@@ -123,7 +123,7 @@ constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
 
 namespace {
 
-/// G290 after G291: the program goes on in native Siemens.
+/// G290 after G291: the program continues in native Siemens.
 core::Result<void> leave_iso(Execution& execution) {
     if (!execution.statement.of(ModalGroup::other)) return {};
     for (const CodeWord& entry : execution.statement.codes())

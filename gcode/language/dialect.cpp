@@ -307,7 +307,7 @@ constexpr Dialect siemens_dialect = [] {
     return entry;
 }();
 
-// ISO dialect M behind G291: Fanuc's language on the same control.
+// ISO dialect M after G291: Fanuc's language on the same control.
 constexpr Dialect siemens_iso = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::siemens_iso;

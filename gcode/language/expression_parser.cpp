@@ -123,7 +123,7 @@ core::Result<void> ExpressionReader::exists(size_t column) {
     return expect(close());
 }
 
-/// `Q5`, `PI`, or a function of the operand behind it: `SIN Q5`, `SQRT(...)`.
+/// `Q5`, `PI`, or a function of the following operand: `SIN Q5`, `SQRT(...)`.
 core::Result<void> ExpressionReader::klartext_operand() {
     const size_t begin = lexer_.at;
     if (upper(lexer_.line[begin]) == 'Q') {

@@ -9,7 +9,7 @@
 namespace gcode {
 namespace {
 
-/// A linear map of X, Y and Z. What depends on an axis that nobody knows is not known either.
+/// A linear map of X, Y and Z. Results that depend on an unknown axis are unknown.
 void map(const core::Mat3& linear, Position& position) {
     const Position before = position;
     for (int row = 0; row < 3; ++row) {

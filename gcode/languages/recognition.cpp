@@ -33,7 +33,8 @@ Clue foreign_clue(std::string_view text, size_t line) {
     return std::nullopt;
 }
 
-/// Things only native Siemens has: keywords behind the block number, headers, values behind `=`.
+/// Features that only native Siemens has: keywords after the block number, headers, values after
+/// `=`.
 Clue siemens_clue(std::string_view text, size_t line) {
     std::string words;
     for (const char c : text) words.push_back(upper(c));
