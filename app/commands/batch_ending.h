@@ -12,7 +12,7 @@ namespace app {
 
 struct Shard;
 
-/// Where lines for a person go: to standard output, unless a report for others does.
+/// Prints lines for a person: to standard output unless a report goes there.
 struct BatchTalk {
     std::FILE* stream = stdout;
     BatchStyle style;
@@ -23,9 +23,9 @@ struct BatchTalk {
 /// Coloured on a terminal, unless NO_COLOR is set.
 BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets);
 
-/// Writes the reports of a batch, each whole or not at all; `shard`, which may be null, is the one
-/// of format "shard". None takes the place of a file that was read. Errors go to standard error.
-/// What the process is to end with.
+/// Writes the reports of a batch, each completely or not at all; `shard`, which may be null, is the
+/// report of format "shard". Never overwrites a file that was read. Prints errors to standard error
+/// and returns the exit status.
 ExitCode end_batch(const BatchResult& batch, const Shard* shard,
                    const std::vector<ReportTarget>& targets, const BatchTalk& talk,
                    const ReadFiles& read);

@@ -214,8 +214,7 @@ core::Result<void> check_share(const CheckOptions& options) {
     const bool is_written = std::count(options.formats.begin(), options.formats.end(), "shard") > 0;
     if (options.share || !is_written) return {};
     return core::fail(core::ErrorCode::invalid_value,
-                      "--format shard is what a machine has done of a batch: say with --shard I/N "
-                      "which share that is");
+                      "--format shard needs --shard I/N: the share that this computer checks");
 }
 
 bool is_batch(const CheckOptions& options) {

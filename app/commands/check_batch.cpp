@@ -104,7 +104,7 @@ void BatchStore::give_up(const core::Error& error) {
     const std::scoped_lock lock(guard_);
     if (std::exchange(is_told_, true)) return;
     print_error(error);
-    print_note("feeler: results are not kept; the check goes on\n");
+    print_note("feeler: results are not stored; the check continues\n");
 }
 
 void BatchStore::begin_again() {

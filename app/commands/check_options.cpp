@@ -20,10 +20,11 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
     for (const std::string& format : formats) targets.push_back({format, {}});
     if (targets.empty()) targets.push_back({"text", {}});
     if (outputs.size() > targets.size())
-        return refused("there are more -o than --format: say the format of each file");
+        return refused("more -o than --format: give the format of each file");
     if (targets.size() > outputs.size() + 1)
-        return refused("only one report can go to standard output: give -o to the others, in the "
-                       "order of --format");
+        return refused(
+            "only one report can go to standard output: give an -o for each other one, in the "
+            "order of --format");
     for (size_t i = 0; i < outputs.size(); ++i) {
         targets[i].path = outputs[i];
         for (size_t k = 0; k < i; ++k)

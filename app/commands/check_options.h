@@ -35,14 +35,13 @@ struct CheckOptions {
     std::optional<ShardId> share; // of the programs; empty: all
 };
 
-/// A report that is to be written.
+/// A report to write.
 struct ReportTarget {
     std::string format;
     std::string path; // empty: standard output
 };
 
-/// Each --format with its --output, in their order; the last ones may go without, to standard
-/// output.
+/// Each --format with its --output, in order; one format may go without, to standard output.
 ///
 /// Errors: invalid_value when they do not pair up.
 core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
@@ -53,15 +52,15 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
 /// Errors: those of settings_of.
 core::Result<CheckJob> job_of(const CheckOptions& options);
 
-/// Checks many programs, says a line for each, and writes the reports. When it is called again it
-/// says a line for each program that was checked again. Null: nothing is watched.
+/// Checks many programs, prints a line for each, and writes the reports. A later call prints a line
+/// for each program that was checked again. The argument is null without --watch.
 using BatchPass = std::function<ExitCode(WatchedFiles*)>;
 
-/// The check that was asked for, of many programs. `options` and `targets` live as long as it.
+/// The check of many programs. `options` and `targets` must outlive it.
 core::Result<BatchPass> batch_pass(const CheckOptions& options,
                                    const std::vector<ReportTarget>& targets);
 
-/// The files that targets name.
+/// The files that the targets name.
 std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets);
 
 } // namespace app

@@ -6,11 +6,11 @@ class App;
 
 namespace app {
 
-/// What the program returns to the shell.
+/// The exit status of the program.
 enum class ExitCode : int {
     clear = 0,    // no finding of severity error
     findings = 1, // at least one
-    failed = 2,   // it could not be done to its end
+    failed = 2,   // not completed
 };
 
 /// Each adds a subcommand that sets `exit_code` when it runs.

@@ -2,7 +2,7 @@
 
 namespace app {
 
-/// From now on an interrupt (Ctrl-C) is noted and ends nothing.
+/// From now on Ctrl-C only sets a flag.
 void note_interrupts();
 
 /// Whether there was one since the last call of forget_interrupt.

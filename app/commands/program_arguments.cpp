@@ -26,7 +26,7 @@ std::string why_no_count(const std::string& text) {
     const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
     if (digits && !text.empty() && text.size() <= 18 && text.find_first_not_of('0') < text.size())
         return {};
-    return fmt::format("'{}' is no whole number above 0", text);
+    return fmt::format("'{}' is not a whole number above 0", text);
 }
 
 } // namespace
@@ -150,7 +150,7 @@ CLI::Validator number_range(double low, double high) {
         // Written so that NaN is refused as well.
         if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high)
             return std::string();
-        return fmt::format("{} is no number from {:g} to {:g}", text, low, high);
+        return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
     };
     return CLI::Validator(check, fmt::format("{:g}..{:g}", low, high));
 }

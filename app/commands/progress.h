@@ -7,18 +7,18 @@ namespace app {
 struct BatchProgress;
 struct CheckProgress;
 
-/// From now on Ctrl-C, and what a scheduler or a closed terminal sends, asks a check to stop, once;
-/// the next one, half a second later or more, ends the process. Outlives readers, too.
+/// From now on SIGINT, SIGTERM and SIGHUP ask a check to stop; a second signal, half a second later
+/// or more, ends the process. Includes outlive_readers.
 void stop_on_interrupt();
 
-/// From now on a reader of our output that goes away ends nothing: writing fails, and reports that
-/// go elsewhere are written all the same.
+/// From now on a closed pipe does not end the process: writing to it fails, and other reports are
+/// still written.
 void outlive_readers();
 
-/// Whether something did.
+/// Whether a stop was requested.
 bool is_interrupted();
 
-/// A line on standard error that says how far a check has come; nothing unless that is a terminal.
+/// A progress line on standard error; nothing if that is not a terminal.
 class ProgressLine {
 public:
     ProgressLine();
@@ -42,7 +42,7 @@ private:
     Clock::time_point last_ = start_;
 };
 
-/// What the line says, `seconds` after the start. No longer than 79 characters.
+/// The text of the line `seconds` after the start, at most 79 characters.
 std::string progress_text(const CheckProgress& progress, double seconds);
 std::string progress_text(const BatchProgress& progress, double seconds);
 

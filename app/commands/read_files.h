@@ -10,18 +10,18 @@
 
 namespace app {
 
-/// The files that a command has read, so that nothing it writes takes the place of one of them:
-/// programs and subprograms, set-ups and the meshes, machines and tables that they name.
+/// The files that a command has read, so that it does not overwrite them: programs, subprograms,
+/// set-ups, and the meshes, machines and tables that they name.
 class ReadFiles {
 public:
-    /// From here on this thread's reads count.
+    /// Records the reads of this thread from now on.
     ReadFiles();
 
-    /// Told of a look by another thread.
+    /// Records an access of another thread.
     void note(const core::FileAccess& look);
     void add(const std::string& path); // empty: nothing
 
-    /// Refuses an output file that is one of them, also by another name or link.
+    /// Refuses an output file that is one of them, also under another name or link.
     ///
     /// Errors: invalid_value, with the path.
     core::Result<void> check(const std::string& output) const;
@@ -33,7 +33,7 @@ private:
     core::FileAccessObserver listening_;
 };
 
-/// As write_output, of what is not to take the place of a file that was read.
+/// As write_output, but refuses to overwrite a file that was read.
 core::Result<void> write_output(const std::string& path, const std::string& text,
                                 const ReadFiles& read);
 

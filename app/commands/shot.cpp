@@ -177,8 +177,9 @@ core::Result<render::Viewport> size_in(const std::string& text) {
     if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) == 2
         && size.width >= 64 && size.height >= 64 && size.width <= 8192 && size.height <= 8192)
         return size;
-    return core::fail(core::ErrorCode::invalid_value,
-                      fmt::format("'{}' is no size: write WIDTHxHEIGHT, 64 to 8192 pixels", text));
+    return core::fail(
+        core::ErrorCode::invalid_value,
+        fmt::format("'{}' is not a size: write WIDTHxHEIGHT, 64 to 8192 pixels", text));
 }
 
 viewer::ShotView view_named(const std::string& name) {
@@ -277,8 +278,7 @@ core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport
     if (to >= model.rows.size() || from >= model.rows.size())
         return tl::unexpected(no_such("--from, --to: " + block_numbers(model)));
     if (to < from)
-        return tl::unexpected(
-            no_such(fmt::format("a film goes forwards: --from {} is behind --to {}", from, to)));
+        return tl::unexpected(no_such(fmt::format("--from {} is after --to {}", from, to)));
     const BlockRow& last = model.rows[to];
     const double length = last.time + last.duration - model.rows[from].time;
     const size_t count =
@@ -296,8 +296,8 @@ core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport
     }
     FEELER_TRY(const std::string pictures, film->finish());
     if (!pictures.empty() && std::filesystem::path(options.output).extension() != ".png")
-        print_note(fmt::format("feeler: there is no film without ffmpeg; the pictures are {}\n",
-                               pictures));
+        print_note(
+            fmt::format("feeler: a film needs ffmpeg; wrote pictures instead: {}\n", pictures));
     return {};
 }
 
@@ -310,11 +310,10 @@ core::Result<void> check_replaced(const std::string& output) {
     std::ifstream(output, std::ios::binary)
         .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (bytes == signature || std::filesystem::file_size(output, ignored) == 0) return {};
-    return tl::unexpected<core::Error>(
-        {core::ErrorCode::invalid_value,
-         {},
-         "is there and is no picture: give -o the name of another file",
-         output});
+    return tl::unexpected<core::Error>({core::ErrorCode::invalid_value,
+                                        {},
+                                        "exists and is not a picture: choose another file for -o",
+                                        output});
 }
 
 core::Result<void> shoot(const ShotOptions& options) {

@@ -327,7 +327,7 @@ TEST(Shard, TakesNoTimeThatNothingTakes) {
 
 TEST(Shard, IsRefusedWhereItIsNestedTooDeep) {
     const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
-    const std::string why = "is no share of a batch: its lists are nested too deep";
+    const std::string why = "is no share of a batch: nested too deep";
     EXPECT_EQ(why_not_with("[1, 1]", deep), why);
     EXPECT_EQ(why_not_with("\"results\": [", "\"results\": [" + deep + ","), why);
     EXPECT_EQ(

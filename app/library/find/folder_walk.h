@@ -8,7 +8,7 @@
 
 namespace app {
 
-/// A file or folder that was passed over, and why: as it ends "skipped: FILE: ...".
+/// A file or folder that was skipped, and the reason, as in "skipped: FILE: is a mesh".
 struct SkippedFile {
     std::string path, why;
 
@@ -17,35 +17,34 @@ struct SkippedFile {
 
 /// What a search in folders found.
 struct FolderWalk {
-    std::vector<std::string> files;             // sorted; regular ones, also by links
-    std::vector<SkippedFile> skipped;           // that are no files, as broken links and pipes
-    std::vector<core::Error> unreadable;        // folders, and what cannot be looked at
-    std::vector<std::filesystem::path> folders; // that were entered, sorted
+    std::vector<std::string> files;             // sorted; regular files and links to them
+    std::vector<SkippedFile> skipped;           // not regular files: broken links, pipes ...
+    std::vector<core::Error> unreadable;        // folders and files
+    std::vector<std::filesystem::path> folders; // searched, sorted
 
-    /// Takes in what has a name: a file, or why it is none; folders are left to the caller. Tells
-    /// of a look at what is no file: it may become one.
+    /// Adds a path as a file or as skipped; ignores folders. Reports the access to a path that is
+    /// not a file, since it may become one.
     void sort_in(const std::filesystem::path& path);
 };
 
-/// That a folder could not be searched.
+/// The error for a folder that could not be searched.
 core::Error unreadable_folder(const std::filesystem::path& folder, const std::error_code& failure);
 
-/// What is in a folder and in those below it, without what begins with a dot. Links to folders are
-/// followed once: a folder that was seen, by device and number, is not entered again. Real folders
-/// come before links to them.
+/// The contents of a folder and its subfolders, except names that begin with a dot. A folder,
+/// identified by device and inode, is entered once; real folders come before links to them.
 FolderWalk walk_folder(const std::string& folder);
 
-/// Whether a word is a pattern of file names: it has `*`, `?` or `[`.
+/// Whether a word is a pattern of file names: contains `*`, `?` or `[`.
 bool is_glob(const std::string& word);
 
-/// The files that a pattern in a folder names, sorted, and what on the way could be no file, or not
-/// be read. The folder itself is no pattern, whatever its name; empty for the working folder. `**`
-/// stands for any number of folders, none as well. What begins with a dot is named only by a
-/// pattern that begins with one. Links are followed, and below `**` every folder is entered once,
-/// so that a loop of links ends.
+/// The files in a folder that match a pattern, sorted, and what was skipped or could not be read.
+/// The name of the folder is taken literally; empty means the working folder. `**` matches any
+/// number of folders, including none. A name that begins with a dot is matched only by a pattern
+/// that begins with a dot. Links are followed; below `**` each folder is entered once, so loops of
+/// links end.
 FolderWalk files_of_glob(const std::filesystem::path& folder, const std::string& pattern);
 
-/// The folder in which a pattern begins to search: its parts before the first with a sign.
+/// The folder where the search for a pattern begins: the parts before the first wildcard.
 std::filesystem::path folder_of_glob(const std::filesystem::path& folder,
                                      const std::string& pattern);
 

@@ -13,16 +13,15 @@
 
 namespace app {
 
-/// A program, and what projects say of it.
+/// A program and the settings that project files give it.
 struct ChosenProgram {
     std::string path;
-    ProgramTerms general, special; // what its projects say of all, and of it by their tables
-    bool is_at_home = false;       // the nearest project above it says so
+    ProgramTerms general, special; // for all programs; from the tables that name it
+    bool is_at_home = false;       // chosen by the nearest project file above it
 };
 
-/// Programs, each once in the order in which they came, whatever the spelling of their paths; the
-/// first one stays. Of what several projects say of one the nearest above it counts alone, else
-/// what comes later replaces what came before.
+/// Programs in the order of their first addition, each once however its path is spelled. If several
+/// projects name a program, the nearest project above it decides; otherwise the last one.
 class ProgramChoice {
 public:
     void add(const ChosenProgram& program);
@@ -32,7 +31,7 @@ public:
     const std::vector<ChosenProgram>& programs() const { return programs_; }
     const ChosenProgram* find(const std::string& path) const;
 
-    /// But what came as a program, too.
+    /// Except files that were also added as programs.
     std::vector<SkippedFile> skipped() const;
     const std::vector<core::Error>& failures() const { return failures_; }
 
@@ -45,7 +44,8 @@ private:
     mutable FileIdentities identities_;
 };
 
-/// Chooses programs by words of a command line and by projects, also by those that words lead to.
+/// Chooses programs from words of a command line and from project files, including project files
+/// found in the folders that words name.
 class Chooser {
 public:
     void take_words(const std::vector<std::string>& words);
@@ -60,7 +60,7 @@ private:
 
     Chosen chosen_by(const std::string& project);
     core::Result<ProgramChoice> read_choice(const std::string& project);
-    /// Who names programs: a project by one of its tables, or nobody.
+    /// The project and table that name programs; an empty project if the command line does.
     struct Sayer {
         std::string project;
         ProgramTerms general, special;

@@ -12,7 +12,7 @@
 
 namespace app {
 
-/// What a project says of programs; empty where it says nothing.
+/// Settings of a project file for programs; empty where it states nothing.
 struct ProgramTerms {
     std::string setup; // its path
     std::optional<gcode::DialectId> dialect;
@@ -22,20 +22,20 @@ struct ProgramTerms {
     bool operator==(const ProgramTerms&) const = default;
 };
 
-/// Both together; what `over` says wins.
+/// Both combined; `over` takes precedence.
 ProgramTerms overlaid(ProgramTerms terms, const ProgramTerms& over);
 
-/// One `[[program]]`: files, folders and patterns, and what counts for them.
+/// One `[[program]]` table: files, folders and patterns, and their settings.
 struct ProjectEntry {
-    std::vector<std::string> files; // as the project has them, relative to its folder
+    std::vector<std::string> files; // as written, relative to the folder of the project file
     ProgramTerms terms;
     uint32_t line = 0;
 };
 
-/// A shop's programs, each with what it is checked against.
+/// A project file: programs and what each is checked against.
 struct Project {
     std::string path;
-    ProgramTerms terms; // of all programs
+    ProgramTerms terms; // for all programs
     std::vector<ProjectEntry> entries;
 };
 
@@ -44,11 +44,11 @@ struct Project {
 /// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value.
 core::Result<Project> read_project(const std::string& path);
 
-/// Finds the project that has a say in a folder.
+/// Finds the project file that applies to a folder.
 class ProjectOwners {
 public:
-    /// The project file in this folder, else in the nearest above it, no higher than `top`; empty
-    /// when there is none. What has its name counts, be it a link that leads nowhere.
+    /// The project file in this folder, else in the nearest folder above it, up to `top`; empty
+    /// if there is none. A broken link with that name counts.
     std::string of(const std::filesystem::path& folder, const std::filesystem::path& top);
 
 private:

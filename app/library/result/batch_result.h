@@ -8,13 +8,13 @@
 
 namespace app {
 
-/// What became of a batch. A plain value: reports are made of it alone.
+/// The result of a batch. A plain value from which all reports are made.
 struct BatchResult {
     std::vector<ProgramResult> programs; // in the order in which they were named
-    std::vector<std::string> unchecked;  // programs that it was stopped before or in
+    std::vector<std::string> unchecked;  // programs not finished because the batch was stopped
     std::vector<SkippedFile> skipped;    // files that are no NC programs
-    std::string share = {};    // of a batch, as "share 2/8: 13 of 104 programs"; empty: it is whole
-    FileBytes file_bytes = {}; // of what was not checked or skipped, as those of a ProgramResult
+    std::string share = {};    // such as "share 2/8: 13 of 104 programs"; empty: the whole batch
+    FileBytes file_bytes = {}; // of unchecked and skipped files; see ProgramResult
 };
 
 /// The exit status of all: 2 if any program could not be run to its end or was not checked, else 1
@@ -24,11 +24,11 @@ int status_of(const BatchResult& batch);
 /// How many findings of a severity a program has.
 size_t count_of(const ProgramResult& result, core::Severity severity);
 
-/// What became of a program of a batch, from harmless to worst.
+/// The outcome of a program in a batch, from harmless to worst.
 enum class Outcome : uint8_t {
     clear,
     undecided,
-    errors, // all distances are kept, and something else is wrong
+    errors, // clearances are sufficient, but another error was found
     violation,
     collision,
     stopped,
@@ -43,7 +43,7 @@ constexpr std::array<Outcome, 8> all_outcomes = {
 /// In small letters, as "not run".
 const char* name_of(Outcome outcome);
 
-/// That of a program that was checked, if not to its end.
+/// The outcome of a program that was checked, completely or in part.
 Outcome outcome_of(const ProgramResult& result);
 
 } // namespace app

@@ -16,26 +16,26 @@
 
 namespace app {
 
-/// What became other from one result to a later one.
+/// What changed from one result to a later one.
 struct ProgramChange {
     bool verdict_differs = false;
-    std::optional<double> nearer; // by how much the least margin is less, mm; empty: unknown
+    std::optional<double> nearer; // decrease of the least margin, mm; empty: unknown
     double longer = 0.0;          // seconds
     std::vector<StoredFinding> new_findings, gone_findings;
 };
 
-/// Findings are the same when rule, severity, bodies and what their block says are, wherever the
-/// block has gone.
+/// Findings are the same if rule, severity, bodies and the text of the block are, regardless of the
+/// line.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after);
 
-/// A name for the place of a finding, by which those of two versions go together.
+/// A key for the place of a finding, equal for the same place in two versions.
 using PlaceOfFinding = std::function<std::string(const StoredFinding&)>;
 
-/// Findings are the same when rule, severity, bodies and place are.
+/// Findings are the same if rule, severity, bodies and place are.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after,
                              const PlaceOfFinding& place_before, const PlaceOfFinding& place_after);
 
-/// A block of a checked program, and how near it comes. mm.
+/// A block of a checked program and its clearance, mm.
 struct BlockMeasure {
     uint32_t block = 0, line = 0;
     std::string file; // of a subprogram's; empty for the main program
@@ -51,14 +51,14 @@ struct BlockMeasure {
 /// A block of both versions.
 struct ChangedBlock {
     BlockMeasure before, after;
-    double nearer = 0.0; // by how much its margin is less, mm; negative: more
+    double nearer = 0.0; // decrease of its margin, mm; negative: increase
 };
 
-/// What became other from one version of a program or of its set-up to the next.
+/// What changed from one version of a program or its set-up to the next.
 struct ProgramDiff {
     ProgramResult before, after;
     ProgramChange change;
-    size_t same = 0;                   // blocks of both that keep the same margin and verdict
+    size_t same = 0;                   // blocks of both with the same margin and verdict
     std::vector<ChangedBlock> nearer;  // or of a worse verdict; the worst first
     std::vector<ChangedBlock> farther; // or of a better one, likewise
     std::vector<BlockMeasure> added;   // moving blocks of the later version alone

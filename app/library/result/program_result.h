@@ -15,16 +15,16 @@ namespace app {
 struct CheckJob;
 struct CheckRun;
 
-/// The bytes of names of files that are no UTF-8, by the texts that stand for them in results.
+/// The bytes of file names that are not UTF-8, by the text used for them in results.
 using FileBytes = std::map<std::string, std::string>;
 
-/// The text that stands for a name, whose bytes are kept where they are others.
+/// The UTF-8 text of a file name. Records the bytes of the name if they differ.
 std::string shown_name(const std::string& path, FileBytes& bytes);
 
-/// The name that a text stands for.
+/// The file name for such a text.
 const std::string& name_shown_as(const std::string& text, const FileBytes& bytes);
 
-/// A finding as it is kept when the run is gone.
+/// A finding with the line and text of its block, as stored without the run. Texts are UTF-8.
 struct StoredFinding {
     std::string rule;
     core::Severity severity = core::Severity::warning;
@@ -39,7 +39,7 @@ struct StoredFinding {
     bool operator==(const StoredFinding&) const = default;
 };
 
-/// The block with the least margin, and what is known of it. mm.
+/// The block with the least margin and its clearance, mm.
 struct Tightest {
     uint32_t block = 0, line = 0;
     std::array<std::string, 2> pair{};
@@ -59,13 +59,13 @@ struct StoredError {
     bool operator==(const StoredError&) const = default;
 };
 
-/// What is kept of one program of a library: all that summaries, other systems and later versions
-/// are told. A plain value; the same for the same content, but for `seconds`. Texts are UTF-8.
+/// The stored result of one program: everything that summaries, exchange formats and comparisons
+/// with later versions need. Depends only on the inputs, except `seconds`. Texts are UTF-8.
 struct ProgramResult {
     std::string program; // its path, as it was found
     std::string setup;   // its set-up's; empty: it was inferred
     std::string sha256;  // of the program; empty if it could not be read
-    std::string dialect; // empty if nobody knows
+    std::string dialect; // empty if unknown
     std::string engine;  // "exact" or "coprocessor"
     core::Verdict verdict = core::Verdict::undecided;
     std::optional<StoredError> error;
@@ -81,14 +81,13 @@ struct ProgramResult {
     bool operator==(const ProgramResult&) const = default;
 };
 
-/// What is kept of a check.
+/// The result of a check.
 ProgramResult result_of(const CheckRun& run, const std::string& setup);
 
-/// What is kept of one that could not begin.
+/// The result of a check that could not begin.
 ProgramResult failed_result(const CheckJob& job, const core::Error& error);
 
-/// As the exit status of `feeler check` says it: 0 nothing found, 1 an error found, 2 not run to
-/// its end.
+/// The exit status of `feeler check`: 0 no error, 1 at least one error, 2 not run to its end.
 int status_of(const ProgramResult& result);
 
 /// As a JSON object on one line, and back. Numbers come back to the last bit.

@@ -27,7 +27,7 @@ bool is_nested_too_deep(std::string_view text) {
 }
 
 StoredJson kept_json(const std::string& text) {
-    if (is_nested_too_deep(text)) throw std::invalid_argument("its lists are nested too deep");
+    if (is_nested_too_deep(text)) throw std::invalid_argument("nested too deep");
     return StoredJson::parse(text);
 }
 
@@ -35,13 +35,13 @@ double number_from(const StoredJson& json, double least) {
     // What is no number has a value too: true is 1.
     const double number = json.is_number() ? json.get<double>() : std::nan("");
     if (!std::isfinite(number) || number < least)
-        throw std::invalid_argument("a number is none, or out of its range");
+        throw std::invalid_argument("not a number, or out of range");
     return number;
 }
 
 const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count) {
     if (!json.is_array() || (count && json.size() != *count))
-        throw std::invalid_argument("a list is none, or of another length");
+        throw std::invalid_argument("not a list, or of another length");
     return json;
 }
 

@@ -13,31 +13,30 @@
 
 namespace app {
 
-/// JSON that was kept in a file or a database, which anybody can have edited since. Its readers are
-/// stricter than the library's, which takes 0.7 for 0 and an object for a list. Like the library's,
-/// they throw exceptions of the standard; their callers make errors of them.
+/// JSON from a file or a database, which somebody may have edited. The readers below are stricter
+/// than those of the library, which read 0.7 as 0 and an object as a list. Like those they throw
+/// standard exceptions, which callers turn into errors.
 using StoredJson = nlohmann::ordered_json;
 
-/// Whether brackets stand in brackets deeper than anything that is kept: what walks through such
-/// JSON calls itself that often.
+/// Whether brackets are nested deeper than in any stored JSON. Parsers recurse once per level.
 bool is_nested_too_deep(std::string_view text);
 
 /// Errors: throws for text that is no JSON, or nested too deep.
 StoredJson kept_json(const std::string& text);
 
-/// A number without a fraction that fits.
+/// A whole number that fits the type.
 template <typename Whole>
 Whole whole_from(const StoredJson& json) {
     if (!json.is_number_unsigned()
         || json.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<Whole>::max()))
-        throw std::invalid_argument("a whole number is none, or too large");
+        throw std::invalid_argument("not a whole number, or too large");
     return json.get<Whole>();
 }
 
 /// A finite number, and at least as large as `least`.
 double number_from(const StoredJson& json, double least = std::numeric_limits<double>::lowest());
 
-/// A list, and of so many entries if `count` is given.
+/// A list, of `count` entries if given.
 const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count = {});
 
 /// The two texts of a list.

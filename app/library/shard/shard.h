@@ -7,7 +7,7 @@ namespace app {
 
 struct BatchPlan;
 
-/// A program as the plan of a batch has it, and what every machine must see alike of it.
+/// A program in the plan of a batch, with what must be equal on all machines.
 struct PlannedProgram {
     std::string name;   // its path, as its result has it
     uintmax_t size = 0; // of its file, bytes; 0 if it cannot be read
@@ -16,54 +16,55 @@ struct PlannedProgram {
     bool operator==(const PlannedProgram&) const = default;
 };
 
-/// What one machine has done of a batch, and of which.
+/// The results of one machine for its share of a batch, with the plan of the whole batch.
 struct Shard {
-    std::string file;    // it was read from; not kept
-    std::string version; // of the program that checked: see build_version
+    std::string file;    // it was read from; not stored
+    std::string version; // of Feeler: see build_version
     ShardId share;
     std::vector<PlannedProgram> programs; // of the whole batch, in their order
-    std::vector<ProgramResult> failures;  // words of the whole batch that stand for nothing
+    std::vector<ProgramResult> failures;  // words of the whole batch without a match
     std::vector<SkippedFile> skipped;     // of the whole batch
     std::vector<size_t> places;           // in `programs`, of the results
     std::vector<ProgramResult> results;
-    std::vector<size_t> unchecked; // places in `programs` that it was stopped before or in
-    double seconds = 0.0;          // of wall time that all of it took
+    std::vector<size_t> unchecked; // indices in `programs` not finished because the run was stopped
+    double seconds = 0.0;          // wall time of the share
 
     bool operator==(const Shard&) const = default;
 };
 
-/// What a plan says of its programs.
+/// The programs of a plan.
 std::vector<PlannedProgram> planned_programs(const BatchPlan& plan);
 
-/// The places of the programs that a share has.
+/// The indices of the programs of a share.
 std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShardId& share);
 
-/// A plan for some of its programs alone. Words that stand for nothing are everybody's.
+/// The part of a plan with these programs. Failures of words stay in every part.
 BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& places);
 
-/// What became of the plan of these places, as a shard. `shard` says of which batch.
+/// Adds the results of a part of the plan to a shard that already describes the batch.
 Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult& batch);
 
 /// A shard as a JSON object, an entry to a line, and back.
 ///
-/// Errors: unsupported for one that a newer version wrote; syntax for text that is no such object,
-///         or not all of one, or whose seal is not that of what stands before it.
+/// Errors: unsupported for a file of a newer version; syntax for any other text, an incomplete
+/// file,
+///         or a wrong seal.
 std::string json_of(const Shard& shard);
 core::Result<Shard> shard_from_json(const std::string& text);
 
-/// An object that lacks its end, with the seal as its last entry: damage shows, and so does an edit
-/// by hand. Whoever makes a new seal is not kept from it.
+/// Ends an object with a seal, a digest that reveals damage and edits by hand. It does not protect
+/// against somebody who computes a new seal.
 std::string sealed(std::string text);
 
-/// Whether there is a file that begins as a shard does.
+/// Whether the file exists and begins like a shard.
 bool is_shard_file(const std::string& path);
 
-/// What one run of the whole batch would have given. Programs that a shard was stopped before stay
-/// unchecked; of the skipped files those are named that all have seen.
+/// The result that one run of the whole batch would have given. Programs that a shard did not reach
+/// stay unchecked; skipped files are those that all shards skipped.
 ///
-/// Errors: with the names of the files: shards of different batches, or of different states of
-///         their files; one that is there twice or is missing; one that lacks a program's result or
-///         has another's.
+/// Errors: with the names of the files: shards of different batches or of different versions of
+///         their files; a shard that is given twice or missing; a shard with a missing or foreign
+///         result.
 core::Result<BatchResult> merged(std::vector<Shard> shards);
 
 } // namespace app

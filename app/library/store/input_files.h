@@ -12,12 +12,11 @@
 
 namespace app {
 
-/// Asks the disk again what a check asked it. A file is read once while it is not written again.
-/// Several threads may ask.
+/// Repeats the file accesses of a check. Reads a file once until it changes. Thread-safe.
 class InputAnswers {
 public:
-    /// Whether the disk would answer a check as it did then. What could not be read is never the
-    /// same.
+    /// Whether the access gives the same answer as in the check. A file that could not be read
+    /// counts as changed.
     bool is_same(const InputFile& input);
 
     /// The SHA-256 of a file; empty when it cannot be read.
@@ -26,18 +25,18 @@ public:
 private:
     using Names = std::shared_ptr<const std::vector<std::string>>;
 
-    /// What was read, and of which state of the file or folder.
+    /// An answer and the state of the file or folder it belongs to.
     template <typename T>
     struct Known {
         FileStamp stamp;
-        bool was_fresh = true; // it may have been written again in the same moment
+        bool was_fresh = true; // may have been written within the resolution of its time stamp
         T answer{};
     };
 
     std::optional<std::string> name_in_any_case(const InputFile& input);
     Names names_of(const std::string& folder);
 
-    /// What is known of a path, if it has not been written since; else what is read.
+    /// The cached answer for a path if its stamp is unchanged, else a new one.
     template <typename T, typename Read>
     T ask(std::map<std::string, Known<T>>& known, const std::string& path, Read&& read);
 

@@ -10,7 +10,7 @@
 
 namespace app {
 
-/// Which share of how many; written as 2/8. Shares count from 1.
+/// Share i of n, written 2/8. Shares count from 1.
 struct ShardId {
     size_t i = 1, n = 1;
 
@@ -19,12 +19,11 @@ struct ShardId {
 
 std::string text_of(const ShardId& share);
 
-/// Errors: a text that is no share, or one of none.
+/// Errors: a text that is not I/N, or I outside 1..N.
 core::Result<ShardId> share_named(const std::string& text);
 
-/// The places in a list of the programs that a share has, sorted. It depends on the sizes and their
-/// order alone, so every machine comes to the same: the largest first, each to the share that has
-/// the least so far.
+/// The sorted indices of the programs of a share. Depends only on the sizes and their order, so all
+/// machines agree: the largest program first, each to the share with the least bytes so far.
 std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShardId& share);
 
 } // namespace app

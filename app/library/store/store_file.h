@@ -9,20 +9,19 @@
 
 namespace app {
 
-/// Where results of a folder's programs are kept unless another place is named. A share of a batch
-/// has one of its own: machines with one disk need not write to one file.
+/// The default database for the programs of a folder. Each share of a batch has its own, so that
+/// computers with a common disk do not write to one file.
 std::string default_store_path(const std::string& folder, const std::optional<ShardId>& share = {});
 
-/// The other databases of the same folder: of the whole batch, and of shares.
+/// The other databases in the same folder: of the whole batch and of shares.
 std::vector<std::string> stores_beside(const std::string& path);
 
-/// The databases of the nearest folder above a program that has any; empty if none has.
+/// The databases in the nearest folder above a program; empty if there are none.
 std::vector<std::string> stores_above(const std::string& program);
 
-/// Opens the database that results are kept in, and makes it where there is none: its tables, and
-/// the folder `.feeler` that it lies in by default. A file that may not be written is opened all
-/// the same; changes of it then fail. One that is opened to be read only is never changed, not even
-/// to take back what a process that was killed had begun.
+/// Opens the database of results; creates it, its tables and its folder `.feeler` if needed. A
+/// write-protected file is opened too; changes then fail. A file opened read-only is never changed,
+/// not even to roll back a transaction of a killed process.
 ///
 /// Errors: io, with the file; unsupported for a database of another program or of a newer version.
 core::Result<Database> open_store_file(const std::string& path,

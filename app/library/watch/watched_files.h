@@ -12,44 +12,44 @@
 
 namespace app {
 
-/// The places on disk that a check looked at, each as it was at the first look. What begins with a
-/// dot in a folder that was listed does not count.
+/// The paths that a check accessed, each with its state at the first access. Names that begin with
+/// a dot are ignored in listed folders.
 class WatchedFiles {
 public:
-    /// `own`: what the check itself writes; that changes nothing.
+    /// `own`: files that the check writes itself; they do not count as changes.
     explicit WatchedFiles(const std::vector<std::string>& own = {});
 
-    /// As `own`, known later.
+    /// Adds a file to `own`.
     void add_own(const std::string& path);
 
-    /// Told of a look as it is taken. Several threads may tell.
+    /// Records an access when it is made. Thread-safe.
     void note(const core::FileAccess& look);
 
     size_t size() const { return places_.size(); }
 
-    /// Whether what is in this file of the check's own was asked for, by whatever name.
+    /// Whether the check read this file of its own, under any name.
     bool reads(const std::string& path) const;
 
-    /// Forgets the places, for another check.
+    /// Forgets all paths, for another check.
     void begin_again() {
         places_.clear();
         own_reads_.clear();
     }
 
     struct Change {
-        std::vector<std::string> paths; // that are not as they were, sorted; each file once
-        // Nothing has moved since the call before: no file, no name in a folder.
+        std::vector<std::string> paths; // that changed, sorted; each file once
+        // Nothing changed since the previous call: no file, no name in a folder.
         bool are_files_settled = true, are_names_settled = true;
     };
 
-    /// How the places are now. One that was written just when it was read counts as changed, once
-    /// for each time that it has: nobody knows which of its contents was seen. It has settled when
-    /// it could not be written again without another time. Costs a look at the disk for each, and
-    /// what was asked for again of folders and files that were written.
+    /// Compares all paths with their recorded state. A file written at the moment it was read
+    /// counts as changed, once per time stamp, since either content may have been read. It has
+    /// settled once another write would change its time stamp. Cost: one stat per path, and a new
+    /// read of changed files and folders.
     Change look_again();
 
 private:
-    /// What was asked for; whether there is a file, a folder or else of its name is always.
+    /// What was asked for, besides the type of the path, which is always compared.
     struct Asked {
         bool bytes = false;
         bool names = false; // in a folder
@@ -83,21 +83,21 @@ private:
     std::mutex mutex_;
 };
 
-/// When a watch looks at the disk again, and when it checks what has changed.
+/// Decides when a watch looks at the disk again and when it checks what changed.
 class WatchPace {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Nothing has changed up to now.
+    /// `now`: the time up to which nothing has changed.
     explicit WatchPace(Clock::time_point now) : since_(now) {}
 
-    /// Told of a look, when it began and how long it took. Whether what has changed is to be
-    /// checked: once whoever writes it has finished. Names that come and go without end, and a file
-    /// that is written for long, are not waited for.
+    /// Whether to check the changes now, given a look that began at `begin` and took `took`: as
+    /// soon as the files have settled. Does not wait for names that keep changing or for a file
+    /// that is written for a long time.
     bool is_time(const WatchedFiles::Change& change, Clock::time_point begin, Clock::duration took);
 
-    /// How long to wait before the next look: a twentieth of the time goes into looking at most,
-    /// however many files there are.
+    /// The time until the next look. Looking takes at most a twentieth of the time, however many
+    /// files there are.
     Clock::duration pause() const { return pause_; }
 
 private:

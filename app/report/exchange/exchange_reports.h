@@ -25,14 +25,13 @@ std::string junit_report(const BatchResult& batch);
 /// `folder` is the one that relative paths count from, as an absolute path.
 ///
 /// Fingerprints are made of rule, bodies, the block's text without its number, and how often the
-/// same has come before: they stay when blocks are renumbered or others are put in.
+/// same came before: they do not change when blocks are renumbered or inserted.
 std::string sarif_report(const BatchResult& batch, const std::string& folder);
 
-/// A path as a reference that stands in a URI: what is not plain is escaped; absolute ones become
-/// file:///...
+/// A path as a URI reference: special characters are escaped, absolute paths become file:///...
 std::string uri_of(const std::string& path);
 
-/// What tells a finding from others in its program. `before` is how many equal ones there were.
+/// Identifies a finding within its program. `before`: number of equal findings before it.
 std::string fingerprint_of(const StoredFinding& finding, size_t before);
 
 } // namespace app

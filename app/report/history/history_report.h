@@ -7,8 +7,8 @@
 
 namespace app {
 
-/// A program's versions for a person, in the order given: when, verdict, nearest place, time, and
-/// what became other since the version before with the same set-up and options.
+/// The versions of a program as text, in the order given: date, verdict, least margin, cycle time,
+/// and changes since the previous version with the same set-up and options.
 std::string history_text(const std::string& program, const std::vector<StoredVersion>& versions);
 
 /// The same as one JSON object, schema 1.

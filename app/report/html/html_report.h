@@ -12,21 +12,21 @@ namespace app {
 
 struct CheckRun;
 
-/// What a report shows of one block.
+/// The picture and scene of one block in a report.
 struct BlockView {
     size_t block = 0;
     std::string picture; // a JPEG's bytes; empty: there is none
     std::string scene;   // a JSON object for the page's 3D view; empty: there is none
 };
 
-/// Everything that a report has to look at.
+/// Pictures and scenes of a report.
 struct ReportViews {
     std::vector<BlockView> views;
     std::string meshes;      // a JSON array that the scenes refer to
     std::string no_pictures; // why there are none, in a sentence; else empty
 };
 
-/// The report of a check as one HTML file that needs nothing else: no network, no other file.
+/// The report of a check as one self-contained HTML file.
 ///
 /// Result: verdict, findings with what `views` has of their blocks, charts, a table of all blocks,
 ///         assumptions, and how near the bounds are to each other and why.
@@ -48,8 +48,8 @@ std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
 /// the block with the least margin.
 std::vector<size_t> blocks_of_cards(const CheckRun& run);
 
-/// The blocks that a report should show, at most so many, the most telling ones first: those of
-/// cards, then those of the groups' other stretches.
+/// The blocks that a report should show, at most `most`: first those of cards, then the other
+/// stretches of the groups.
 std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most);
 
 /// A card for each group of findings, as HTML.

@@ -10,8 +10,8 @@
 
 namespace app {
 
-/// What became other between two versions, for a person: what came nearer, the worst first, then
-/// findings that are new and gone. `all` gives every block, not the worst dozen.
+/// The differences between two versions as text: blocks that came nearer, the worst first, then new
+/// and resolved findings. `all` lists every block instead of the worst dozen.
 std::string diff_text(const ProgramDiff& diff, bool all);
 
 /// The same as one JSON object, schema 1, with every block.

@@ -11,16 +11,16 @@ namespace app {
 
 struct CheckRun;
 
-/// What a text report holds beside findings and summary.
+/// Options of the text report.
 struct TextOptions {
     bool blocks = false;                // the table of all blocks that move
-    std::vector<std::string> told = {}; // assumptions that need not be told again while they hold
+    std::vector<std::string> told = {}; // assumptions that are on the screen already
 };
 
 /// The report of a check for a person at an 80-column terminal: findings first.
 std::string text_report(const CheckRun& run, const TextOptions& options);
 
-/// What is read first: the verdict, or that there is none.
+/// The verdict of a run, or why there is none.
 std::string outcome_text(const CheckRun& run);
 
 /// "1 error, 2 warnings, 0 notes".
