@@ -3,7 +3,7 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/setup/inference/stated_stock.h"
+#include "app/setup/inference/inferred_stock.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"
@@ -168,7 +168,7 @@ TEST(WorkPlaces, StandApart) {
     const Inferred run = infer(two_places);
     EXPECT_FALSE(run.run.has_errors());
     EXPECT_THAT(run.assumed,
-                HasSubstr("The stock stands at G54, where most is cut; at G55 nothing"));
+                HasSubstr("The stock is at G54, where most is cut; there is none at G55"));
     EXPECT_DOUBLE_EQ(run.stock().min.z, -7.0); // what is cut at G55 does not count
 }
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "app/setup/inference/guessed_stock.h"
+#include "app/setup/inference/inferred_stock.h"
 #include "app/setup/inference/program_survey.h"
-#include "app/setup/inference/stated_stock.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
@@ -23,6 +23,47 @@ using core::ToolNumber;
 using core::Vec3;
 
 constexpr double zero_above_program = 500.0; // mm, of the machine
+
+constexpr double between = 500.0; // mm of X from one part to the next, holders and rapids included
+
+std::string name_of_place(size_t offset) {
+    if (offset < 6) return fmt::format("G{}", 54 + offset);
+    if (offset < gcode::plain_offset_count) return fmt::format("G59.{}", offset - 5);
+    return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
+}
+
+/// The work offset in which most of the feeds are; empty if nothing is fed.
+std::optional<size_t> main_place(const ProgramSurvey& seen) {
+    std::optional<size_t> main;
+    for (const auto& [offset, place] : seen.places)
+        if (!main || place.way > seen.places.at(*main).way) main = offset;
+    return main;
+}
+
+/// Moves the work offsets of a bare set-up apart, like parts that are clamped side by side, unless
+/// the program writes them itself.
+///
+/// Result: the assumptions; empty if nothing was moved.
+std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
+    const auto main = main_place(seen);
+    if (!main || seen.places.size() < 2 || seen.sets_offsets) return {};
+    std::vector<std::string> others;
+    double edge = seen.places.at(*main).reach.max.x;
+    for (const auto& [offset, place] : seen.places) {
+        if (offset == *main) continue;
+        others.push_back(name_of_place(offset));
+        if (offset >= environment.work_offsets.size()) continue; // at machine zero, high above
+        const double shift = edge + between - place.reach.min.x;
+        environment.work_offsets[offset][0] += shift;
+        edge = place.reach.max.x + shift;
+    }
+    return {fmt::format("the program works at {} and {}, which are assumed to be separate parts. "
+                        "The stock is at {}, where most is cut; there is none at {}, so what is "
+                        "done there is not checked: to check it, state the offsets and a stock in "
+                        "a set-up",
+                        name_of_place(*main), fmt::join(others, ", "), name_of_place(*main),
+                        fmt::join(others, ", "))};
+}
 
 /// A number that no tool has.
 ToolNumber free_number(const ProgramSurvey& seen) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -87,5 +88,13 @@ struct TipTrack {
 
 /// The way of the tip of a tool of a length; empty where an end is not known.
 std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length);
+
+/// Why a program is one for a lathe, as it ends "because ...": it never moves Y, and it says a
+/// code that only turning has use for. Empty for any other.
+std::optional<std::string> turning_reason(const gcode::Program& program);
+
+/// The line in which a Klartext program first asks where the axes stand: what it does then depends
+/// on where somebody jogged them.
+std::optional<size_t> line_that_asks_for_places(const gcode::Program& program);
 
 } // namespace app

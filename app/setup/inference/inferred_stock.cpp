@@ -1,15 +1,22 @@
-#include "app/setup/inference/guessed_stock.h"
+#include "app/setup/inference/inferred_stock.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "app/setup/inference/program_survey.h"
+#include "app/setup/tools/program_tools.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
+#include "gcode/language/lexer.h"
+#include "gcode/language/modal_state.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -238,42 +245,166 @@ std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
 
 namespace {
 
-constexpr double between = 500.0; // mm of X from one part to the next, holders and rapids included
+using core::Vec3;
 
-std::string name_of_place(size_t offset) {
-    if (offset < 6) return fmt::format("G{}", 54 + offset);
-    if (offset < gcode::plain_offset_count) return fmt::format("G59.{}", offset - 5);
-    return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
+std::optional<double> number_in(std::string text) {
+    if (text.starts_with('+')) text.erase(0, 1);
+    for (char& c : text)
+        if (c == ',') c = '.'; // as controls with German settings write it
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc() || end == text.data()) return std::nullopt;
+    return value;
 }
+
+/// The corner behind BLK FORM 0.1 or 0.2, in a code without blanks: X-5Y+0Z-20. Where a coordinate
+/// has an I in front, it counts from the other corner.
+std::optional<Vec3> corner_in(const std::string& words, const Vec3& other) {
+    Vec3 corner(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const size_t at = words.find("XYZ"[axis], words.starts_with("Z") && axis == 2 ? 1 : 0);
+        if (at == std::string::npos) return std::nullopt;
+        const auto value = number_in(words.substr(at + 1));
+        if (!value) return std::nullopt;
+        const bool counts_on = at > 0 && words[at - 1] == 'I';
+        corner[axis] = *value + (counts_on ? other[axis] : 0.0);
+    }
+    return corner;
+}
+
+std::vector<std::string> arguments_of(const std::string& code, size_t opening) {
+    std::vector<std::string> arguments(1);
+    for (size_t at = opening + 1; at < code.size() && code[at] != ')'; ++at) {
+        if (code[at] == ',')
+            arguments.emplace_back();
+        else if (code[at] != '"')
+            arguments.back() += code[at];
+    }
+    return arguments;
+}
+
+/// WORKPIECE(,,,"BOX",112,top,bottom,machining depth,x,y,x,y)
+std::optional<std::array<Vec3, 2>> workpiece_box(const std::vector<std::string>& arguments) {
+    constexpr size_t form = 3, first = 5, count = 12;
+    if (arguments.size() < count || arguments[form] != "BOX") return std::nullopt;
+    std::array<double, count - first> n{};
+    for (size_t i = 0; i < n.size(); ++i) {
+        const auto value = number_in(arguments[first + i]);
+        if (!value && i != 2) return std::nullopt;
+        n[i] = value.value_or(0.0);
+    }
+    return std::array{Vec3(n[3], n[4], n[1]), Vec3(n[5], n[6], n[0])};
+}
+
+std::string capitals(std::string_view text) {
+    std::string result;
+    for (const char c : text)
+        if (c != ' ' && c != '\t' && c != '\r') result += c >= 'a' && c <= 'z' ? c - 32 : c;
+    return result;
+}
+
+/// The header of Vectric's programs, comment by comment.
+struct MaterialHeader {
+    bool announced = false; // (Material Size)
+    std::optional<Vec3> size{};
+    bool zero_on_table = false;
+    std::string corner; // of the zero: BOTTOMLEFT, CENTER; empty where it is not said
+    size_t line = 0;
+
+    void comment(const std::string& words, size_t number) {
+        const auto says = [&](const char* text) { return words.find(text) != std::string::npos; };
+        if (says("MATERIALSIZE")) announced = true;
+        if (says("ZORIGIN") || says("ZZERO")) zero_on_table = says("TABLE") || says("BOTTOM");
+        for (const char* name : {"BOTTOMLEFT", "BOTTOMRIGHT", "TOPLEFT", "TOPRIGHT", "CENT"})
+            if (says("XYORIGIN") && says(name)) corner = name;
+        if (!announced || size) return;
+        Vec3 read(0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const size_t at = words.find(std::string(1, "XYZ"[axis]) + "=");
+            if (at == std::string::npos) return;
+            read[axis] = number_in(words.substr(at + 2)).value_or(0.0);
+        }
+        size = read;
+        line = number;
+    }
+
+    /// The low corner in units of the program, seen from its zero.
+    std::optional<Vec3> low(const std::optional<core::Aabb>& reach, double scale) const {
+        Vec3 result(0.0, 0.0, zero_on_table ? 0.0 : -size->z);
+        if (corner == "CENT") {
+            result.x = -0.5 * size->x;
+            result.y = -0.5 * size->y;
+        } else if (!corner.empty()) {
+            if (corner.ends_with("RIGHT")) result.x = -size->x;
+            if (corner.starts_with("TOP")) result.y = -size->y;
+        } else {
+            if (!reach) return std::nullopt;
+            const auto holds = [&](const Vec3& low) {
+                constexpr double beyond = 0.1; // of the size, which outlines are cut outside
+                const Vec3 room = (1.0 + beyond) * *size, from = low - beyond * *size;
+                return reach->min.x >= scale * from.x && reach->min.y >= scale * from.y
+                       && reach->max.x <= scale * (low + room).x
+                       && reach->max.y <= scale * (low + room).y;
+            };
+            const Vec3 middle(-0.5 * size->x, -0.5 * size->y, result.z);
+            if (holds(result)) return result;
+            if (!holds(middle)) return std::nullopt;
+            return middle;
+        }
+        return result;
+    }
+};
+
+struct Scan {
+    gcode::LengthUnit unit;
+    std::optional<Vec3> first{};
+    std::optional<StatedStock> found{};
+    MaterialHeader header{};
+
+    void take(const Vec3& a, const Vec3& b, std::string source) {
+        const core::Aabb box{glm::min(a, b), glm::max(a, b)};
+        const Vec3 size = box.size();
+        if (size.x <= 0.0 || size.y <= 0.0 || size.z <= 0.0) return;
+        const double scale = gcode::to_mm(1.0, unit);
+        found = {{box.min * scale, box.max * scale}, std::move(source)};
+    }
+
+    void blank_form(const std::string& code, size_t number) {
+        const size_t blank = code.find("BLKFORM0.");
+        if (blank == std::string::npos || blank + 10 > code.size()) return;
+        const auto corner = corner_in(code.substr(blank + 10), first.value_or(Vec3(0.0)));
+        if (code[blank + 9] == '1')
+            first = corner;
+        else if (first && corner)
+            take(*first, *corner, fmt::format("BLK FORM in line {}", number));
+    }
+
+    void line(std::string_view text, size_t number) {
+        const std::string code = capitals(text.substr(0, text.find(';')));
+        blank_form(code, number);
+        if (const size_t piece = code.find("WORKPIECE("); piece != std::string::npos)
+            if (const auto box = workpiece_box(arguments_of(code, piece + 9)))
+                take((*box)[0], (*box)[1], fmt::format("WORKPIECE in line {}", number));
+        if (code.starts_with('(') || text.starts_with(';'))
+            header.comment(capitals(text.substr(1)), number);
+    }
+
+    void end(const std::optional<core::Aabb>& reach) {
+        if (found || !header.size) return;
+        if (const auto low = header.low(reach, gcode::to_mm(1.0, unit)))
+            take(*low, *low + *header.size,
+                 fmt::format("the material's size in line {}", header.line));
+    }
+};
 
 } // namespace
 
-std::optional<size_t> main_place(const ProgramSurvey& seen) {
-    std::optional<size_t> main;
-    for (const auto& [offset, place] : seen.places)
-        if (!main || place.way > seen.places.at(*main).way) main = offset;
-    return main;
-}
-
-std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
-    const auto main = main_place(seen);
-    if (!main || seen.places.size() < 2 || seen.sets_offsets) return {};
-    std::vector<std::string> others;
-    double edge = seen.places.at(*main).reach.max.x;
-    for (const auto& [offset, place] : seen.places) {
-        if (offset == *main) continue;
-        others.push_back(name_of_place(offset));
-        if (offset >= environment.work_offsets.size()) continue; // at machine zero, high above
-        const double shift = edge + between - place.reach.min.x;
-        environment.work_offsets[offset][0] += shift;
-        edge = place.reach.max.x + shift;
-    }
-    return {fmt::format("the program works at {} and {}: each is taken as a part of its own, apart "
-                        "from the others. The stock stands at {}, where most is cut; at {} nothing "
-                        "is there, and what is done there is not judged: to check it, give the "
-                        "offsets and a stock in a set-up",
-                        name_of_place(*main), fmt::join(others, ", "), name_of_place(*main),
-                        fmt::join(others, ", "))};
+std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit,
+                                        const std::optional<core::Aabb>& reach) {
+    Scan scan{unit};
+    for (size_t line = 1; line <= program.line_count(); ++line) scan.line(program.line(line), line);
+    scan.end(reach);
+    return scan.found;
 }
 
 } // namespace app

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/setup/inference/program_survey.h"
-#include "gcode/text/source.h"
+#include "core/base/vec.h"
 
 namespace gcode {
+enum class LengthUnit : uint8_t;
 struct Environment;
 struct Program;
 } // namespace gcode
@@ -49,14 +52,18 @@ std::string box_text(const core::Aabb& box);
 /// A box out of the way of all motions, for programs of which nothing is known that they cut.
 core::Aabb stock_out_of_the_way();
 
-/// The work offset whose coordinates hold most of what a program feeds; empty where it feeds
-/// nothing.
-std::optional<size_t> main_place(const ProgramSurvey& seen);
+/// The raw material that a program states, in the coordinates of its zero, mm.
+struct StatedStock {
+    core::Aabb box;
+    std::string source; // "BLK FORM in line 3", as it ends a sentence
+};
 
-/// Moves the work offsets of a bare set-up apart that a program uses beside its main one, as parts
-/// that are clamped side by side, unless the program writes them itself.
+/// What Klartext's BLK FORM 0.1 and 0.2, Siemens' WORKPIECE with a box or the header of Vectric's
+/// programs say; empty without them, and where they describe no body. The last one counts.
 ///
-/// Result: what is assumed, empty where nothing was moved.
-std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen);
+/// `reach` is what the program cuts, in its coordinates: it tells where the zero lies that a header
+/// with a size alone leaves open, at a corner or in the middle.
+std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit,
+                                        const std::optional<core::Aabb>& reach = {});
 
 } // namespace app
