@@ -27,53 +27,66 @@ namespace app {
 
 enum class Engine : uint8_t;
 
-/// One block as executed, and what it did.
+/// One block as executed, with its result.
 struct CheckedBlock {
     core::BlockIndex block{};
     uint32_t line = 0;
     std::string text;
-    std::string file;            // of a subprogram's file; empty for the main program
+    std::string file;            // of a subprogram; empty for the main program
     std::vector<uint32_t> calls; // lines that called it, the outermost first
     core::BlockResult result;
 };
 
-/// Seconds of wall time that the parts of a check took.
+/// Wall time of the stages of a check, seconds.
 struct CheckTimes {
     double read = 0.0;  // program and set-up
     double model = 0.0; // scan lines of the stock
     double check = 0.0; // interpreting, cutting, measuring
 };
 
-/// A program that was run against a set-up, to its end or to its first error.
-struct CheckRun {
+/// What a check starts from: read, completed and assumed before the first block. A run does not
+/// change it, except that it adds assumptions.
+struct CheckInput {
     std::string program_file;
-    std::string sha256;
-    std::vector<InputFile> inputs; // all that was read, and looked for in vain
+    std::string sha256;            // of the program
+    std::vector<InputFile> inputs; // files that were read or looked for
     gcode::DialectId dialect{};
     Engine engine{}; // exact
     core::Setup setup;
     std::vector<std::string> assumptions;
+    double memory = 0.0; // expected size of the stock's model, bytes
+};
+
+/// What is recorded block by block. It only grows while the program runs.
+struct CheckRecord {
     std::vector<CheckedBlock> blocks;
-    std::vector<core::Finding> findings; // in the order of the blocks
-    std::vector<core::Finding> taken_in; // those that another finding tells of
+    std::vector<core::Finding> findings; // after the run in the order of the blocks
     core::Verdict verdict = core::Verdict::clear;
-    std::optional<core::Error> stopped; // why the program could not be run to its end
-    core::Statistics statistics;
-    size_t points = 0;       // of the stock's model at the end
-    size_t lines = 0;        // scan lines
-    double cycle_time = 0.0; // of the program, seconds
-    double removed = 0.0;    // mm3
+    std::optional<core::Error> stopped; // why the program was not run to its end
+    double removed = 0.0;               // mm3
     CheckTimes times;
-    double memory = 0.0; // bytes that the model of the stock was expected to take
-    std::shared_ptr<const core::CutModel> stock;    // what is left of it
-    std::shared_ptr<const core::StockMesh> surface; // of it, if it was asked for
+};
+
+/// What is known after the last block.
+struct CheckReport {
+    std::vector<core::Finding> taken_in; // findings that were combined into another one
+    core::Statistics statistics;
+    size_t points = 0;                              // of the stock's model at the end
+    size_t lines = 0;                               // scan lines
+    double cycle_time = 0.0;                        // of the program, seconds
+    std::shared_ptr<const core::CutModel> stock;    // the remaining stock
+    std::shared_ptr<const core::StockMesh> surface; // of the remaining stock, if asked for
     std::optional<SavedStock> saved_stock;
     std::shared_ptr<const core::PartComparison> comparison; // if the set-up has a part
+};
 
+/// A check of a program against a set-up, in its three stages: read_check fills the input,
+/// ProgramRunner the record, and conclude the report.
+struct CheckRun : CheckInput, CheckRecord, CheckReport {
     bool has_errors() const;
 };
 
-/// What is known to be kept in a block by all pairs, where none decides; 0 if nothing is known.
+/// A lower bound of the clearance of all pairs in a block that no pair decides; 0 if unknown.
 double least_clearance(const core::Setup& setup, const core::BlockResult& result);
 
 /// The block whose deciding pair has the least margin; null if no pair decides any block.

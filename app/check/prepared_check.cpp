@@ -25,7 +25,7 @@ namespace {
 
 /// The dialect that was stated, else what the program looks like.
 core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
-                                              CheckRun& run) {
+                                              CheckInput& run) {
     gcode::DialectId chosen{};
     if (setup.dialect) {
         chosen = *setup.dialect;
@@ -42,7 +42,7 @@ core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcod
 }
 
 /// What every check of this version takes for granted.
-void add_standing_assumptions(const core::Setup& setup, CheckRun& run) {
+void add_standing_assumptions(const core::Setup& setup, CheckInput& run) {
     run.assumptions.push_back(fmt::format("arcs are cut and checked as chords within {} mm of them",
                                           core::at_most(core::chord_error(setup.mesh_size), 4)));
     for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);

@@ -20,8 +20,7 @@ namespace app {
 
 struct CheckJob;
 
-/// A program and its set-up, read, completed and put in place, before the first block. The program
-/// must stay where it is while it is run.
+/// A program and its complete set-up before the first block.
 struct PreparedCheck {
     PreparedCheck();
     PreparedCheck(PreparedCheck&&) noexcept;
@@ -29,28 +28,30 @@ struct PreparedCheck {
     ~PreparedCheck();
 
     std::unique_ptr<const gcode::Program> program;
-    std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms, for all who run it
-    SetupFile file;                                 // its setup is in `run`
+    std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms
+    SetupFile file;                                 // its setup has been moved to `run`
     CheckRun run;                                   // without blocks
     std::unique_ptr<core::SimulatorState> machine;  // before the first block
-    bool stock_is_stated = true; // false: it was made from the program's own cuts
+    bool stock_is_stated = true;                    // false: inferred from the program's cuts
 };
 
-/// The same without the machine and the model of the stock, which take the longest: place_check
-/// adds them.
+/// Reads program and set-up and infers what is missing. place_check adds the simulator with the
+/// model of the stock, which takes longest.
 ///
 /// Errors: as run_check.
 core::Result<PreparedCheck> read_check(const CheckJob& job);
 
+/// Builds the model of the stock and the simulator's first state.
+///
 /// Errors: as run_check.
 core::Result<void> place_check(const CheckJob& job, PreparedCheck& check);
 
-/// Both.
+/// read_check and place_check.
 ///
 /// Errors: as run_check.
 core::Result<PreparedCheck> prepare_check(const CheckJob& job);
 
-/// What the times of a run take for granted on this machine, for its assumptions.
+/// The assumptions about times on this machine.
 std::vector<std::string> timing_notes(const core::Machine& machine);
 
 } // namespace app
