@@ -15,17 +15,17 @@ struct Lowering;
 
 namespace app {
 
-/// The set-up's fixture moves that a block makes, by their indices.
+/// The indices of the set-up's fixture moves that a block triggers.
 std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::BlockCommands& block);
 
-/// What a block does to the machine, in order: what the program says, and before and after it the
-/// fixtures that the set-up moves.
+/// The events of a block in order: those of the program, with the fixture moves of the set-up
+/// before and after them.
 ///
-/// `speed_by_hand`: a spindle that is started turns, whatever speed the program states.
+/// `speed_by_hand`: a started spindle turns even if the program states no speed.
 std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockCommands& block,
                                    gcode::Lowering& lowering, bool speed_by_hand);
 
-/// Whether a block has the word M with this number outside of its comments.
+/// Whether a block has this M code outside comments.
 bool has_m_code(std::string_view block, int code);
 
 } // namespace app

@@ -14,30 +14,29 @@ namespace app {
 
 struct CheckRun;
 
-/// What conditions ask of a block, wherever it is known from: a record, or a row of a list.
+/// The facts about a block that conditions can test, from a record or a row of a list.
 struct BlockFacts {
     size_t block = 0;
     uint32_t line = 0;
     size_t depth = 0;            // of calls
-    std::string_view text, file; // what they look at must stay
+    std::string_view text, file; // must outlive this
     core::BlockMotion motion = core::BlockMotion::none;
     std::optional<core::ToolNumber> tool;
-    std::optional<core::Verdict> verdict; // empty: nobody has looked yet
-    // mm; infinite beyond the search limit, empty where nobody knows
+    std::optional<core::Verdict> verdict; // empty: not checked yet
+    // mm; infinite beyond the search limit, empty if unknown
     std::optional<double> clearance, upper, allowance, margin;
     double removed = 0.0, duration = 0.0, time = 0.0;
-    std::vector<std::string> bodies;            // of its pairs; only where they are wanted
-    std::vector<const core::Finding*> findings; // about it; only where they are wanted
+    std::vector<std::string> bodies;            // of its pairs; only if wanted
+    std::vector<const core::Finding*> findings; // about it; only if wanted
 };
 
-/// What of the facts takes time to gather, and is left out if nobody asks for it.
+/// Facts that take time to collect and are left out unless wanted.
 struct WantedFacts {
     bool bodies = false;
     bool findings = false;
 };
 
-/// Cost: reads all findings of the record if they are wanted. While a record grows, its findings
-///       are in no order.
+/// Cost: reads all findings of the record if they are wanted.
 BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wanted);
 
 } // namespace app

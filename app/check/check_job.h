@@ -23,40 +23,40 @@ const char* name_of(Engine engine);
 /// How far a check has come.
 struct CheckProgress {
     size_t blocks = 0;
-    double share = 0.0; // of the program's lines, 0..1; a program with loops goes back and forth
+    double share = 0.0; // of the program's lines, 0 to 1; loops make it go back
     size_t findings = 0;
 };
 
-/// What a user asks to be checked.
+/// A check as a user asks for it.
 struct CheckJob {
     std::string program;
     std::string setup;               // empty: inferred from the program
-    std::optional<double> allowance; // replaces the set-up's
+    std::optional<double> allowance; // replaces that of the set-up
     std::optional<double> mesh_size;
     std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
     core::Detail detail = core::Detail::deciding_pair;
-    bool needs_surface = false; // that of the stock is wanted, also without a part
-    // Told the bytes that the check will take, about; false: do not begin.
+    bool needs_surface = false; // compute the surface of the remaining stock even without a part
+    // Called with the approximate memory of the check in bytes; false: do not start.
     std::function<bool(double)> before_model = {};
     std::function<bool(const CheckProgress&)> after_block = {}; // false: stop here
-    // Asked while the program is looked over, before its first block; true: give up.
+    // Polled while the program is surveyed, before its first block; true: stop.
     std::function<bool()> is_stopped = {};
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
-    ProgramSettings settings;    // replace what the set-up says under [program]
+    ProgramSettings settings;    // replace those under [program] of the set-up
     Engine engine = Engine::exact;
-    SetupEdits edits = {};           // replace what the set-up says, or what would be inferred
+    SetupEdits edits = {};           // replace what is stated or inferred
     core::RuleSeverities rules = {}; // replace those of the set-up, rule by rule
-    bool setup_was_found = false;    // nobody named it: it stands beside the program
+    bool setup_was_found = false;    // it was not named, but is next to the program
 };
 
-/// Names the set-up that stands beside the program, if none was named.
+/// Uses the set-up next to the program if the job names none.
 void look_beside(CheckJob& job);
 
-/// Runs a program against its set-up, or against what the program itself tells when `setup` is
+/// Checks a program against its set-up, or against one inferred from the program if `setup` is
 /// empty.
 ///
-/// Errors: files that cannot be read or make no sense. An error inside the program ends the run
-///         instead: everything before it is in the result.
+/// Errors: files that cannot be read or are invalid. An error in the program is not one: it ends
+///         the run, and the result holds the blocks before it.
 core::Result<CheckRun> run_check(const CheckJob& job);
 
 } // namespace app

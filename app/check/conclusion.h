@@ -21,26 +21,25 @@ struct CheckRun;
 struct LengthMismatch;
 struct PreparedCheck;
 
-/// What can be said only of a whole run, once its last block was carried out: findings in their
-/// order, those that one cause explains made one, comments that allow rules, the part, the stock
-/// that is left.
+/// Completes a run after its last block: sorts the findings, combines those with one cause, applies
+/// comments that allow rules, compares with the part, and keeps the remaining stock.
 void conclude(PreparedCheck& check, core::SimulatorState end,
               const std::vector<LengthMismatch>& mismatches, bool needs_surface);
 
-/// A name in a comment that allows a rule, in small letters, and where it begins, from 1.
+/// A rule that a comment allows: its name in lower case and its column, from 1.
 struct AllowedRule {
     std::string name;
     size_t column = 0;
 };
 
-/// The names in the comments of a line that allow rules: (feeler: allow RULE, RULE), or the same
-/// behind a semicolon.
+/// The rules that the comments of a line allow: (feeler: allow RULE, RULE), or the same after a
+/// semicolon.
 std::vector<AllowedRule> allowed_rules(std::string_view line);
 
-/// Takes those findings out of a run that comments in their own lines allow, where the set-up
-/// permits that; one that comes of a collision stays. What was taken out, and what comments did not
-/// count, is added to the assumptions, like every rule to which the set-up gives another severity.
-/// A name that is no rule is a warning, and a comment that the set-up does not permit a note.
+/// Removes the findings that comments in their own lines allow, if the set-up permits that;
+/// findings of collisions stay. Adds to the assumptions what was removed, which comments had no
+/// effect, and each rule with another severity in the set-up. An unknown rule name is a warning, a
+/// comment that the set-up does not permit a note.
 void apply_allowed_rules(CheckRun& run, bool comments_count);
 
 /// Looks whether the machine moves otherwise when the switch for blocks with `/` is on, if the run
@@ -48,17 +47,17 @@ void apply_allowed_rules(CheckRun& run, bool comments_count);
 void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
                                    const gcode::Environment& environment);
 
-/// Holds what is left of the stock against the part of the set-up, if there is one: fills
-/// `run.comparison`, and adds a finding for each of the worst regions, `gouge` or `rest-material`.
+/// Compares the remaining stock with the part of the set-up, if there is one: fills
+/// `run.comparison`, and adds a finding `gouge` or `rest-material` for each of the worst regions.
 void check_part(CheckRun& run);
 
-/// What came of it in a line of text.
+/// The result of the comparison in a line of text.
 std::string facts_of(const core::PartComparison& comparison, double tolerance);
 
-/// The surface of what is left as a PLY file, coloured by its deviation from the part; the header
-/// says what the colours mean.
+/// The surface of the remaining stock as a PLY file, coloured by its deviation from the part. The
+/// header explains the colours.
 ///
-/// Errors: invalid_value when the set-up has no part, and for a name that does not end in .ply.
+/// Errors: invalid_value if the set-up has no part or the name does not end in .ply.
 core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path);
 
 } // namespace app

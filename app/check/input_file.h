@@ -10,19 +10,19 @@
 
 namespace app {
 
-/// A look at the disk that a check took, and so a thing its result hangs on: what a file holds, or
-/// that there is none where one was looked for.
+/// A file access of a check, on which its result depends: the content of a file, or the fact that
+/// it does not exist.
 struct InputFile {
     core::FileQuestion question{};
     std::string path;                  // of the file, or of the folder that was searched
-    std::string name;                  // that was looked for in the folder
-    std::optional<std::string> answer; // of a content its SHA-256
+    std::string name;                  // that was searched for in the folder
+    std::optional<std::string> answer; // for content: its SHA-256
 
     auto operator<=>(const InputFile&) const = default;
 };
 
-/// Collects all looks at the disk that are taken on this thread while it lives, each once. A file
-/// that is read twice and changes in between is there twice.
+/// Records each distinct file access of this thread while the object exists. A file that changes
+/// between two reads is recorded twice.
 class InputRecorder {
 public:
     InputRecorder();

@@ -15,19 +15,18 @@ struct CheckJob;
 /// Errors: as run_check and rewritten_setup.
 core::Result<std::string> setup_file_text(const CheckJob& job);
 
-/// Where a set-up is saved unless somebody says otherwise: beside the program, or beside the set-up
-/// that was edited.
+/// The default path of a saved set-up: next to the program, or next to the set-up that was edited.
 std::string proposed_setup_path(const CheckJob& job);
 
-/// Puts a text into a file, whole or not at all.
+/// Writes a file completely or not at all.
 using FileWriter =
     std::function<core::Result<void>(const std::string& path, const std::string& text)>;
 
 /// Saves the set-up of a job.
 ///
-/// Errors: as setup_file_text and `write`; invalid_value for a file that is there, unless it may be
-///         replaced, for the program itself, and for a folder from which the files that the set-up
-///         names would not be found.
+/// Errors: as setup_file_text and `write`; invalid_value for an existing file unless it may be
+///         replaced, for the program itself, and for a folder from which relative paths in the
+///         set-up would not be valid.
 core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                               const FileWriter& write);
 

@@ -18,37 +18,37 @@ namespace app {
 
 struct SetupFile;
 
-/// Where a part of a set-up comes from.
+/// Where a value of a set-up comes from.
 enum class SetupSource : uint8_t { file, inferred, usual, stated };
 
 /// "from the set-up", "inferred", ...
 const char* name_of(SetupSource source);
 
-/// A tool as it is shown to be edited.
+/// A tool in the set-up dialog.
 struct SheetTool {
     core::ToolDescription tool;             // editable
-    SetupSource source = SetupSource::file; // of all that is not stated
-    std::string why;                        // of what is inferred, in a sentence
-    std::set<std::string> stated;           // keys that a person has stated
+    SetupSource source = SetupSource::file; // of all values that are not stated
+    std::string why;                        // it was inferred, as a sentence
+    std::set<std::string> stated;           // keys that the user has stated
 };
 
-/// What of a set-up can be edited, as a person reads it. A value: to edit it is to change a copy.
+/// The editable values of a set-up. To edit them, change a copy.
 struct SetupSheet {
     std::string path;  // of the set-up; empty: it was inferred
     std::string frame; // that the stock's coordinates count in
     core::Solid stock; // box, cylinder, or a mesh, which can only be replaced
     SetupSource stock_source = SetupSource::file;
-    std::string stock_why; // of what is inferred, in a sentence
+    std::string stock_why; // it was inferred, as a sentence
     std::vector<SheetTool> tools;
     std::optional<double> allowance; // the general one; empty: the usual ones
     SetupSource allowance_source = SetupSource::file;
     std::optional<core::ToolNumber> tool_at_start; // only where it was inferred
 };
 
-/// The sheet of a check that was read.
+/// The editable values of a check after read_check.
 SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup, const SetupEdits& edits);
 
-/// What has to be edited so that `shown` becomes `wanted`, on top of the edits that made `shown`.
+/// The edits that turn `shown` into `wanted`, added to `made`, the edits behind `shown`.
 SetupEdits edits_between(const SetupSheet& shown, const SetupSheet& wanted, SetupEdits made);
 
 /// The sizes that can be edited for a shape, in the order of the dialog.
@@ -57,15 +57,15 @@ std::vector<core::ToolSize> fields_of(core::ToolShape shape);
 /// The shapes that can be chosen in the dialog. An outline is stated in a set-up file only.
 std::vector<core::ToolShape> stateable_shapes();
 
-/// A tool with its lengths in the form that can be edited: one cylinder for its shank, if it has no
-/// more, and the stick-out in place of what follows from it. It assembles to the same tool.
+/// The same tool with editable lengths: a single-cylinder shank becomes a shank diameter and a
+/// stick-out.
 core::ToolDescription editable(core::ToolDescription tool);
 
-/// The same tool in another shape: sizes that mean nothing for it are gone, those that it needs
-/// are what such tools usually have.
+/// The tool with another shape: drops sizes that the shape does not have, and sets missing ones to
+/// usual values.
 core::ToolDescription reshaped(core::ToolDescription tool, core::ToolShape shape);
 
-/// The name of a tool's holder among those that come with the program; empty if it is none of them.
+/// The name of the tool's holder in the shipped library; empty if it is not in there.
 std::string holder_name(const core::ToolDescription& tool);
 
 } // namespace app

@@ -15,46 +15,46 @@ namespace app {
 class TableReader;
 struct ProgramSettings;
 
-/// A set-up file, read and put in its place.
+/// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it
     core::Setup setup;
     gcode::Environment environment;
     std::optional<gcode::DialectId> dialect;  // empty: recognise it
-    std::set<int> offsets_set;                // the work offsets that the file states, 0 is G54
-    std::set<core::OffsetNumber> lengths_set; // the length offsets that it states
-    std::map<core::ToolNumber, FoundTool> library; // of tool_library, for tools that are not here
-    std::string tool_table;                        // of the control, which knows diameters too
-    bool needs_stock = false;                      // it is to be inferred from the program
-    std::optional<double> stock_margin;            // round what is inferred
-    std::string stock_frame = "G54";               // that the stock's coordinates count in
-    std::map<core::ToolNumber, std::string> inferred_tools; // by what, in a sentence
-    std::string inferred_stock;                             // by what; empty: it is stated
-    bool speed_by_hand = false;                             // M3 turns the spindle without an S
-    bool allow_comments = false;          // (feeler: allow RULE) in the program counts
-    bool is_inferred = false;             // no file: everything is
-    std::string not_judged;               // why the motions of the program are not; empty: they are
-    std::vector<std::string> assumptions; // what the file leaves open or what had to be repaired
+    std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
+    std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
+    std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
+    std::string tool_table;                        // path of the control's tool table
+    bool needs_stock = false;                      // infer it from the program
+    std::optional<double> stock_margin;            // added around an inferred stock, mm
+    std::string stock_frame = "G54";               // of the stock's coordinates
+    std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, as a sentence
+    std::string inferred_stock;                             // reason; empty: it is stated
+    bool speed_by_hand = false;                             // M3 starts the spindle without S
+    bool allow_comments = false;          // (feeler: allow RULE) in the program has effect
+    bool is_inferred = false;             // there is no file
+    std::string not_judged;               // why motions are not checked; empty: they are
+    std::vector<std::string> assumptions; // about what the file does not state, and repairs
 };
 
-/// Reads a set-up (TOML) and every file it names; relative paths are relative to the file. What
-/// `over` says replaces what stands under [program].
+/// Reads a set-up (TOML) and every file that it names; relative paths are relative to the file.
+/// `over` replaces settings under [program].
 ///
-/// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value, a mesh that
-///         is no solid, a tool that cannot be.
+/// Errors: with file, line and column: no such file, invalid TOML, an unknown key, an invalid
+/// value,
+///         an open mesh, an impossible tool.
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over);
 core::Result<SetupFile> read_setup(const std::string& path);
 
-/// The name of the file that says what the programs of a folder are checked against.
+/// The name of the project file, which assigns set-ups to the programs of a folder.
 constexpr const char* project_file_name = "feeler.toml";
 
-/// The set-up that stands beside a program under its name, `plate.toml` for `plate.nc`; empty when
-/// there is none. A project file is none. What has that name counts, also a link that leads nowhere
-/// or a folder: whoever reads it then says so.
+/// The set-up next to a program, `plate.toml` for `plate.nc`; empty if there is none. A project
+/// file is not a set-up. A folder or a broken link of that name is returned and fails when read.
 std::string setup_beside(const std::string& program);
 
-/// The severities that a table `[rules]` gives to rules by name; the key `but`, if any, is left to
-/// the caller. A name that is no rule is refused with the nearest that is one.
+/// The severities in a table `[rules]`, by rule. The key `but`, if any, is left to the caller. An
+/// unknown rule is an error that suggests the nearest name.
 core::RuleSeverities read_severities(TableReader& table, const std::string& but = {});
 
 } // namespace app
