@@ -108,24 +108,11 @@ void merge(PairClearance& known, const PairClearance& later) {
     const bool is_worse = later.verdict > known.verdict && later.upper == known.upper;
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
-    known.at_end = later.lower;
-    known.drift = 0.0;
     if (later.upper >= known.upper && !(is_worse && later.found())) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;
     known.on_body = later.on_body;
     known.time = later.time;
-}
-
-const PairClearance* deciding_pair(const std::vector<PairClearance>& pairs) {
-    const PairClearance* worst = nullptr;
-    for (const PairClearance& pair : pairs) {
-        if (!pair.found() && pair.verdict == Verdict::clear) continue;
-        if (!worst || pair.verdict > worst->verdict
-            || (pair.verdict == worst->verdict && pair.margin() < worst->margin()))
-            worst = &pair;
-    }
-    return worst;
 }
 
 RoundedCorners corners_at_start(const Machine& machine) {

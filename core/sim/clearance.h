@@ -64,8 +64,6 @@ struct PairClearance {
     Vec3 on_tool = Vec3(0.0), on_body = Vec3(0.0); // witness of `upper`, in the stock's frame
     double time = 0.0; // of the witness, seconds after the block's start
     Verdict verdict = Verdict::clear;
-    double at_end = 0.0; // a lower bound of the clearance where the last leg ended
-    double drift = 0.0;  // the way that this bound has lost since the pair was measured
 
     bool found() const { return upper < infinity; }
     double margin() const { return (found() ? upper : lower) - allowance.distance; }
@@ -88,8 +86,19 @@ double contact_shrink(const Allowance& allowance, const RevolvedProfile& part);
 /// Takes a later observation of the same pair into account.
 void merge(PairClearance& known, const PairClearance& later);
 
-/// The pair that decides a block: the worst verdict, among equals the least margin.
-const PairClearance* deciding_pair(const std::vector<PairClearance>& pairs);
+/// The pair that decides a block: the worst verdict, among equals the least margin. Null if all
+/// pairs are clear beyond the search limit.
+template <typename Clearance>
+const Clearance* deciding_pair(const std::vector<Clearance>& pairs) {
+    const Clearance* worst = nullptr;
+    for (const Clearance& pair : pairs) {
+        if (!pair.found() && pair.verdict == Verdict::clear) continue;
+        if (!worst || pair.verdict > worst->verdict
+            || (pair.verdict == worst->verdict && pair.margin() < worst->margin()))
+            worst = &pair;
+    }
+    return worst;
+}
 
 /// How far the control's rounding of corners may take the tool off its programmed way, mm.
 ///

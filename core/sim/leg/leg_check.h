@@ -1,123 +1,34 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/dbm/cut_model.h"
-#include "core/distance/stock_distance.h"
 #include "core/motion/path.h"
-#include "core/sim/block_result.h"
-#include "core/sim/clearance.h"
-#include "core/sim/leg/check_memory.h"
-#include "core/sim/moving_body.h"
+#include "core/sim/leg/flute_cut.h"
+#include "core/sim/leg/leg_context.h"
+#include "core/sim/leg/pair_bounds.h"
+#include "core/sim/leg/stock_probe.h"
 
 namespace core {
 
-/// No point of any body goes farther over a leg, as any other body sees it, mm; infinite where
-/// rotary axes move or the way is not known.
-double greatest_travel(const Machine& machine, const Leg& leg);
-
-/// Whether what the flutes meet becomes chips or is a crash.
-enum class FluteUse : uint8_t { cutting, not_cutting };
-
-/// Checks a tool and what carries it along the legs of a path, against the fixtures and a stock
-/// that it cuts.
-///
-/// Refers to what it was given; make one where it is needed.
-class LegCheck {
+/// Checks moving bodies against the fixtures over legs. Refers to what it was given.
+class FixtureCheck {
 public:
-    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
-             const std::vector<bool>& fixtures_there, CheckMemory& memory, Statistics& statistics)
-        : setup_(setup),
-          tool_(tool),
-          use_(use),
-          block_(block),
-          fixtures_there_(fixtures_there),
-          memory_(memory),
-          statistics_(statistics),
-          bodies_(moving_bodies(setup, tool)) {}
+    FixtureCheck(const LegContext& context, const PairBounds& bounds, FluteCut& flutes)
+        : context_(context), bounds_(bounds), flutes_(flutes) {}
 
-    /// Checks one leg, cuts the stock along it, and adds what was found to `pairs`, with times
-    /// counted from `start`, seconds. While the flutes cut, the other bodies are held against the
-    /// stock as it is: `lower` against the stock at the start of a stretch, `upper` against what is
-    /// left at its end, and a stretch that leaves a doubt is halved until it is no longer than the
-    /// mesh size. A leg on which rotary axes move is halved until what turning adds to the errors
-    /// is small, or does not matter.
-    ///
-    /// Result: the volume removed, mm3.
-    double run(const Leg& leg, double start, CutModel& stock, std::vector<PairClearance>& pairs);
+    /// Adds the clearances over a leg, with times counted from `start`, seconds. A chord of an arc
+    /// whose error leaves a doubt is kept for `resolve_doubts`.
+    void check(const Leg& leg, double start, std::vector<TrackedPair>& pairs);
 
-    /// Divides the chords that left a doubt about a fixture. To be called behind the last leg.
-    void settle(std::vector<PairClearance>& pairs);
-
-    /// A lower bound of how near the flutes come to the stock over a leg, up to `limit`; 0 where
-    /// the leg turns too far to say.
-    double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
-
-    /// Cuts the stock along a leg and looks at nothing else; the volume removed, mm3.
-    double only_cut(const Leg& leg, CutModel& stock);
-
-    /// Checks everything at rest, at `time` of the block, without cutting.
-    void rest(const AxisValues& place, double time, const CutModel& stock,
-              std::vector<PairClearance>& pairs);
-
-    /// The least share of the leg after which the pair is as near as `distance` for the first time.
-    /// `seen` is a share at which it was, if one is known.
-    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
-                    std::optional<double> seen = {});
+    /// Halves the chords that left a doubt until none is left or they are fine enough. Call it
+    /// after the last leg.
+    void resolve_doubts(std::vector<TrackedPair>& pairs);
 
 private:
-    /// What one state of the stock says of a body: as it is, and shrunk by the contact depth.
-    struct Observation {
-        Separation plain;
-        Separation shrunk;
-        double travel = 0.0; // how far the body goes at most
-        bool whole = true;   // false: nothing was done for an upper bound
-    };
-
-    /// A body that turns is seen sharply enough when the error is this share of its clearance.
-    static constexpr double sharp_share = 0.02;
-
-    /// The pair in the block's list; begun from the bound of the block before if it is not there.
-    PairClearance& known_pair(std::vector<PairClearance>& pairs, const Pair& pair) const;
-    /// Whether a bound shows that a pair stays clear over the leg, and farther from its allowance
-    /// than another of the block. Keeps the bound up to date if so.
-    bool says_nothing(PairClearance& known, const std::vector<PairClearance>& pairs) const;
-    /// Whether a lower bound shows that.
-    bool is_beside_the_point(const Allowance& allowance, double lower,
-                             const std::vector<PairClearance>& pairs) const;
-    /// What must be kept on top, of a pair that must keep apart.
-    double off_path(const Allowance& allowance) const {
-        return allowance.distance > resolution ? memory_.off_path : 0.0;
-    }
-    /// Whether a pair will say nothing if the block decides about as the last one did.
-    bool says_likely_nothing(const PairClearance& known) const;
-    /// The bodies, that of the pair with the stock or a fixture which decided the last block first.
-    std::vector<const MovingBody*> likely_first(std::optional<size_t> fixture) const;
-    /// A pair that may touch over this leg: only its bound is kept.
-    void let_pass(const Pair& pair, std::vector<PairClearance>& pairs) const;
-
-    static Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});
-    const MovingBody& body_of(const Pair& pair) const;
-    RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
-    double finest_error(const MovingBody& body) const;
-
-    void check_fixtures(const Leg& leg, double start, std::vector<PairClearance>& pairs);
-    /// Whether a body and a fixture are a pair that must keep apart over this leg.
-    bool may_meet(const Leg& leg, const MovingBody& body, size_t fixture,
-                  std::vector<PairClearance>& pairs);
-    /// The box of an expendable fixture that stands still against the stock, in the stock's frame.
-    std::optional<Aabb> box_beside_stock(size_t fixture) const;
-    /// Writes down what the flutes cut of an expendable fixture.
-    void note_cut(const Leg& leg, size_t fixture);
-    /// Whether the flutes go only where they have cut the fixture before.
-    bool is_in_own_cut(const Leg& leg, size_t fixture) const;
-    void check_fixture(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                       std::vector<PairClearance>& pairs);
-    /// A chord of an arc that leaves a doubt about a fixture, and what was seen of it.
-    struct Doubtful {
+    /// A chord of an arc with an undecided pair, and its clearance so far.
+    struct Doubt {
         Leg leg;
         double start;
         size_t fixture;
@@ -125,102 +36,140 @@ private:
         PairClearance seen;
     };
 
-    /// The same of a leg on which nothing turns. A chord that leaves a doubt waits for `settle`.
+    /// Whether the pair must keep its allowance on this leg. Flutes may cut expendable fixtures.
+    bool must_keep_apart(const Leg& leg, const MovingBody& body, size_t fixture,
+                         std::vector<TrackedPair>& pairs);
+    void check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                    std::vector<TrackedPair>& pairs);
+    /// The same on a leg on which the body does not turn.
     void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                       const RelativeLeg& relative, PairClearance& known);
-    /// Whether what was seen of a leg tells enough of a pair of which this is known.
-    bool is_sharp(const PairClearance& now, const PairClearance& known) const;
-    /// Adds what is known of a chord when it has been halved for as long as it leaves a doubt.
-    void divide(const Doubtful& doubt, PairClearance& known);
-    /// What is known of a body and a fixture over a leg, from one look at the whole of it.
-    PairClearance look_at_fixture(const Leg& leg, double start, const RelativeLeg& relative,
-                                  const MovingBody& body, const PairClearance& known);
+                       const RelativeLeg& relative, TrackedPair& known);
+    /// The clearance of a body from a fixture, measured once over the whole leg.
+    PairClearance measure(const Leg& leg, double start, const RelativeLeg& relative,
+                          const MovingBody& body, const PairClearance& known);
+    /// Whether a clearance is exact enough, given what is known of the pair.
+    bool is_settled(const PairClearance& now, const PairClearance& known) const;
+    void resolve(const Doubt& doubt, PairClearance& known);
 
-    Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                        StockGoal goal, double shrink = 0.0);
+    const LegContext& context_;
+    const PairBounds& bounds_;
+    FluteCut& flutes_;
+    std::vector<Doubt> doubts_;
+};
 
-    /// The same as `observe`, without an upper bound if the lower one tells enough.
-    Observation observe_lower(const MovingBody& body, const Leg& leg, const CutModel& stock,
-                              double nearest);
+/// Checks moving bodies against the stock over legs, and cuts it. Refers to what it was given.
+class StockCheck {
+public:
+    StockCheck(const LegContext& context, PairBounds& bounds, StockProbe& probe, FluteCut& flutes)
+        : context_(context), bounds_(bounds), probe_(probe), flutes_(flutes) {}
 
-    /// A body of a cutting tool before the stock is cut, and whether it is clear of it already.
+    /// Adds the clearances over a leg, with times counted from `start`, seconds, and cuts the stock
+    /// along it.
+    ///
+    /// Result: the volume removed, mm3.
+    double check(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
+
+    /// Adds the clearances of all bodies from the stock as it is.
+    ///
+    /// Result: whether the flutes collide with it.
+    bool check_bodies(const Leg& leg, double start, const CutModel& stock,
+                      std::vector<TrackedPair>& pairs);
+
+private:
+    /// A body before the stock is cut, and whether its lower bound already shows that it is clear.
     struct BodyCheck {
         const MovingBody& body;
-        Observation before;
+        StockObservation before;
         bool clear;
-        double nearest; // that the pair has been in this block
+        double nearest; // that the pair has come in this block
     };
 
-    double check_stock(const Leg& leg, double start, CutModel& stock,
-                       std::vector<PairClearance>& pairs);
-    bool turns_too_far(const Leg& leg) const;
-    /// Whether a look at a leg could not be sharp enough, whatever it sees within the limit.
-    bool is_too_vague(const RelativeLeg& relative) const;
     double check_turning(const Leg& leg, double start, CutModel& stock,
-                         std::vector<PairClearance>& pairs);
-    /// How far a body of the machine really keeps from a box over a leg, at least.
-    double distance_to_box(const MovingBody& body, const RelativeLeg& leg, const Aabb& box);
-    /// A body of the machine over a leg that turns, against the stock as it is at the leg's start:
-    /// `lower` alone, where the box of the raw stock is far enough.
+                         std::vector<TrackedPair>& pairs);
+    /// A machine body over a leg that turns, against the stock before the cut. Only the lower bound
+    /// is measured if the box of the raw stock is far enough away.
     void check_turning_body(const MovingBody& body, const Leg& leg, double start,
-                            const CutModel& stock, std::vector<PairClearance>& pairs);
-    /// Whether one look at a leg that turns tells enough of the tool; adds what it told if so.
-    bool is_seen_from_afar(const Leg& leg, double start, const CutModel& stock,
-                           std::vector<PairClearance>& pairs);
-
-    /// Looks no farther than `nearest`.
-    Observation observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
-                        double nearest);
-    void look_half_way(Observation& seen, const MovingBody& body, const Leg& leg,
-                       const CutModel& stock, double nearest);
-    /// Takes the error of a leg into account: an overlap stays one only if it is found where the
-    /// body really goes.
-    void make_sure(Observation& seen, const MovingBody& body, const Leg& leg,
-                   const RelativeLeg& relative, const CutModel& stock, double nearest);
-    /// Whether the body goes only where the flutes have cut before (see runs_in_own_cut).
-    bool retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
-                  const Allowance& allowance) const;
-    /// Whether a body that is too near the stock before the cut is clear of what is left after it.
+                            const CutModel& stock, std::vector<TrackedPair>& pairs);
+    /// Whether the tool stays clear on a leg that turns, measured over the whole of it; if so, adds
+    /// its clearances.
+    bool is_clear_from_afar(const Leg& leg, double start, const CutModel& stock,
+                            std::vector<TrackedPair>& pairs);
+    double check_whole(const Leg& leg, double start, CutModel& stock,
+                       std::vector<TrackedPair>& pairs);
+    double check_cutting(const Leg& leg, double start, CutModel& stock,
+                         std::vector<TrackedPair>& pairs);
+    double check_not_cutting(const Leg& leg, double start, CutModel& stock,
+                             std::vector<TrackedPair>& pairs);
+    /// Whether a body that is too near before the cut is clear after it.
     bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
                          const CutModel& stock);
-    /// Adds what is known of a body after the cut.
+    /// Adds the clearance of a body, now that the stock is cut; `cut`: anything was removed.
     void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
-                  bool cut, std::vector<PairClearance>& pairs);
-    /// Puts a pair that does not keep its allowance to the first of the moments at which it is as
-    /// near, whatever the search saw: what is left of the stock decides, before it is cut further.
-    void settle_time(PairClearance& now, const Leg& leg, double start, const CutModel& stock);
-    /// Looks at a body that was not looked at before the cut, if it matters after all.
-    void look_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
-                   std::vector<PairClearance>& pairs);
-    Observation look_again(const BodyCheck& check, const Leg& leg, const CutModel& stock);
-    PairClearance clearance(const MovingBody& body, const Leg& leg, double start,
-                            const Observation& before, const Observation& after) const;
-    /// Adds the pairs of all bodies with the stock; whether the flutes gouge it.
-    bool check_bodies(const Leg& leg, double start, const CutModel& stock,
-                      std::vector<PairClearance>& pairs);
-    void check_hull(const Leg& leg, double start, const CutModel& stock,
-                    std::vector<PairClearance>& pairs);
-    /// All bodies against the stock, by one look at each if time does not matter; the volume cut.
-    double check_whole(const Leg& leg, double start, CutModel& stock,
-                       std::vector<PairClearance>& pairs);
-    double check_cutting(const Leg& leg, double start, CutModel& stock,
-                         std::vector<PairClearance>& pairs);
-    double check_not_cutting(const Leg& leg, double start, CutModel& stock,
-                             std::vector<PairClearance>& pairs);
-    double cut_along(const Leg& leg, CutModel& stock);
-    std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg);
+                  bool cut, std::vector<TrackedPair>& pairs);
+    /// Checks a body that was skipped before the cut, if it can decide the block after all.
+    void check_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
+                    std::vector<TrackedPair>& pairs);
+    StockObservation observe_after(const BodyCheck& check, const Leg& leg, const CutModel& stock);
 
-    const Setup& setup_;
-    const ToolAssembly& tool_;
-    FluteUse use_;
-    BlockIndex block_;
-    const std::vector<bool>& fixtures_there_;
-    CheckMemory& memory_;
-    Statistics& statistics_;
-    std::vector<MovingBody> bodies_;
-    double travel_ = infinity; // no point goes farther over the leg that is being checked, mm
-    std::vector<Doubtful> doubtful_;
-    bool only_tool_ = false; // bodies of the machine have been held against the stock already
+    const LegContext& context_;
+    PairBounds& bounds_;
+    StockProbe& probe_;
+    FluteCut& flutes_;
+    bool only_tool_ = false; // the machine bodies have been checked already
+};
+
+/// Checks a tool and the bodies that move with it along the legs of a path, against fixtures and a
+/// stock that it cuts. Refers to what it was given.
+class LegCheck {
+public:
+    LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
+             const std::vector<bool>& fixtures_there, CheckMemory& memory, Statistics& statistics);
+    LegCheck(const LegCheck&) = delete;
+    LegCheck& operator=(const LegCheck&) = delete;
+
+    /// Checks one leg, cuts the stock along it, and adds the clearances to `pairs`, with times
+    /// counted from `start`, seconds.
+    ///
+    /// While the flutes cut, the other bodies are checked against the stock at the start of the leg
+    /// (`lower`) and at its end (`upper`). A leg that leaves a doubt is halved down to the mesh
+    /// size, and one on which rotary axes move until the error of turning is small or does not
+    /// matter.
+    ///
+    /// Result: the volume removed, mm3.
+    double run(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
+
+    /// Resolves what the legs have left undecided. Call it after the last leg.
+    void finish(std::vector<TrackedPair>& pairs) { fixtures_.resolve_doubts(pairs); }
+
+    /// Checks everything at rest, at `time` of the block, without cutting.
+    void rest(const AxisValues& place, double time, const CutModel& stock,
+              std::vector<TrackedPair>& pairs);
+
+    /// Cuts the stock along a leg without a check; the volume removed, mm3.
+    double only_cut(const Leg& leg, CutModel& stock) { return flutes_.along_turning(leg, stock); }
+
+    /// StockProbe::room_of_flutes.
+    double room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
+        return probe_.room_of_flutes(leg, stock, limit);
+    }
+
+    /// StockProbe::earliest.
+    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
+                    std::optional<double> seen = {}) {
+        return probe_.earliest(leg, pair, distance, stock, seen);
+    }
+
+private:
+    /// A leg whose way is known only to lie in a hull.
+    void check_hull(const Leg& leg, double start, const CutModel& stock,
+                    std::vector<TrackedPair>& pairs);
+
+    LegContext context_;
+    PairBounds bounds_;
+    FluteCut flutes_;
+    StockProbe probe_;
+    FixtureCheck fixtures_;
+    StockCheck stock_;
 };
 
 } // namespace core

@@ -1,8 +1,50 @@
-#include "core/sim/leg/leg_check.h"
-#include "core/sim/leg/pair_entry.h"
+#include "core/sim/leg/pair_bounds.h"
+
+#include <algorithm>
+
+#include "core/motion/path.h"
 #include "core/sim/setup.h"
 
 namespace core {
+
+void merge(TrackedPair& known, const PairClearance& later) {
+    merge(static_cast<PairClearance&>(known), later);
+    known.at_end = later.lower;
+    known.drift = 0.0;
+}
+
+TrackedPair& entry(std::vector<TrackedPair>& pairs, const Pair& pair, const Setup& setup) {
+    for (TrackedPair& known : pairs)
+        if (known.pair == pair) return known;
+    TrackedPair begun;
+    begun.pair = pair;
+    begun.allowance = allowance_of(setup, pair);
+    pairs.push_back(begun);
+    return pairs.back();
+}
+
+bool stays_away(TrackedPair& known, const Leg& leg, const RelativeLeg& relative) {
+    if (!leg.straight || known.at_end - relative.travel < known.upper) return false;
+    known.at_end -= relative.travel;
+    return true;
+}
+
+bool is_far(TrackedPair& known, double apart, double search_limit) {
+    if (apart < std::min(known.upper, search_limit)) return false;
+    known.lower = std::min(known.lower, search_limit);
+    known.at_end = apart;
+    return true;
+}
+
+Separation widened(Separation found, const RelativeLeg& leg) {
+    found.lower = std::max(0.0, found.lower - leg.error);
+    found.upper += leg.error;
+    return found;
+}
+
+RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg) {
+    return leg.turns ? RevolvedProfile{} : shrunk_within(part, leg.error);
+}
 
 double greatest_travel(const Machine& machine, const Leg& leg) {
     if (!leg.straight) return infinity;
@@ -16,10 +58,14 @@ double greatest_travel(const Machine& machine, const Leg& leg) {
     return glm::length(by);
 }
 
-PairClearance& LegCheck::known_pair(std::vector<PairClearance>& pairs, const Pair& pair) const {
-    for (PairClearance& known : pairs)
+void PairBounds::end_leg() {
+    for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
+}
+
+TrackedPair& PairBounds::known_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const {
+    for (TrackedPair& known : pairs)
         if (known.pair == pair) return known;
-    PairClearance& begun = entry(pairs, pair, setup_);
+    TrackedPair& begun = entry(pairs, pair, setup_);
     for (const PairBound& bound : memory_.bounds)
         if (bound.pair == pair) {
             begun.at_end = bound.apart;
@@ -28,88 +74,43 @@ PairClearance& LegCheck::known_pair(std::vector<PairClearance>& pairs, const Pai
     return begun;
 }
 
-bool LegCheck::says_nothing(PairClearance& known, const std::vector<PairClearance>& pairs) const {
+bool PairBounds::can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const {
     const double apart = known.at_end - travel_;
-    if (!is_beside_the_point(known.allowance, apart, pairs)) return false;
+    if (!cannot_decide(known.allowance, apart, pairs)) return false;
     known.lower = std::min({known.lower, apart, setup_.search_limit});
     known.at_end = apart;
     known.drift += travel_;
     return true;
 }
 
-bool LegCheck::is_beside_the_point(const Allowance& allowance, double lower,
-                                   const std::vector<PairClearance>& pairs) const {
+bool PairBounds::cannot_decide(const Allowance& allowance, double lower,
+                               const std::vector<TrackedPair>& pairs) const {
     if (setup_.detail == Detail::every_pair) return false;
-    const double must_keep = allowance.distance + resolution + memory_.off_path;
-    if (setup_.detail == Detail::verdict) return lower > must_keep;
+    const double required = allowance.distance + resolution + memory_.off_path;
+    if (setup_.detail == Detail::verdict) return lower > required;
     double least = infinity;
-    for (const PairClearance& other : pairs)
+    for (const TrackedPair& other : pairs)
         if (other.found()) least = std::min(least, other.margin());
-    return lower > must_keep && lower >= std::min(least + must_keep, setup_.search_limit);
+    return lower > required && lower >= std::min(least + required, setup_.search_limit);
 }
 
-bool LegCheck::says_likely_nothing(const PairClearance& known) const {
+bool PairBounds::can_probably_skip(const TrackedPair& known) const {
     const double apart = known.at_end - travel_;
-    const double must_keep = known.allowance.distance + resolution + memory_.off_path;
-    constexpr double slack = 0.1; // mm: how much more room the next block often has
-    // A bound that has lost more would say too little, should the pair decide after all; of what
-    // keeps away from the flutes a late look tells more.
+    const double required = known.allowance.distance + resolution + memory_.off_path;
+    constexpr double slack = 0.1; // mm: the next block often has that much more room
+    // If the pair decides after all, a bound with much drift is a poor one. Of bodies that keep
+    // away from the flutes, check_late gives a better one.
     const double most_drift =
         known.pair.part < PartKind::holder ? 2.0 : std::max(2.0, 0.25 * apart);
     if (known.drift + travel_ > most_drift) return false;
     return setup_.detail == Detail::deciding_pair && memory_.deciding
-           && !(known.pair == *memory_.deciding) && apart > must_keep
-           && apart - must_keep > memory_.margin + 2.0 * travel_ + slack;
+           && !(known.pair == *memory_.deciding) && apart > required
+           && apart - required > memory_.margin + 2.0 * travel_ + slack;
 }
 
-std::vector<const MovingBody*> LegCheck::likely_first(std::optional<size_t> fixture) const {
-    std::vector<const MovingBody*> order;
-    for (const MovingBody& body : bodies_) order.push_back(&body);
-    std::stable_partition(order.begin(), order.end(), [&](const MovingBody* body) {
-        return memory_.deciding == pair_of(*body, fixture);
-    });
-    return order;
-}
-
-void LegCheck::let_pass(const Pair& pair, std::vector<PairClearance>& pairs) const {
-    for (PairClearance& known : pairs)
+void PairBounds::carry_bound(const Pair& pair, std::vector<TrackedPair>& pairs) const {
+    for (TrackedPair& known : pairs)
         if (known.pair == pair) known.at_end -= travel_;
-}
-
-double LegCheck::earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
-                          std::optional<double> seen) {
-    if (!leg.straight || leg.places.size() < 2) return 0.0;
-    const MovingBody& body = body_of(pair);
-    const Mount& target = pair.fixture ? setup_.fixtures[*pair.fixture].mount : setup_.stock_mount;
-    const auto reached = [&](double share) {
-        const RelativeLeg moved =
-            relative_leg(setup_.machine, target, body.mover, stretch(leg, 0.0, share));
-        if (moved.error == infinity) return true;
-        const double limit = distance + moved.error + resolution;
-        const Separation found =
-            pair.fixture ? distance_over(moved, body, setup_.fixtures[*pair.fixture].body,
-                                         limit + resolution, statistics_.shape_tests)
-                         : to_stock(body, moved, stock, {.limit = limit + resolution});
-        return found.upper <= limit;
-    };
-    // Mostly it is where it was seen, and not before.
-    constexpr double step = 1e-4;
-    double before = 0.0, after = 1.0;
-    if (seen && (*seen <= step || !reached(*seen - step))) return *seen;
-    if (reached(0.0)) return 0.0;
-    for (int i = 0; i < 24; ++i) {
-        const double middle = 0.5 * (before + after);
-        (reached(middle) ? after : before) = middle;
-    }
-    return after;
-}
-
-void LegCheck::settle_time(PairClearance& now, const Leg& leg, double start,
-                           const CutModel& stock) {
-    if (now.verdict == Verdict::clear || !now.found()) return;
-    const double begin = start + leg.begin, takes = leg.end - leg.begin;
-    const double seen = takes > 0.0 ? (now.time - begin) / takes : 0.0;
-    now.time = begin + earliest(leg, now.pair, now.upper, stock, seen) * takes;
 }
 
 } // namespace core

@@ -31,17 +31,17 @@ struct Look {
                 memory, statistics};
     }
 
-    std::vector<PairClearance> at(const AxisValues& place) {
-        std::vector<PairClearance> pairs;
+    std::vector<TrackedPair> at(const AxisValues& place) {
+        std::vector<TrackedPair> pairs;
         check().rest(place, 0.0, link.stock, pairs);
         return pairs;
     }
 
-    std::vector<PairClearance> along(double higher) {
+    std::vector<TrackedPair> along(double higher) {
         Leg leg = link.leg;
         for (AxisValues& place : leg.places) place[2] += higher;
         CutModel stock = link.stock;
-        std::vector<PairClearance> pairs;
+        std::vector<TrackedPair> pairs;
         check().run(leg, 0.0, stock, pairs);
         return pairs;
     }
@@ -51,14 +51,14 @@ bool is_flutes_over_stock(const PairClearance& pair) {
     return !pair.pair.fixture && pair.pair.part == PartKind::flutes;
 }
 
-bool are_clear(const std::vector<PairClearance>& pairs) {
+bool are_clear(const std::vector<TrackedPair>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(),
-                       [](const PairClearance& pair) { return pair.verdict == Verdict::clear; });
+                       [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
 }
 
 /// How near the flutes are to the stock.
-double flutes_to_stock(const std::vector<PairClearance>& pairs) {
-    for (const PairClearance& pair : pairs)
+double flutes_to_stock(const std::vector<TrackedPair>& pairs) {
+    for (const TrackedPair& pair : pairs)
         if (is_flutes_over_stock(pair)) return pair.found() ? pair.upper : pair.lower;
     return infinity;
 }
@@ -70,10 +70,10 @@ bool passes_over(const LinkRapid& link, const PairClearance& pair) {
 }
 
 /// What the rapid comes too near to, of the pairs on the way.
-const PairClearance* in_the_way(const LinkRapid& link, const std::vector<PairClearance>& pairs) {
+const PairClearance* in_the_way(const LinkRapid& link, const std::vector<TrackedPair>& pairs) {
     const PairClearance* worst = deciding_pair(pairs);
     if (worst && worst->verdict != Verdict::clear) return worst;
-    for (const PairClearance& pair : pairs)
+    for (const TrackedPair& pair : pairs)
         if (is_flutes_over_stock(pair) && pair.found() && pair.upper > 0.0 && pair.upper < room
             && passes_over(link, pair))
             return &pair;
@@ -81,7 +81,7 @@ const PairClearance* in_the_way(const LinkRapid& link, const std::vector<PairCle
 }
 
 /// Whether anything on the way is too near, or the flutes pass the stock with little room.
-bool is_doubtful(const LinkRapid& link, const std::vector<PairClearance>& known) {
+bool is_doubtful(const LinkRapid& link, const std::vector<TrackedPair>& known) {
     if (!are_clear(known)) return true;
     CheckMemory memory;
     Statistics statistics;
@@ -120,10 +120,10 @@ bool goes_across(const Leg& leg) {
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& known) {
+std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<TrackedPair>& known) {
     if (!is_doubtful(link, known)) return std::nullopt;
     Look look{link};
-    const std::vector<PairClearance> pairs = look.along(0.0);
+    const std::vector<TrackedPair> pairs = look.along(0.0);
     const PairClearance* near = in_the_way(link, pairs);
     if (!near) return std::nullopt;
     for (const AxisValues& place : {link.leg.places.front(), link.leg.places.back()}) {

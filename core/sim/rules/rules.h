@@ -16,11 +16,11 @@ namespace core {
 struct Leg;
 struct Machine;
 struct Motion;
-struct PairClearance;
 struct Setup;
 struct RelativeLeg;
 struct ToolAssembly;
 struct ToolDescription;
+struct TrackedPair;
 
 /// Flutes that keep farther than this from the stock are in the air, mm; nearer they may be on a
 /// spring pass.
@@ -71,7 +71,7 @@ struct CutLeg {
 ///
 /// Cost: nothing for a leg on which they keep away; else, where they have to stand higher than on
 ///       any leg before, some ten checks of the leg.
-void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<PairClearance>& pairs);
+void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<TrackedPair>& pairs);
 
 /// The findings `stick-out-short` and `over-engagement`, one of each for a tool, with the first
 /// block that they are about and what would do for all blocks. Severities are left open but for a
@@ -107,7 +107,7 @@ bool goes_across(const Leg& leg);
 /// found on the leg. Its severity is left open.
 ///
 /// Cost: nothing where the rapid passes well clear; else some twenty checks of the leg.
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<PairClearance>& known);
+std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<TrackedPair>& known);
 
 /// What is known about the pieces of a stock while it is cut. A plain value.
 struct PieceWatch {

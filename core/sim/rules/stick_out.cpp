@@ -39,11 +39,11 @@ bool keeps_clear(const CutLeg& cut, PartKind from, double by) {
     CutModel stock = cut.stock;
     CheckMemory memory;
     Statistics statistics;
-    std::vector<PairClearance> pairs;
+    std::vector<TrackedPair> pairs;
     LegCheck(cut.setup, longer, FluteUse::cutting, cut.block, cut.fixtures_there, memory,
              statistics)
         .run(cut.leg, 0.0, stock, pairs);
-    return std::all_of(pairs.begin(), pairs.end(), [&](const PairClearance& pair) {
+    return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
         const bool concerns = from == PartKind::holder ? pair.pair.part == PartKind::holder
                                                        : pair.pair.part == PartKind::shank;
         return !concerns || pair.pair.fixture || pair.verdict == Verdict::clear;
@@ -161,9 +161,9 @@ bool goes_sideways(const Leg& leg) {
 
 } // namespace
 
-void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<PairClearance>& pairs) {
+void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<TrackedPair>& pairs) {
     constexpr double touch = 0.02; // mm
-    for (const PairClearance& pair : pairs) {
+    for (const TrackedPair& pair : pairs) {
         const bool is_shank = pair.pair.part == PartKind::shank;
         if (pair.pair.fixture || !(is_shank || pair.pair.part == PartKind::holder)) continue;
         const bool is_clear = pair.verdict == Verdict::clear;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/sim/leg/pair_entry.h"
 #include "core/sim/run/block_run.h"
 #include "core/sim/verdict.h"
 
@@ -58,12 +57,12 @@ void BlockRun::round_corners(const Motion& motion) {
 void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
     if (!block.judgement && !path.legs.empty()) {
-        std::vector<PairClearance> pairs;
+        std::vector<TrackedPair> here;
         for (const Leg& leg : path.legs)
-            leg_check(use(motion)).run(leg, result.duration, state.stock, pairs);
-        const PairClearance* worst = deciding_pair(pairs);
+            leg_check(use(motion)).run(leg, result.duration, state.stock, here);
+        const TrackedPair* worst = deciding_pair(here);
         if (!worst || worst->verdict == Verdict::clear) {
-            for (PairClearance& pair : pairs) result.pairs.push_back(pair);
+            for (const TrackedPair& pair : here) pairs.push_back(pair);
             return;
         }
     }
@@ -113,7 +112,7 @@ void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
     const RelativeLeg way = relative_leg(setup.machine, setup.stock_mount, {.mount = tip}, leg);
     const auto contact = follow(state.centre, tool()->description, way, state.stock);
     if (!contact) return;
-    PairClearance& flutes = entry(result.pairs, {PartKind::flutes}, setup);
+    TrackedPair& flutes = entry(pairs, {PartKind::flutes}, setup);
     if (flutes.verdict == Verdict::collision) return;
     pushes_centre = true;
     flutes.lower = flutes.upper = 0.0;
@@ -132,14 +131,14 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
     double removed = 0.0;
     for (const Leg& leg : path.legs) {
         watch_centre(motion, leg);
-        removed += check.run(leg, result.duration, state.stock, result.pairs);
+        removed += check.run(leg, result.duration, state.stock, pairs);
         legs.push_back({leg, result.duration});
         if (use(motion) == FluteUse::cutting && !state.watch.length_in_doubt)
             note_reach(state.watch.reaches,
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
-                       result.pairs);
+                       pairs);
     }
-    check.settle(result.pairs);
+    check.finish(pairs);
     note_worst(motion.kind);
     result.removed += removed;
     if (before) look_at_rapid(motion, path, *before);
@@ -161,16 +160,15 @@ void BlockRun::follow_path(const Motion& motion, const Path& path) {
 void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {
     const bool straight = path.legs.size() == 1 && path.legs[0].straight;
     if (straight && tool())
-        return tell(
-            low_retract({setup, *tool(), block.block, path.legs[0], state.fixtures_there, before},
-                        result.pairs));
-    const PairClearance* worst = deciding_pair(result.pairs);
+        return tell(low_retract(
+            {setup, *tool(), block.block, path.legs[0], state.fixtures_there, before}, pairs));
+    const TrackedPair* worst = deciding_pair(pairs);
     if (!worst || worst->verdict == Verdict::clear) return;
     Machine machine = setup.machine;
     machine.rapid = RapidStyle::straight;
     CutModel stock = before;
     CheckMemory memory; // bounds of the run hold along its own path only
-    std::vector<PairClearance> along_the_line;
+    std::vector<TrackedPair> along_the_line;
     for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
         leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
     worst = deciding_pair(along_the_line);

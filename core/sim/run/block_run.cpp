@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "core/sim/leg/pair_entry.h"
-
 namespace core {
 namespace {
 
@@ -28,14 +26,13 @@ void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
 
 void BlockRun::forget_bounds() {
     state.memory.bounds.clear();
-    for (PairClearance& pair : result.pairs) pair.at_end = -infinity;
+    for (TrackedPair& pair : pairs) pair.at_end = -infinity;
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
     // Only the tool that was there knows when it was nearest.
-    if (const PairClearance* worst = deciding_pair(result.pairs))
-        settle_time(*this, result.pairs[static_cast<size_t>(worst - result.pairs.data())],
-                    worst->upper);
+    if (const TrackedPair* worst = deciding_pair(pairs))
+        settle_time(*this, pairs[static_cast<size_t>(worst - pairs.data())], worst->upper);
     legs.clear();
     if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
     state.watch.air = {};
@@ -67,7 +64,7 @@ void BlockRun::carry_out(const FixtureChange& change) {
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
         return;
     leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].places[0], result.duration, state.stock, result.pairs);
+        .rest(path.legs[0].places[0], result.duration, state.stock, pairs);
 }
 
 void BlockRun::check_tool_change() {
@@ -75,10 +72,10 @@ void BlockRun::check_tool_change() {
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
-    std::vector<PairClearance> pairs;
+    std::vector<TrackedPair> there;
     leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].places[0], result.duration, state.stock, pairs);
-    const PairClearance* nearest = deciding_pair(pairs);
+        .rest(path.legs[0].places[0], result.duration, state.stock, there);
+    const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;
     add(unsafe_change(setup, *nearest, *state.tool));
@@ -100,7 +97,7 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
 }
 
 void BlockRun::note_worst(MotionKind kind) {
-    for (const PairClearance& pair : result.pairs) {
+    for (const PairClearance& pair : pairs) {
         if (pair.verdict == Verdict::clear) continue;
         const auto known =
             std::find_if(worst_motions.begin(), worst_motions.end(),
@@ -148,48 +145,47 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
 }
 
 void BlockRun::conclude() {
-    std::sort(result.pairs.begin(), result.pairs.end(),
-              [](const PairClearance& a, const PairClearance& b) {
-                  return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
-                         < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
-              });
+    std::sort(pairs.begin(), pairs.end(), [](const TrackedPair& a, const TrackedPair& b) {
+        return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
+               < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
+    });
     const bool rise = std::all_of(legs.begin(), legs.end(),
                                   [](const TimedLeg& timed) { return rises(timed.leg); });
     const bool follows =
         follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
     std::vector<double> on_the_way; // how near each pair is where the program goes
-    for (PairClearance& pair : result.pairs) {
+    for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
         widen(pair, off_path, state.corners, follows);
     }
-    if (const PairClearance* worst = deciding_pair(result.pairs)) {
-        result.deciding = static_cast<size_t>(worst - result.pairs.data());
+    if (const TrackedPair* worst = deciding_pair(pairs)) {
+        result.deciding = static_cast<size_t>(worst - pairs.data());
         result.verdict = worst->verdict;
     }
-    for (size_t i = 0; i < result.pairs.size(); ++i)
-        if (result.pairs[i].verdict != Verdict::clear || result.deciding == i)
-            settle_time(*this, result.pairs[i], on_the_way[i]);
+    for (size_t i = 0; i < pairs.size(); ++i)
+        if (pairs[i].verdict != Verdict::clear || result.deciding == i)
+            settle_time(*this, pairs[i], on_the_way[i]);
     result.verdict = std::max(result.verdict, at_change);
     if (setup.detail == Detail::verdict && result.deciding
-        && result.pairs[*result.deciding].verdict == Verdict::clear) {
+        && pairs[*result.deciding].verdict == Verdict::clear) {
         // Of the others only bounds are known: which pair decides is not.
         double least = infinity;
-        for (const PairClearance& pair : result.pairs)
+        for (const PairClearance& pair : pairs)
             least = std::min(least, pair.lower - pair.allowance.distance);
-        if (least < result.pairs[*result.deciding].margin()) result.deciding.reset();
+        if (least < pairs[*result.deciding].margin()) result.deciding.reset();
     }
     if (result.motion != BlockMotion::none) {
         CheckMemory& memory = state.memory;
         memory.bounds.clear();
-        for (const PairClearance& pair : result.pairs)
+        for (const TrackedPair& pair : pairs)
             memory.bounds.push_back({pair.pair, pair.at_end, pair.drift});
         memory.deciding.reset();
         if (result.deciding) {
-            memory.deciding = result.pairs[*result.deciding].pair;
-            memory.margin = result.pairs[*result.deciding].margin();
+            memory.deciding = pairs[*result.deciding].pair;
+            memory.margin = pairs[*result.deciding].margin();
         }
     }
-    for (const PairClearance& pair : result.pairs)
+    for (const PairClearance& pair : pairs)
         if (pair.verdict != Verdict::clear) add(finding_about(pair));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
@@ -198,19 +194,17 @@ void BlockRun::conclude() {
 
 void BlockRun::conclude(const Judgement& judgement) {
     // A rule may have found a pair in collision by looking at what is cut.
-    for (const PairClearance& pair : judgement.pairs)
-        merge(entry(result.pairs, pair.pair, setup), pair);
+    for (const PairClearance& pair : judgement.pairs) merge(entry(pairs, pair.pair, setup), pair);
     const auto is_worse = [](const PairClearance& a, const PairClearance& b) {
         return a.verdict != b.verdict ? a.verdict > b.verdict : a.margin() < b.margin();
     };
-    const auto worst = std::min_element(result.pairs.begin(), result.pairs.end(), is_worse);
-    if (worst != result.pairs.end() && worst->lower < setup.search_limit)
-        result.deciding = static_cast<size_t>(worst - result.pairs.begin());
+    const auto worst = std::min_element(pairs.begin(), pairs.end(), is_worse);
+    if (worst != pairs.end() && worst->lower < setup.search_limit)
+        result.deciding = static_cast<size_t>(worst - pairs.begin());
     result.verdict = judgement.verdict;
-    for (const PairClearance& pair : result.pairs)
-        result.verdict = std::max(result.verdict, pair.verdict);
+    for (const PairClearance& pair : pairs) result.verdict = std::max(result.verdict, pair.verdict);
     tell(judgement.finding);
-    if (pushes_centre) add(finding_about(entry(result.pairs, {PartKind::flutes}, setup)));
+    if (pushes_centre) add(finding_about(entry(pairs, {PartKind::flutes}, setup)));
     result.checked = result.checked && (judgement.checked || pushes_centre);
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);

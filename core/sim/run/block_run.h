@@ -27,6 +27,7 @@ struct BlockRun {
     const BlockEvents& block;
     SimulatorState& state;
     BlockResult result = {};
+    std::vector<TrackedPair> pairs = {};
     std::vector<TimedLeg> legs = {};
     std::vector<WorstMotion> worst_motions = {};
     Verdict at_change = Verdict::clear; // of the new tool where it was changed in

@@ -36,6 +36,7 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
         run.conclude(*block.judgement);
     else
         run.conclude();
+    run.result.pairs.assign(run.pairs.begin(), run.pairs.end());
     state.time += run.result.duration;
     return std::move(run.result);
 }

@@ -1,0 +1,103 @@
+#include "core/sim/leg/flute_cut.h"
+
+#include <cassert>
+
+#include "core/dbm/covered_path.h"
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
+
+namespace core {
+namespace {
+
+/// The next of a series of errors, a quarter apart: so legs that turn share cutters.
+double rounded_up(double error) {
+    double step = 1e-5;
+    while (step < error) step *= 1.25;
+    return step;
+}
+
+/// The box of a fixture that does not move against the stock, in the stock's frame.
+std::optional<Aabb> box_in_stock(const Setup& setup, size_t fixture) {
+    const Fixture& body = setup.fixtures[fixture];
+    if (body.mount.link != setup.stock_mount.link) return std::nullopt;
+    const Transform stock_from = stock_from_fixture(setup, fixture, {});
+    const Aabb own = bounds(body.body);
+    Aabb box;
+    for (int corner = 0; corner < 8; ++corner)
+        box.extend(stock_from
+                   * Vec3(corner & 1 ? own.max.x : own.min.x, corner & 2 ? own.max.y : own.min.y,
+                          corner & 4 ? own.max.z : own.min.z));
+    return box;
+}
+
+} // namespace
+
+Transform stock_from_fixture(const Setup& setup, size_t fixture, const AxisValues& values) {
+    const Mount& mount = setup.fixtures[fixture].mount;
+    if (mount.link == setup.stock_mount.link)
+        return setup.stock_mount.link_from_body.inverse() * mount.link_from_body;
+    return target_from_mover(setup.machine, setup.stock_mount, mount, values);
+}
+
+std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg) {
+    const double error = leg.turns ? rounded_up(leg.error) : leg.error;
+    auto& cutter = context_.memory.cutters[{context_.tool.description.number, error}];
+    if (!cutter)
+        cutter = std::make_shared<const Cutter>(make_cutter(context_.tool.parts[0].profile, error));
+    return cutter;
+}
+
+double FluteCut::along(const Leg& leg, CutModel& stock) {
+    assert(leg.straight);
+    if (context_.tool.parts.empty()) return 0.0;
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    ++context_.statistics.sweeps;
+    return cut(stock, {.cutter = cutter_for(way),
+                       .from = way.places.front(),
+                       .to = way.places.back(),
+                       .orientation = way.orientation,
+                       .block = value_of(context_.block)});
+}
+
+double FluteCut::along_turning(const Leg& leg, CutModel& stock) {
+    if (!leg.straight || context_.tool.parts.empty()) return 0.0;
+    const MovingBody& body = context_.bodies[0];
+    const RelativeLeg flutes = context_.against_stock(body, leg);
+    const bool far = distance(bounds(body, flutes), stock.outer_box) > flutes.error;
+    if (flutes.turns && far) return 0.0;
+    if (!context_.turns_too_far(leg)) return along(leg, stock);
+    const double removed = along_turning(stretch(leg, 0.0, 0.5), stock);
+    return removed + along_turning(stretch(leg, 0.5, 1.0), stock);
+}
+
+void FluteCut::note_cut(const Leg& leg, size_t fixture) {
+    if (!leg.straight || leg.places.size() < 2) return;
+    const auto box = box_in_stock(context_.setup, fixture);
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    if (!box || way.turns || !overlaps(bounds(context_.bodies[0], way), *box)) return;
+    context_.memory.cuts[fixture].push_back({.cutter = cutter_for(way),
+                                             .from = way.places.front(),
+                                             .to = way.places.back(),
+                                             .orientation = way.orientation,
+                                             .block = value_of(context_.block)});
+}
+
+bool FluteCut::is_in_own_cut(const Leg& leg, size_t fixture) const {
+    const auto cuts = context_.memory.cuts.find(fixture);
+    if (cuts == context_.memory.cuts.end() || !leg.straight) return false;
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    if (way.turns || way.places.size() > 2) return false;
+    const auto box = box_in_stock(context_.setup, fixture);
+    const Allowance contact = allowance_of(context_.setup, {PartKind::flutes});
+    // Rounded corners may have left material.
+    if (context_.memory.off_path > contact_depth(contact)) return false;
+    return box
+           && runs_in_own_cut(cuts->second, *box,
+                              {.flutes = context_.tool.parts[0].profile,
+                               .from = way.places.front(),
+                               .to = way.places.back(),
+                               .sideways = 0.5 * contact_depth(contact) - way.error,
+                               .orientation = way.orientation});
+}
+
+} // namespace core

@@ -1,0 +1,59 @@
+#include "core/sim/leg/leg_context.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
+
+namespace core {
+
+Pair pair_of(const MovingBody& body, std::optional<size_t> fixture) {
+    return {body.kind, fixture, body.carried};
+}
+
+const MovingBody& LegContext::body_of(const Pair& pair) const {
+    for (const MovingBody& body : bodies)
+        if (body.kind == pair.part && body.carried == pair.carried) return body;
+    assert(false);
+    return bodies.front();
+}
+
+std::vector<const MovingBody*> LegContext::likely_first(std::optional<size_t> fixture) const {
+    std::vector<const MovingBody*> order;
+    for (const MovingBody& body : bodies) order.push_back(&body);
+    std::stable_partition(order.begin(), order.end(), [&](const MovingBody* body) {
+        return memory.deciding == pair_of(*body, fixture);
+    });
+    return order;
+}
+
+RelativeLeg LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
+    return relative_leg(setup.machine, setup.stock_mount, body.mover, leg);
+}
+
+double LegContext::finest_error(const MovingBody& body) const {
+    const double cut = std::clamp(setup.mesh_size / 50.0, 0.002, 0.01);
+    if (body.kind == PartKind::flutes) return cut;
+    return body.kind == PartKind::shank ? 2.0 * cut : 10.0 * cut;
+}
+
+bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
+    return relative.error <= std::max(finest_error(body), sharp_share * lower);
+}
+
+bool LegContext::is_too_vague(const RelativeLeg& relative) const {
+    return relative.turns && relative.error > sharp_share * setup.search_limit;
+}
+
+bool LegContext::turns_too_far(const Leg& leg) const {
+    if (!setup.machine.has_rotary() || leg.places.size() != 2) return false;
+    for (const MovingBody& body : bodies) {
+        if (body.body) continue;
+        const RelativeLeg relative = against_stock(body, leg);
+        if (relative.turns && relative.error > finest_error(body)) return true;
+    }
+    return false;
+}
+
+} // namespace core

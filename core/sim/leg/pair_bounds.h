@@ -1,0 +1,87 @@
+#pragma once
+
+#include <vector>
+
+#include "core/motion/kinematics.h"
+#include "core/sim/clearance.h"
+#include "core/sim/leg/check_memory.h"
+
+namespace core {
+
+struct Setup;
+
+/// A pair while its block is checked: its clearance so far, and a bound for the next leg. Reports
+/// get the clearance only.
+struct TrackedPair : PairClearance {
+    double at_end = 0.0; // lower bound of the clearance where the last leg ended, mm
+    double drift = 0.0;  // travel that was subtracted from it since the pair was measured, mm
+};
+
+/// Adds the clearance that was found on a leg; its lower bound is also the one at the leg's end.
+void merge(TrackedPair& known, const PairClearance& later);
+
+/// The entry of a pair, added if it is missing. The reference is valid until the next entry is
+/// added.
+TrackedPair& entry(std::vector<TrackedPair>& pairs, const Pair& pair, const Setup& setup);
+
+/// Whether a leg cannot bring a pair nearer than it has been in this block. If so, moves its bound
+/// on to the leg's end.
+bool stays_away(TrackedPair& known, const Leg& leg, const RelativeLeg& relative);
+
+/// Whether bodies that stay this far apart over a leg cannot change what is known of the pair. If
+/// so, keeps the distance as the pair's bound.
+bool is_far(TrackedPair& known, double apart, double search_limit);
+
+/// The clearance on the real path, from that on a leg: bounds widened by the leg's error.
+Separation widened(Separation found, const RelativeLeg& leg);
+
+/// The part, shrunk by the leg's error: where it passes, the part itself certainly passes. Empty
+/// if the leg turns or nothing is left.
+RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg);
+
+/// The greatest distance that any point of a body moves over a leg, seen from any other body, mm;
+/// infinite where rotary axes move or the path is unknown.
+double greatest_travel(const Machine& machine, const Leg& leg);
+
+/// Decides from bounds of earlier legs which pairs need not be measured on this one.
+///
+/// Cutting brings nothing nearer, and a leg brings no pair nearer than it is long.
+class PairBounds {
+public:
+    PairBounds(const Setup& setup, CheckMemory& memory) : setup_(setup), memory_(memory) {}
+
+    /// Starts a leg on which no point moves farther than `travel`, mm.
+    void begin_leg(double travel) { travel_ = travel; }
+    /// Ends it: the bounds of earlier blocks lose its travel.
+    void end_leg();
+    double travel() const { return travel_; }
+
+    /// The entry of a pair; a new one starts with the bound that the last block left.
+    TrackedPair& known_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
+
+    /// Whether the pair stays clear over the leg and another pair of the block has less margin. If
+    /// so, moves its bound on to the leg's end.
+    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const;
+
+    /// Whether a pair with this lower bound is clear and cannot decide the block.
+    bool cannot_decide(const Allowance& allowance, double lower,
+                       const std::vector<TrackedPair>& pairs) const;
+
+    /// Whether the pair can be skipped if this block has about as much margin as the last one.
+    bool can_probably_skip(const TrackedPair& known) const;
+
+    /// Moves the bound of a pair that is not checked on this leg on to the leg's end.
+    void carry_bound(const Pair& pair, std::vector<TrackedPair>& pairs) const;
+
+    /// What rounded corners take off a clearance; 0 for a pair that may touch, mm.
+    double off_path(const Allowance& allowance) const {
+        return allowance.distance > resolution ? memory_.off_path : 0.0;
+    }
+
+private:
+    const Setup& setup_;
+    CheckMemory& memory_;
+    double travel_ = infinity;
+};
+
+} // namespace core

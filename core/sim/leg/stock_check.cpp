@@ -1,0 +1,255 @@
+#include <algorithm>
+
+#include "core/sim/leg/leg_check.h"
+#include "core/sim/setup.h"
+
+namespace core {
+namespace {
+
+double length(const Leg& leg) {
+    double sum = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) {
+        const double by = leg.places.back()[i] - leg.places.front()[i];
+        if (!is_rotary(i)) sum += by * by;
+    }
+    return std::sqrt(sum);
+}
+
+/// Whether the flutes have run into the stock.
+bool has_crashed(const std::vector<TrackedPair>& pairs) {
+    return std::any_of(pairs.begin(), pairs.end(), [](const TrackedPair& pair) {
+        return pair.pair == Pair{PartKind::flutes} && pair.verdict == Verdict::collision;
+    });
+}
+
+} // namespace
+
+double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
+                                 std::vector<TrackedPair>& pairs) {
+    bounds_.carry_bound({PartKind::flutes}, pairs);
+    std::vector<BodyCheck> checks;
+    std::vector<const MovingBody*> later;
+    bool settled = true;
+    for (const MovingBody* body : context_.likely_first({})) {
+        if (body->kind == PartKind::flutes || (only_tool_ && body->body)) continue;
+        TrackedPair& known = bounds_.known_pair(pairs, pair_of(*body));
+        if (bounds_.can_skip(known, pairs)) continue;
+        if (bounds_.can_probably_skip(known)) {
+            later.push_back(body);
+            continue;
+        }
+        if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
+        const StockObservation before = probe_.observe_lower(*body, leg, stock, known.upper);
+        const bool clear =
+            probe_.clearance(*body, leg, start, before, before).verdict == Verdict::clear;
+        settled = settled && clear;
+        checks.push_back({*body, before, clear, known.upper});
+    }
+    if (!settled && length(leg) > context_.setup.mesh_size && depends_on_time(checks, leg, stock)) {
+        bounds_.begin_leg(0.5 * bounds_.travel());
+        double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
+        removed += check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
+        bounds_.begin_leg(2.0 * bounds_.travel());
+        return removed;
+    }
+    // What is cut between the lines has no volume to them, yet a witness may have stood there.
+    const size_t sweeps = stock.log.size();
+    const double removed = flutes_.along(leg, stock);
+    const bool cut = stock.log.size() > sweeps;
+    for (const BodyCheck& check : checks) conclude(check, leg, start, stock, cut, pairs);
+    for (const MovingBody* body : later) check_late(*body, leg, start, stock, pairs);
+    return removed;
+}
+
+void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
+                          const CutModel& stock, bool cut, std::vector<TrackedPair>& pairs) {
+    TrackedPair& known = bounds_.known_pair(pairs, pair_of(check.body));
+    if (check.clear && !check.before.whole
+        && bounds_.cannot_decide(known.allowance, check.before.plain.lower, pairs)) {
+        merge(known, probe_.clearance(check.body, leg, start, check.before, {}));
+        known.drift = bounds_.travel();
+        return;
+    }
+    const bool is_told = check.before.whole && !cut;
+    const StockObservation after = is_told ? check.before : observe_after(check, leg, stock);
+    PairClearance now = probe_.clearance(check.body, leg, start, check.before, after);
+    probe_.settle_time(now, leg, start, stock);
+    merge(known, now);
+    known.drift = bounds_.travel();
+}
+
+void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start,
+                            const CutModel& stock, std::vector<TrackedPair>& pairs) {
+    TrackedPair& known = bounds_.known_pair(pairs, pair_of(body));
+    if (bounds_.can_skip(known, pairs)) return;
+    // The stock of before is gone. It was what is left and what the flutes took on their way.
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    const RelativeLeg flutes = context_.against_stock(context_.bodies[0], leg);
+    const double limit = std::min(context_.setup.search_limit, known.upper);
+    StockObservation seen;
+    seen.plain = widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
+    const double taken = distance(bounds(body, relative), bounds(context_.bodies[0], flutes));
+    const double carried = known.at_end - bounds_.travel();
+    const double fresh = std::min(seen.plain.lower, taken - resolution);
+    const double drift = fresh >= carried ? bounds_.travel() : known.drift + bounds_.travel();
+    seen.plain.lower = std::max(carried, fresh);
+    merge(known, probe_.clearance(body, leg, start, seen, seen));
+    known.drift = drift;
+}
+
+bool StockCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
+                                 const CutModel& stock) {
+    // What is too near both before and after the cut is so in any order.
+    CutModel cut_already = stock;
+    flutes_.along(leg, cut_already);
+    for (const BodyCheck& check : checks) {
+        if (check.clear) continue;
+        const StockObservation after = observe_after(check, leg, cut_already);
+        if (probe_.clearance(check.body, leg, 0.0, after, after).verdict == Verdict::clear)
+            return true;
+    }
+    return false;
+}
+
+StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& leg,
+                                           const CutModel& stock) {
+    if (!check.clear) return probe_.observe(check.body, leg, stock, context_.setup.search_limit);
+    // Clear by its lower bound: what is left of the stock only gives the upper one.
+    StockObservation after = check.before;
+    const double limit = std::min(context_.setup.search_limit, check.nearest);
+    after.plain = Separation{.lower = after.plain.lower};
+    if (after.plain.lower >= limit) return after;
+    const RelativeLeg relative = context_.against_stock(check.body, leg);
+    const StockGoal goal{
+        .limit = limit, .bound = StockBound::upper, .enough = after.plain.lower + resolution};
+    after.plain = widened(probe_.to_stock(check.body, relative, stock, goal), relative);
+    return after;
+}
+
+bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
+                              std::vector<TrackedPair>& pairs) {
+    bool gouged = false;
+    for (const MovingBody* body : context_.likely_first({})) {
+        if (only_tool_ && body->body) continue;
+        TrackedPair& known = bounds_.known_pair(pairs, pair_of(*body));
+        if (bounds_.can_skip(known, pairs)) continue;
+        if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
+        const StockObservation seen = probe_.observe(*body, leg, stock, known.upper);
+        PairClearance now = probe_.clearance(*body, leg, start, seen, seen);
+        if (body->kind != PartKind::flutes) probe_.settle_time(now, leg, start, stock);
+        gouged = gouged || (body->kind == PartKind::flutes && now.verdict == Verdict::collision);
+        merge(known, now);
+        known.drift = bounds_.travel();
+    }
+    return gouged;
+}
+
+double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock,
+                                     std::vector<TrackedPair>& pairs) {
+    const bool gouged = check_bodies(leg, start, stock, pairs);
+    if (gouged) {
+        TrackedPair& flutes = entry(pairs, {PartKind::flutes}, context_.setup);
+        const double share = probe_.earliest(leg, flutes.pair, 0.0, stock);
+        flutes.time = std::min(flutes.time, start + leg.begin + share * (leg.end - leg.begin));
+    }
+    // After the finding the material is gone, so that one crash is one finding.
+    return gouged ? flutes_.along(leg, stock) : 0.0;
+}
+
+double StockCheck::check_whole(const Leg& leg, double start, CutModel& stock,
+                               std::vector<TrackedPair>& pairs) {
+    return context_.use == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
+                                             : check_not_cutting(leg, start, stock, pairs);
+}
+
+bool StockCheck::is_clear_from_afar(const Leg& leg, double start, const CutModel& stock,
+                                    std::vector<TrackedPair>& pairs) {
+    std::vector<PairClearance> seen;
+    for (const MovingBody& body : context_.bodies) {
+        if (body.body) continue;
+        const RelativeLeg relative = context_.against_stock(body, leg);
+        const double apart = distance(bounds(body, relative), stock.outer_box);
+        if (context_.is_too_vague(relative) && apart < context_.setup.search_limit) return false;
+        const bool chips = body.kind == PartKind::flutes && context_.use == FluteUse::cutting;
+        const PairClearance* known = nullptr;
+        for (const TrackedPair& pair : pairs)
+            if (pair.pair == pair_of(body)) known = &pair;
+        const double nearest = known && !chips ? known->upper : infinity;
+        StockObservation look{.travel = relative.travel};
+        const double limit = std::min(context_.setup.search_limit, nearest) + relative.error;
+        look.plain = widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
+        const double lower = look.plain.lower;
+        if (lower <= 0.0) return false;
+        if (chips) continue;
+        const PairClearance now = probe_.clearance(body, leg, start, look, look);
+        if (now.verdict != Verdict::clear) return false;
+        if (lower < std::min(nearest, context_.setup.search_limit)
+            && !context_.is_sharp(body, relative, lower))
+            return false;
+        seen.push_back(now);
+    }
+    for (const PairClearance& now : seen) merge(entry(pairs, now.pair, context_.setup), now);
+    return true;
+}
+
+void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, double start,
+                                    const CutModel& stock, std::vector<TrackedPair>& pairs) {
+    TrackedPair& known = entry(pairs, pair_of(body), context_.setup);
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    if (stays_away(known, leg, relative)) return;
+    const double apart = distance(bounds(body, relative), stock.outer_box);
+    if (is_far(known, apart, context_.setup.search_limit)) return;
+    if (!context_.is_too_vague(relative)) {
+        // Mostly the raw stock's box tells enough of a body that is large and far.
+        const double from_box = probe_.distance_to_box(body, relative, stock.outer_box);
+        if (from_box >= std::max(known.allowance.distance, resolution)) {
+            known.lower = std::min({known.lower, from_box, context_.setup.search_limit});
+            known.at_end = from_box;
+            return;
+        }
+        const StockObservation seen = probe_.observe(body, leg, stock, known.upper);
+        const PairClearance now = probe_.clearance(body, leg, start, seen, seen);
+        const bool far = now.lower >= std::min(known.upper, context_.setup.search_limit);
+        const bool is_sharp = context_.is_sharp(body, relative, now.lower);
+        if (!relative.turns || far || is_sharp || now.verdict == Verdict::collision)
+            return merge(known, now);
+    }
+    check_turning_body(body, stretch(leg, 0.0, 0.5), start, stock, pairs);
+    check_turning_body(body, stretch(leg, 0.5, 1.0), start, stock, pairs);
+}
+
+double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
+                                 std::vector<TrackedPair>& pairs) {
+    if (context_.use == FluteUse::not_cutting && has_crashed(pairs)) {
+        // One crash is enough: what comes after it is not looked at, and so not called clear.
+        for (const MovingBody& body : context_.bodies) {
+            if (body.body) continue;
+            TrackedPair& known = entry(pairs, pair_of(body), context_.setup);
+            known.lower = known.at_end = 0.0;
+            known.verdict = std::max(known.verdict, Verdict::undecided);
+        }
+        return 0.0;
+    }
+    if (!context_.turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
+    if (is_clear_from_afar(leg, start, stock, pairs)) return 0.0;
+    const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
+    return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
+}
+
+double StockCheck::check(const Leg& leg, double start, CutModel& stock,
+                         std::vector<TrackedPair>& pairs) {
+    const bool turns = context_.setup.machine.has_rotary() && leg.places.size() == 2
+                       && turn_of(context_.setup.machine, leg.places[0], leg.places[1]) > 0.0;
+    if (turns) {
+        // Their reach is long: they would divide the leg far beyond what the tool needs.
+        for (const MovingBody& body : context_.bodies)
+            if (body.body) check_turning_body(body, leg, start, stock, pairs);
+        only_tool_ = true;
+        const double removed = check_turning(leg, start, stock, pairs);
+        only_tool_ = false;
+        return removed;
+    }
+    return check_whole(leg, start, stock, pairs);
+}
+
+} // namespace core

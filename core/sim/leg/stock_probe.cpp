@@ -1,0 +1,203 @@
+#include "core/sim/leg/stock_probe.h"
+
+#include <algorithm>
+
+#include "core/dbm/covered_path.h"
+#include "core/motion/path.h"
+#include "core/sim/setup.h"
+
+namespace core {
+namespace {
+
+/// The distance at which a search may stop narrowing its interval: just below the allowance.
+double deciding_distance(const Allowance& allowance) {
+    return allowance.distance > resolution ? allowance.distance - resolution : 0.0;
+}
+
+} // namespace
+
+Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
+                                const CutModel& stock, StockGoal goal, double shrink) {
+    // Most bodies of a machine are far away, and made of many triangles.
+    if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
+        return {.lower = goal.limit};
+    const std::vector<ConvexShape> shapes =
+        !body.profile  ? shapes_of(*body.body, leg)
+        : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
+                       : shapes_of(*body.profile, leg);
+    std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
+    goal.first_line = hint;
+    goal.threshold = std::min(goal.threshold, goal.limit);
+    const StockSeparation found = separation(shapes, stock, goal);
+    if (found.line) hint = found.line;
+    context_.statistics.box_tests += found.box_tests;
+    context_.statistics.shape_tests += found.shape_tests;
+    context_.statistics.refined += found.refined;
+    return found.separation;
+}
+
+StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
+                                     double nearest) {
+    const Allowance allowance = allowance_of(context_.setup, pair_of(body));
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    const double error = relative.error;
+    const double limit =
+        std::min(context_.setup.search_limit, nearest) + (relative.turns ? error : 0.0);
+    StockObservation seen{.travel = relative.travel};
+    const double threshold =
+        deciding_distance(allowance) + bounds_.off_path(allowance) + (relative.turns ? error : 0.0);
+    seen.plain = to_stock(body, relative, stock, {.limit = limit, .threshold = threshold});
+    const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
+    if (may_touch && retraces(body, relative, stock, allowance)) {
+        seen.shrunk.lower = infinity; // no stock where the shrunk part goes
+    } else if (body.profile && (may_touch || seen.plain.upper == 0.0)) {
+        const double just_apart = resolution + error;
+        seen.shrunk =
+            to_stock(body, relative, stock, {.limit = 2.0 * just_apart, .threshold = just_apart},
+                     contact_shrink(allowance, *body.profile));
+        // What meets a part of the body meets the body, though its own search ended before.
+        if (seen.shrunk.upper == 0.0) seen.plain = seen.shrunk;
+    } else if (seen.plain.upper == 0.0) {
+        seen.shrunk = seen.plain;
+    }
+    if (error > 0.0) add_error(seen, body, leg, relative, stock, nearest);
+    return seen;
+}
+
+StockObservation StockProbe::observe_lower(const MovingBody& body, const Leg& leg,
+                                           const CutModel& stock, double nearest) {
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    if (relative.turns) return observe(body, leg, stock, nearest);
+    const Allowance allowance = allowance_of(context_.setup, pair_of(body));
+    const double limit = std::min(context_.setup.search_limit, nearest);
+    const double threshold = deciding_distance(allowance) + bounds_.off_path(allowance);
+    StockObservation seen{.travel = relative.travel, .whole = false};
+    const StockGoal goal{.limit = limit, .bound = StockBound::lower, .threshold = threshold};
+    seen.plain = widened(to_stock(body, relative, stock, goal), relative);
+    if (seen.plain.lower <= allowance.distance + resolution + bounds_.off_path(allowance))
+        return observe(body, leg, stock, nearest);
+    return seen;
+}
+
+bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
+                          const Allowance& allowance) const {
+    // Where a shank has been it need not have been free: it cuts nothing.
+    if (context_.tool.parts.empty() || body.kind != PartKind::flutes) return false;
+    if (leg.turns || leg.places.size() > 2) return false;
+    return runs_in_own_cut(stock, {.flutes = context_.tool.parts[0].profile,
+                                   .from = leg.places.front(),
+                                   .to = leg.places.back(),
+                                   .sideways = 0.5 * contact_depth(allowance) - leg.error,
+                                   .orientation = leg.orientation});
+}
+
+void StockProbe::look_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                               const CutModel& stock, double nearest) {
+    // Where the body really is at one moment is a sure witness.
+    const StockObservation here = observe(body, still_half_way(leg), stock, nearest);
+    seen.shrunk.upper = here.shrunk.upper;
+    if (here.plain.upper >= seen.plain.upper) return;
+    const double lower = seen.plain.lower;
+    seen.plain = here.plain;
+    seen.plain.lower = std::min(lower, here.plain.upper);
+    seen.plain.time_a = 0.5;
+}
+
+void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                           const RelativeLeg& relative, const CutModel& stock, double nearest) {
+    const bool near = seen.plain.lower <= relative.error, overlaps = seen.plain.upper == 0.0;
+    const bool overlaps_shrunk = seen.shrunk.upper == 0.0;
+    seen.plain = widened(seen.plain, relative);
+    seen.shrunk = widened(seen.shrunk, relative);
+    const bool has_way = leg.places.size() > 1;
+    if ((relative.turns || !body.profile) && near && has_way)
+        look_half_way(seen, body, leg, stock, nearest);
+    if (!overlaps || !body.profile) return;
+    const RevolvedProfile sure = surely_passing(*body.profile, relative);
+    if (sure.empty()) return;
+    MovingBody inner = body;
+    inner.profile = &sure;
+    Separation found =
+        to_stock(inner, relative, stock, {.limit = resolution, .bound = StockBound::upper});
+    if (found.upper > 0.0) return;
+    found.lower = 0.0;
+    seen.plain = found;
+    if (overlaps_shrunk) seen.shrunk.upper = 0.0;
+}
+
+PairClearance StockProbe::clearance(const MovingBody& body, const Leg& leg, double start,
+                                    const StockObservation& before,
+                                    const StockObservation& after) const {
+    PairClearance now{.pair = pair_of(body)};
+    now.allowance = allowance_of(context_.setup, now.pair);
+    now.lower = std::min(before.plain.lower, context_.setup.search_limit);
+    if (after.plain.found()) {
+        now.upper = after.plain.upper;
+        now.on_tool = after.plain.point_a;
+        now.on_body = after.plain.point_b;
+        now.time = start + leg.begin + after.plain.time_a * (leg.end - leg.begin);
+    }
+    now.verdict = judge_distance(now.allowance, now.lower, now.upper);
+    const bool may_touch = now.allowance.distance <= resolution && now.lower <= 0.0;
+    if (may_touch || now.upper == 0.0)
+        now.verdict = judge_contact(now.allowance, before.shrunk.lower, after.shrunk.upper);
+    return now;
+}
+
+double StockProbe::distance_to_box(const MovingBody& body, const RelativeLeg& leg,
+                                   const Aabb& box) {
+    const ConvexShape shape = convex(box);
+    double lower = context_.setup.search_limit + leg.error;
+    for (const ConvexShape& part : shapes_of(*body.body, leg)) {
+        ++context_.statistics.shape_tests;
+        lower = std::min(lower, separation(part, shape, {.limit = lower}).lower);
+    }
+    return lower - leg.error;
+}
+
+double StockProbe::room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
+    if (context_.tool.parts.empty() || !leg.straight) return 0.0;
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    if (way.error >= limit) return 0.0;
+    const StockGoal goal{.limit = limit + way.error, .bound = StockBound::lower};
+    return std::max(0.0, to_stock(context_.bodies[0], way, stock, goal).lower - way.error);
+}
+
+double StockProbe::earliest(const Leg& leg, const Pair& pair, double distance,
+                            const CutModel& stock, std::optional<double> seen) {
+    if (!leg.straight || leg.places.size() < 2) return 0.0;
+    const MovingBody& body = context_.body_of(pair);
+    const Mount& target =
+        pair.fixture ? context_.setup.fixtures[*pair.fixture].mount : context_.setup.stock_mount;
+    const auto reached = [&](double share) {
+        const RelativeLeg moved =
+            relative_leg(context_.setup.machine, target, body.mover, stretch(leg, 0.0, share));
+        if (moved.error == infinity) return true;
+        const double limit = distance + moved.error + resolution;
+        const Separation found =
+            pair.fixture ? distance_over(moved, body, context_.setup.fixtures[*pair.fixture].body,
+                                         limit + resolution, context_.statistics.shape_tests)
+                         : to_stock(body, moved, stock, {.limit = limit + resolution});
+        return found.upper <= limit;
+    };
+    // Mostly it is where it was seen, and not before.
+    constexpr double step = 1e-4;
+    double before = 0.0, after = 1.0;
+    if (seen && (*seen <= step || !reached(*seen - step))) return *seen;
+    if (reached(0.0)) return 0.0;
+    for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (before + after);
+        (reached(middle) ? after : before) = middle;
+    }
+    return after;
+}
+
+void StockProbe::settle_time(PairClearance& now, const Leg& leg, double start,
+                             const CutModel& stock) {
+    if (now.verdict == Verdict::clear || !now.found()) return;
+    const double begin = start + leg.begin, takes = leg.end - leg.begin;
+    const double seen = takes > 0.0 ? (now.time - begin) / takes : 0.0;
+    now.time = begin + earliest(leg, now.pair, now.upper, stock, seen) * takes;
+}
+
+} // namespace core
