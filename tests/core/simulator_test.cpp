@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "core/sim/run/simulator.h"
@@ -283,6 +285,30 @@ TEST(Simulator, TellsOnceThatItDoesNotKnowWhereTheMachineStarts) {
     EXPECT_EQ(rules(unknown), Rules({"first-move"}));
     EXPECT_EQ(unknown.findings[0].severity, Severity::warning);
     EXPECT_EQ(rules(run.give({first})), Rules());
+}
+
+TEST(Simulator, ReportsAPairOnceForABlockOfSeveralMotionsFromAnUnknownPlace) {
+    core::Setup setup = plain_setup();
+    for (MachineAxis& axis : setup.machine.axes) {
+        axis.min = -200.0;
+        axis.max = 300.0;
+    }
+    Shift high(setup);
+    // As in G28 Z0 with X and Y unknown: first up, then to the reference point.
+    const Motion up{.kind = MotionKind::rapid, .from = z_only(110.0), .to = z_only(120.0)};
+    const Motion home{.kind = MotionKind::rapid, .from = z_only(120.0), .to = z_only(150.0)};
+    const BlockResult both = high.give({up, home});
+    EXPECT_TRUE(both.checked);
+    EXPECT_EQ(both.verdict, Verdict::clear);
+    ASSERT_FALSE(both.pairs.empty());
+    for (const PairClearance& pair : both.pairs)
+        EXPECT_EQ(
+            std::count_if(both.pairs.begin(), both.pairs.end(),
+                          [&](const PairClearance& other) { return other.pair == pair.pair; }),
+            1);
+    const PairClearance* flutes = pair_of(both, PartKind::flutes);
+    ASSERT_TRUE(flutes);
+    EXPECT_NEAR(flutes->lower, 110.0 - 95.0, 1e-3); // of the first motion
 }
 
 TEST(Simulator, ChecksEveryWayFromAnUnknownPlaceWithinTheLimits) {

@@ -62,7 +62,13 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
             leg_check(use(motion)).run(leg, result.duration, state.stock, here);
         const TrackedPair* worst = deciding_pair(here);
         if (!worst || worst->verdict == Verdict::clear) {
-            for (const TrackedPair& pair : here) pairs.push_back(pair);
+            // A block with several motions, such as G28, may have come here before.
+            for (const TrackedPair& pair : here) {
+                TrackedPair& known = entry(pairs, pair.pair, setup);
+                merge(known, pair);
+                known.at_end = pair.at_end;
+                known.drift = pair.drift;
+            }
             return;
         }
     }
