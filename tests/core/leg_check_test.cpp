@@ -1,0 +1,182 @@
+#include <gtest/gtest.h>
+
+#include "core/sim/leg/leg_check.h"
+#include "core/sim/setup.h"
+
+namespace core {
+namespace {
+
+/// A block of 100 x 100 x 30 with its top at Z 0 and a 10 mm end mill with a holder of 40 mm from
+/// 45 mm above the tip. Machine and stock frame are the same.
+Setup block_setup() {
+    Setup setup;
+    setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
+    ToolDescription tool;
+    tool.number = ToolNumber{1};
+    tool.diameter = 10;
+    tool.flute_length = 20;
+    tool.shank = {{10, 10, 25}};
+    tool.holder = {{40, 40, 50}};
+    setup.tools.emplace(tool.number, *assemble(tool));
+    return setup;
+}
+
+/// What the checks of legs refer to.
+struct Bench {
+    Setup setup;
+    std::vector<bool> there = std::vector<bool>(setup.fixtures.size(), true);
+    CheckMemory memory = {};
+    Statistics statistics = {};
+    CutModel stock = *make_cut_model(setup.stock, setup.mesh_size);
+    LegContext context{setup,
+                       setup.tools.at(ToolNumber{1}),
+                       FluteUse::cutting,
+                       BlockIndex{7},
+                       there,
+                       memory,
+                       statistics,
+                       moving_bodies(setup, setup.tools.at(ToolNumber{1}))};
+    PairBounds bounds{setup, memory};
+    StockProbe probe{context, bounds};
+    FluteCut flutes{context};
+
+    /// A leg of the tip that takes a second.
+    Leg leg(const Vec3& from, const Vec3& to) const {
+        const double length = context.tool.length;
+        const AxisValues a{from.x, from.y, from.z + length}, b{to.x, to.y, to.z + length};
+        return {.places = {a, b}, .end = 1.0};
+    }
+};
+
+constexpr Pair flutes_and_stock{PartKind::flutes};
+constexpr Pair holder_and_stock{PartKind::holder};
+
+TEST(PairBounds, CarriesABoundOverLegs) {
+    core::Setup setup = block_setup();
+    setup.detail = Detail::verdict;
+    CheckMemory memory;
+    memory.bounds = {{holder_and_stock, 30.0, 0.5}};
+    PairBounds bounds(setup, memory);
+    std::vector<TrackedPair> pairs;
+    bounds.begin_leg(4.0);
+    TrackedPair& holder = bounds.known_pair(pairs, holder_and_stock);
+    EXPECT_EQ(holder.at_end, 30.0);
+    EXPECT_TRUE(bounds.can_skip(holder, pairs));
+    EXPECT_EQ(holder.at_end, 26.0);
+    EXPECT_EQ(holder.lower, 26.0);
+    EXPECT_EQ(holder.drift, 4.5);
+    bounds.end_leg();
+    EXPECT_EQ(memory.bounds[0].apart, 26.0);
+    // 26 mm less 25.5 mm is less than the allowance of 1 mm.
+    bounds.begin_leg(25.5);
+    EXPECT_FALSE(bounds.can_skip(holder, pairs));
+    EXPECT_EQ(holder.at_end, 26.0);
+    EXPECT_EQ(holder.lower, 26.0);
+}
+
+TEST(PairBounds, SkipsOnlyPairsThatCannotDecide) {
+    core::Setup setup = block_setup();
+    CheckMemory memory;
+    const Allowance allowance{1.0, 0.0};
+    TrackedPair flutes;
+    flutes.upper = 5.0; // with an allowance of 0: a margin of 5
+    const std::vector<TrackedPair> pairs = {flutes};
+    const PairBounds bounds(setup, memory);
+    setup.detail = Detail::every_pair;
+    EXPECT_FALSE(bounds.cannot_decide(allowance, 40.0, pairs));
+    setup.detail = Detail::deciding_pair;
+    EXPECT_TRUE(bounds.cannot_decide(allowance, 6.1, pairs));
+    EXPECT_FALSE(bounds.cannot_decide(allowance, 5.9, pairs));
+    setup.detail = Detail::verdict;
+    EXPECT_TRUE(bounds.cannot_decide(allowance, 1.1, pairs));
+    EXPECT_FALSE(bounds.cannot_decide(allowance, 1.0, pairs));
+    memory.off_path = 0.2; // of rounded corners
+    EXPECT_FALSE(bounds.cannot_decide(allowance, 1.1, pairs));
+}
+
+TEST(PairBounds, AMeasurementReplacesTheBound) {
+    TrackedPair known;
+    known.lower = known.upper = 3.0;
+    known.at_end = 12.0;
+    known.drift = 2.0;
+    PairClearance later;
+    later.lower = 8.0;
+    later.upper = 8.5;
+    merge(known, later);
+    EXPECT_EQ(known.lower, 3.0); // of the block
+    EXPECT_EQ(known.upper, 3.0);
+    EXPECT_EQ(known.at_end, 8.0);
+    EXPECT_EQ(known.drift, 0.0);
+}
+
+TEST(StockProbe, BoundsTheDistanceToTheStock) {
+    Bench bench{block_setup()};
+    const Leg over = bench.leg({20, 20, 10}, {80, 20, 10});
+    const MovingBody& flutes = bench.context.body_of(flutes_and_stock);
+    const StockObservation seen = bench.probe.observe(flutes, over, bench.stock, infinity);
+    const PairClearance pair = bench.probe.clearance(flutes, over, 0.0, seen, seen);
+    EXPECT_EQ(pair.verdict, Verdict::clear);
+    EXPECT_NEAR(pair.lower, 10.0, 1e-6);
+    EXPECT_NEAR(pair.upper, 10.0, 1e-6);
+    EXPECT_NEAR(bench.probe.room_of_flutes(over, bench.stock, 50.0), 10.0, 1e-6);
+    EXPECT_NEAR(bench.probe.room_of_flutes(over, bench.stock, 3.0), 3.0, 1e-6);
+}
+
+TEST(StockProbe, FindsTheFirstMomentOfAnOverlap) {
+    Bench bench{block_setup()};
+    const Leg through = bench.leg({-50, 50, -10}, {50, 50, -10});
+    // The flutes, 10 mm wide, reach the face at X 0 when the tip is at X -5.
+    EXPECT_NEAR(bench.probe.earliest(through, flutes_and_stock, 0.0, bench.stock), 0.45, 1e-4);
+    EXPECT_NEAR(bench.probe.earliest(through, flutes_and_stock, 10.0, bench.stock), 0.35, 1e-4);
+}
+
+TEST(FluteCut, RemovesWhatTheFlutesSweep) {
+    Bench bench{block_setup()};
+    const Leg slot = bench.leg({-20, 50, -4}, {120, 50, -4});
+    EXPECT_NEAR(bench.flutes.along(slot, bench.stock), 100.0 * 10.0 * 4.0, 40.0);
+    EXPECT_EQ(bench.flutes.along(slot, bench.stock), 0.0);
+    EXPECT_EQ(bench.statistics.sweeps, 2u);
+    EXPECT_EQ(bench.memory.cutters.size(), 1u); // made once
+    EXPECT_EQ(bench.stock.log.block(0), 7u);
+}
+
+TEST(FluteCut, KnowsItsOwnCutInAnExpendableFixture) {
+    core::Setup setup = block_setup();
+    setup.fixtures.push_back(
+        {"tab", posed(convex(ProfileElement{-30, 5, 12, 5, 0}), translation({150, 50, 0})), true});
+    Bench bench{setup};
+    const Leg cut = bench.leg({130, 50, 2}, {150, 50, 2});
+    const Leg back = bench.leg({150, 50, 2}, {130, 50, 2});
+    const Leg beside = bench.leg({150, 50, 2}, {150, 60, 2});
+    EXPECT_FALSE(bench.flutes.is_in_own_cut(back, 0));
+    bench.flutes.note_cut(cut, 0);
+    EXPECT_TRUE(bench.flutes.is_in_own_cut(back, 0));
+    EXPECT_FALSE(bench.flutes.is_in_own_cut(beside, 0));
+    bench.memory.off_path = 0.1; // rounded corners may have left material
+    EXPECT_FALSE(bench.flutes.is_in_own_cut(back, 0));
+}
+
+TEST(FixtureCheck, MeasuresFixturesThatAreThere) {
+    core::Setup setup = block_setup();
+    for (const double x : {150.0, 200.0})
+        setup.fixtures.push_back(
+            {"post", posed(convex(ProfileElement{-30, 5, 12, 5, 0}), translation({x, 50, 0})),
+             false});
+    Bench bench{setup};
+    bench.there[1] = false;
+    FixtureCheck check(bench.context, bench.bounds, bench.flutes);
+    std::vector<TrackedPair> pairs;
+    check.check(bench.leg({130, 20, 2}, {130, 80, 2}), 3.0, pairs);
+    check.resolve_doubts(pairs);
+    for (const TrackedPair& pair : pairs) {
+        EXPECT_EQ(pair.pair.fixture, 0u);
+        EXPECT_EQ(pair.verdict, Verdict::clear);
+    }
+    const TrackedPair& flutes = entry(pairs, {PartKind::flutes, 0}, setup);
+    EXPECT_NEAR(flutes.upper, 20.0 - 5.0 - 5.0, 1e-6);
+    EXPECT_NEAR(flutes.time, 3.5, 1e-3);
+    EXPECT_EQ(flutes.at_end, flutes.lower);
+}
+
+} // namespace
+} // namespace core
