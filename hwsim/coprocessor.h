@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <functional>
+
 #include "hwsim/memory_unit.h"
 #include "hwsim/registers.h"
 #include "hwsim/search_element.h"
@@ -152,5 +155,35 @@ void retire_with(CoprocessorState& state, const Answer& answer);
 inline bool interrupt(const CoprocessorState& state) {
     return (state.host.irq_pending & state.host.irq_enable) != 0;
 }
+
+struct DevicePort;
+
+/// A device with every cycle emulated. Each register access and each wait takes some cycles.
+struct EmulatedDevice {
+    DeviceConfig config;
+    CoprocessorState state;
+    uint32_t bus_cycles = 4;
+
+    bool operator==(const EmulatedDevice&) const = default;
+};
+
+/// Errors: those of checked().
+core::Result<EmulatedDevice> emulated_device(const DeviceConfig& config);
+
+/// The functional model with the same registers: entries are answered at once.
+struct FunctionalDevice {
+    DeviceConfig config;
+    CoprocessorState state; // without elements
+
+    bool operator==(const FunctionalDevice&) const = default;
+};
+
+/// Errors: those of checked().
+core::Result<FunctionalDevice> functional_device(const DeviceConfig& config);
+
+/// The devices must outlive the ports and must not move. `after_cycle` is called after each cycle.
+DevicePort port_of(EmulatedDevice& device,
+                   std::function<void(const CoprocessorState&)> after_cycle = {});
+DevicePort port_of(FunctionalDevice& device);
 
 } // namespace hwsim

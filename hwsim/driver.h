@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/geom/profile.h"
-#include "hwsim/coprocessor.h"
+#include "hwsim/registers.h"
 #include "hwsim/stock_model.h"
 
 namespace hwsim {
@@ -16,34 +16,6 @@ struct DevicePort {
     std::function<bool(uint32_t line, const Line&)> store;       // by DMA; false: no room yet
     std::function<void()> wait;                                  // called to let a little time pass
 };
-
-/// A device with every cycle emulated. Each register access and each wait takes some cycles.
-struct EmulatedDevice {
-    DeviceConfig config;
-    CoprocessorState state;
-    uint32_t bus_cycles = 4;
-
-    bool operator==(const EmulatedDevice&) const = default;
-};
-
-/// Errors: those of checked().
-core::Result<EmulatedDevice> emulated_device(const DeviceConfig& config);
-
-/// The functional model with the same registers: entries are answered at once.
-struct FunctionalDevice {
-    DeviceConfig config;
-    CoprocessorState state; // without elements
-
-    bool operator==(const FunctionalDevice&) const = default;
-};
-
-/// Errors: those of checked().
-core::Result<FunctionalDevice> functional_device(const DeviceConfig& config);
-
-/// The devices must outlive the ports and must not move. `after_cycle` is called after each cycle.
-DevicePort port_of(EmulatedDevice& device,
-                   std::function<void(const CoprocessorState&)> after_cycle = {});
-DevicePort port_of(FunctionalDevice& device);
 
 /// A slot of the device, by number.
 enum class SlotNumber : uint8_t {};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hwsim/registers.h"
+
 namespace hwsim {
 namespace {
 

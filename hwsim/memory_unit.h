@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "hwsim/registers.h"
+#include "hwsim/memory_line.h"
 
 namespace hwsim {
+
+struct DeviceConfig;
 
 /// A FIFO of fixed depth, as in the circuit: a memory, a place to read and a level.
 template <typename T>

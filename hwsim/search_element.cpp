@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "hwsim/memory_line.h"
+#include "hwsim/registers.h"
 #include "hwsim/search.h"
 
 namespace hwsim {

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "hwsim/coprocessor.h"
+
 namespace hwsim {
 namespace {
 

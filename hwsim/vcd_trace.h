@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "hwsim/coprocessor.h"
-
 namespace hwsim {
+
+struct CoprocessorState;
+struct DeviceConfig;
 
 /// The signals of a device over time, as a value change dump (IEEE 1364) for GTKWave.
 ///

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/coproc/device_check.h"
+#include "hwsim/coprocessor.h"
 #include "hwsim/driver.h"
 
 namespace app {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "app/coproc/study/coprocessor_report.h"
+#include "hwsim/coprocessor.h"
 #include "hwsim/vcd_trace.h"
 #include "tests/support/scoped_folder.h"
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "hwsim/coprocessor.h"
 #include "tests/bench/volume_table.h"
 
 namespace {

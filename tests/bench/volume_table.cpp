@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/dbm/solid.h"
+#include "hwsim/coprocessor.h"
 #include "hwsim/tool_model.h"
 #include "tests/bench/box_rules.h"
 #include "tests/bench/sphere_rules.h"

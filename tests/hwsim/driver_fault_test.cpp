@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "hwsim/coprocessor.h"
 #include "hwsim/driver.h"
 #include "tests/hwsim/random_models.h"
 #include "tests/hwsim/search_oracle.h"

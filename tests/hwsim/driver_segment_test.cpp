@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "hwsim/coprocessor.h"
 #include "hwsim/driver.h"
 
 namespace hwsim {

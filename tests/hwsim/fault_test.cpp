@@ -1,3 +1,4 @@
+#include "hwsim/coprocessor.h"
 #include "tests/hwsim/faulty_device.h"
 
 namespace hwsim {

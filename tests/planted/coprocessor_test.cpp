@@ -8,6 +8,7 @@
 #include "app/check/check_job.h"
 #include "app/coproc/study/coprocessor_run.h"
 #include "gcode/language/dialect.h"
+#include "hwsim/coprocessor.h"
 #include "tests/support/device_judgement.h"
 
 namespace app {

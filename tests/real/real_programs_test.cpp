@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_run.h"
+#include "hwsim/coprocessor.h"
 #include "tests/support/device_judgement.h"
 
 namespace real_test {
