@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/dbm/cutter.h"
+#include "core/dbm/solid.h"
 #include "core/distance/outer_model.h"
 #include "hwsim/post_cover.h"
 

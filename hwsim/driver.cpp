@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/dbm/cut_model.h"
 #include "hwsim/coprocessor.h"
 #include "hwsim/search.h"
 #include "hwsim/tool_model.h"

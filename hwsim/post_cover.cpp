@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "core/dbm/cut_model.h"
+#include "core/distance/outer_model.h"
+
 namespace hwsim {
 namespace {
 

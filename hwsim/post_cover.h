@@ -2,9 +2,13 @@
 
 #include <vector>
 
-#include "core/dbm/cut_model.h"
-#include "core/distance/outer_model.h"
 #include "hwsim/memory_line.h"
+
+namespace core {
+class ScanLines;
+struct CutModel;
+struct OuterModel;
+} // namespace core
 
 namespace hwsim {
 

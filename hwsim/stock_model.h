@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/dbm/scan_lines.h"
 #include "hwsim/memory_line.h"
 #include "hwsim/post_cover.h"
 

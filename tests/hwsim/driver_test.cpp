@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/dbm/cut_model.h"
 #include "hwsim/coprocessor.h"
 #include "hwsim/driver.h"
 #include "tests/hwsim/judged_queries.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/dbm/cut_model.h"
 #include "core/distance/stock_distance.h"
 #include "hwsim/search.h"
 #include "hwsim/stock_model.h"

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "core/dbm/cut_model.h"
+#include "core/distance/outer_model.h"
 #include "hwsim/post_cover.h"
 #include "tests/support/stock_oracle.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/dbm/cut_model.h"
 #include "hwsim/search.h"
 #include "hwsim/stock_model.h"
 #include "tests/hwsim/random_models.h"
