@@ -20,7 +20,7 @@
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
 #include "app/view/model/navigation.h"
-#include "app/view/ui/offscreen_viewer.h"
+#include "app/view/ui/window.h"
 #include "core/sim/verdict.h"
 #include "render/image.h"
 

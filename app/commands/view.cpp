@@ -39,7 +39,7 @@ ExitCode view(const ViewOptions& options) {
     auto check = job_of(arguments);
     if (!check) return failed(check.error());
     viewer::WindowJob job;
-    if (!arguments.program.empty()) job.check = *std::move(check);
+    if (!arguments.program.empty()) job.check = std::make_shared<const CheckJob>(*std::move(check));
     if (const auto folder = user_folder("XDG_CONFIG_HOME", ".config"); !folder.empty()) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";

@@ -5,13 +5,45 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "app/check/block_facts.h"
 #include "app/debug/inspected_value.h"
+#include "core/base/ids.h"
+#include "core/sim/verdict.h"
+
+namespace core {
+struct Finding;
+} // namespace core
 
 namespace app {
 
 struct CheckRun;
+
+/// What conditions ask of a block, wherever it is known from: a record, or a row of a list.
+struct BlockFacts {
+    size_t block = 0;
+    uint32_t line = 0;
+    size_t depth = 0;            // of calls
+    std::string_view text, file; // what they look at must stay
+    core::BlockMotion motion = core::BlockMotion::none;
+    std::optional<core::ToolNumber> tool;
+    std::optional<core::Verdict> verdict; // empty: nobody has looked yet
+    // mm; infinite beyond the search limit, empty where nobody knows
+    std::optional<double> clearance, upper, allowance, margin;
+    double removed = 0.0, duration = 0.0, time = 0.0;
+    std::vector<std::string> bodies;            // of its pairs; only where they are wanted
+    std::vector<const core::Finding*> findings; // about it; only where they are wanted
+};
+
+/// What of the facts takes time to gather, and is left out if nobody asks for it.
+struct WantedFacts {
+    bool bodies = false;
+    bool findings = false;
+};
+
+/// Cost: reads all findings of the record if they are wanted. While a record grows, its findings
+///       are in no order.
+BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wanted);
 
 /// A question about a block, as breakpoints, filters and `until` ask it: `clearance < 1 and rapid`.
 ///

@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "app/check/check_job.h"
-#include "app/check/prepared_check.h"
+#include "app/check/program_runner.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/recorded_run.h"
 #include "gcode/exec/restart.h"
@@ -299,7 +298,7 @@ Stop SessionWalk::backwards(const Goal& goal) {
     while (behind > 0) {
         const size_t last = behind - 1;
         // The control can only be followed forwards, so it is followed from the keyframe before.
-        const size_t first = with_control ? session_.run_->keyframes().before(last).blocks : last;
+        const size_t first = with_control ? session_.run_->keyframe_before(last) : last;
         if (with_control) {
             if (const auto found = last_stop(first, last, goal))
                 return stop_at(found->first, found->second);
@@ -325,7 +324,39 @@ DebugSession::open(const CheckJob& job, PreparedCheck check, size_t memory_budge
 }
 
 DebugSession::DebugSession(std::unique_ptr<RecordedRun> run)
-    : run_(std::move(run)), place_(*run_->place_at(0)) {}
+    : run_(std::move(run)), state_(std::make_unique<RunState>(*run_->place_at(0))) {}
+
+DebugSession::~DebugSession() = default;
+
+const CheckRun& DebugSession::record() const { return run_->record(); }
+
+bool DebugSession::is_recorded() const { return run_->is_complete(); }
+
+double DebugSession::recorded_share() const { return run_->share(); }
+
+const gcode::Program& DebugSession::program() const { return *run_->check().program; }
+
+const SetupFile& DebugSession::setup_file() const { return run_->check().file; }
+
+const gcode::Environment& DebugSession::environment() const { return setup_file().environment; }
+
+const core::Setup& DebugSession::setup_at(size_t block) const { return run_->setup_at(block); }
+
+size_t DebugSession::keyframe_count() const { return run_->keyframe_count(); }
+
+size_t DebugSession::keyframe_memory() const { return run_->keyframe_memory(); }
+
+void DebugSession::visit_ahead(const BlockVisit& visit) { run_->visit_ahead(at_, *state_, visit); }
+
+const gcode::InterpreterState& DebugSession::control() const { return state_->control; }
+
+std::optional<core::ToolNumber> DebugSession::tool() const { return state_->machine.tool; }
+
+const std::vector<bool>& DebugSession::fixtures_there() const {
+    return state_->machine.fixtures_there;
+}
+
+const std::vector<MadeChange>& DebugSession::changes() const { return run_->changes(); }
 
 bool DebugSession::record_for(double seconds) {
     using Clock = std::chrono::steady_clock;
@@ -355,9 +386,9 @@ core::Result<void> DebugSession::go_to(size_t place) {
     run_->look_at(place); // the way there leaves keyframes near it
     // What was recorded just now need not be run again.
     if (place > at_ && (was_known || place == at_ + 1)) {
-        run_->take_to(place_, at_, place);
+        run_->take_to(*state_, at_, place);
     } else {
-        FEELER_TRY(place_, run_->place_at(place));
+        FEELER_TRY(*state_, run_->place_at(place));
     }
     at_ = place;
     return {};
@@ -448,7 +479,7 @@ int DebugSession::add(Breakpoint breakpoint) {
 }
 
 core::Result<int> DebugSession::watch(std::string expression) {
-    if (const auto known = value_of(expression, place_.control, environment()); !known)
+    if (const auto known = value_of(expression, state_->control, environment()); !known)
         return tl::unexpected(known.error());
     watches_.push_back({++last_id_, std::move(expression)});
     return last_id_;
@@ -490,13 +521,13 @@ core::Result<size_t> DebugSession::find_line(const std::string& line) {
 
 core::Result<void> DebugSession::change(const WhatIf& change) {
     if (const auto done = run_->change(at_, change); !done) return done;
-    FEELER_TRY(place_, run_->place_at(at_));
+    FEELER_TRY(*state_, run_->place_at(at_));
     return {};
 }
 
 core::Result<void> DebugSession::take_back() {
     FEELER_TRY(const size_t place, run_->take_back());
-    FEELER_TRY(place_, run_->place_at(place));
+    FEELER_TRY(*state_, run_->place_at(place));
     at_ = place;
     return {};
 }

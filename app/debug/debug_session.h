@@ -1,13 +1,27 @@
 #pragma once
 
-#include "app/check/check_job.h"
-#include "app/check/prepared_check.h"
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "app/debug/condition.h"
-#include "app/debug/recorded_run.h"
-#include "app/setup/setup_file.h"
-#include "gcode/text/source.h"
+#include "app/debug/what_if.h"
+#include "core/motion/event.h"
+
+namespace gcode {
+struct BlockResult;
+struct Program;
+} // namespace gcode
 
 namespace app {
+
+struct CheckJob;
+struct PreparedCheck;
+class RecordedRun;
+struct RunState;
+struct SetupFile;
 
 /// Why a walk through a program ended.
 enum class StopReason : uint8_t {
@@ -51,12 +65,14 @@ public:
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, PreparedCheck check, size_t memory_budget = default_memory_budget);
 
+    ~DebugSession();
+
     // --- the record ---
 
     /// What is known so far: blocks in order, findings as they were told. Complete when
     /// is_recorded: then it is what run_check gives.
-    const CheckRun& record() const { return run_->record(); }
-    bool is_recorded() const { return run_->is_complete(); }
+    const CheckRun& record() const;
+    bool is_recorded() const;
     /// Carries the record on for about so many seconds; whether there is more to come.
     bool record_for(double seconds);
     /// Carries the record on until block `block` is known; whether there is one that can be run.
@@ -66,24 +82,31 @@ public:
     /// Errors: it was interrupted.
     core::Result<bool> reaches(size_t block);
     /// How far the record is, 0..1, by lines.
-    double recorded_share() const { return run_->share(); }
+    double recorded_share() const;
 
-    const gcode::Program& program() const { return *run_->check().program; }
-    const gcode::Environment& environment() const { return setup_file().environment; }
+    const gcode::Program& program() const;
+    const gcode::Environment& environment() const;
     /// The set-up that a block is run under; what-ifs change it on the way.
-    const core::Setup& setup_at(size_t block) const { return run_->setup_at(block); }
+    const core::Setup& setup_at(size_t block) const;
     /// All but its `setup`, which is where setup_at has it.
-    const SetupFile& setup_file() const { return run_->check().file; }
+    const SetupFile& setup_file() const;
 
     // --- the place ---
 
     /// Blocks that have been run.
     size_t at() const { return at_; }
-    const RunState& place() const { return place_; }
-    const Keyframes& keyframes() const { return run_->keyframes(); }
+    const RunState& state() const { return *state_; }
+    const gcode::InterpreterState& control() const;
+    /// The tool in the spindle; empty: none, or not known.
+    std::optional<core::ToolNumber> tool() const;
+    /// For each fixture of the set-up, whether it is mounted now.
+    const std::vector<bool>& fixtures_there() const;
+    size_t keyframe_count() const;
+    size_t keyframe_memory() const; // bytes
 
     /// Shows the blocks that come next and what they are about to do, as far as `visit` wants.
-    void visit_ahead(const BlockVisit& visit) { run_->visit_ahead(at_, place_, visit); }
+    void visit_ahead(
+        const std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>& visit);
 
     /// Goes to a place, recording as far as needed.
     ///
@@ -91,8 +114,6 @@ public:
     /// Cost:   some 10 ms near where one has been lately, under a second anywhere the record has
     ///         been.
     core::Result<void> go_to(size_t place);
-    /// A copy of a place, without going there.
-    core::Result<RunState> place_at(size_t place) { return run_->place_at(place); }
 
     // --- walking: each says why it ended ---
 
@@ -153,7 +174,7 @@ public:
     ///
     /// Errors: nothing has been changed.
     core::Result<void> take_back();
-    const std::vector<MadeChange>& changes() const { return run_->changes(); }
+    const std::vector<MadeChange>& changes() const;
 
 private:
     friend class SessionWalk;
@@ -161,7 +182,7 @@ private:
     explicit DebugSession(std::unique_ptr<RecordedRun> run);
 
     std::unique_ptr<RecordedRun> run_;
-    RunState place_;
+    std::unique_ptr<RunState> state_;
     size_t at_ = 0;
     int last_id_ = 0;
     std::vector<Breakpoint> breakpoints_ = {};

@@ -3,11 +3,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
-#include "gcode/exec/interpreter.h"
-#include "gcode/language/environment.h"
+
+namespace gcode {
+struct Dialect;
+struct Environment;
+struct InterpreterState;
+} // namespace gcode
 
 namespace app {
 

@@ -1,18 +1,132 @@
 #include "app/debug/recorded_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "app/base/stopwatch.h"
-#include "app/check/check_job.h"
 #include "app/check/conclusion.h"
-#include "app/check/prepared_check.h"
+#include "app/check/program_runner.h"
+#include "app/check/run_state.h"
+#include "core/dbm/tile_boxes.h"
 
 namespace app {
+
+/// A list in pieces that several may share.
+template <typename T>
+class SharedPieces {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+public:
+    static constexpr size_t piece = 64;
+
+    SharedPieces() = default;
+    /// Shares the pieces that are the same as in another one.
+    SharedPieces(const std::vector<T>& list, const SharedPieces& like) : size_(list.size()) {
+        for (size_t first = 0; first < list.size(); first += piece) {
+            const size_t count = std::min(piece, list.size() - first);
+            const size_t i = pieces_.size();
+            const bool is_same =
+                i < like.pieces_.size() && like.pieces_[i]->size() == count
+                && std::memcmp(like.pieces_[i]->data(), list.data() + first, count * sizeof(T))
+                       == 0;
+            const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+            pieces_.push_back(is_same ? like.pieces_[i]
+                                      : std::make_shared<const std::vector<T>>(
+                                          begin, begin + static_cast<std::ptrdiff_t>(count)));
+        }
+    }
+
+    std::vector<T> whole() const {
+        std::vector<T> list;
+        list.reserve(size_);
+        for (const auto& part : pieces_) list.insert(list.end(), part->begin(), part->end());
+        return list;
+    }
+
+    /// Bytes that it does not share with another one.
+    size_t bytes_apart(const SharedPieces& other) const {
+        size_t bytes = pieces_.size() * sizeof(pieces_[0]);
+        for (size_t i = 0; i < pieces_.size(); ++i)
+            if (i >= other.pieces_.size() || pieces_[i] != other.pieces_[i])
+                bytes += pieces_[i]->size() * sizeof(T);
+        return bytes;
+    }
+
+private:
+    std::vector<std::shared_ptr<const std::vector<T>>> pieces_;
+    size_t size_ = 0;
+};
+
+/// The boxes of a family of lines, to be had again bit for bit.
+struct SavedBoxes {
+    SharedPieces<core::Aabb> boxes, blocks;
+    SharedPieces<core::BoxGap> gaps, block_gaps;
+    core::TileBoxes rest; // what is small
+
+    size_t bytes_apart(const SavedBoxes& other) const;
+};
+
+/// Takes the boxes out of where they are.
+SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like);
+
+core::TileBoxes restored(const SavedBoxes& kept);
+
+/// A place that is kept, to come back from. It shares with the keyframe before it what is the same.
+struct Keyframe {
+    size_t blocks = 0;    // that were run before it
+    double seconds = 0.0; // of work from the first place to here
+    RunState place;       // but for the boxes round its lines and columns
+    std::array<SavedBoxes, 4> boxes;
+    size_t bytes = 0; // that it does not share with the keyframe before it
+
+    RunState restored() const;
+};
+
+/// Places along a run, kept within a budget of memory: close to one another where the run is looked
+/// at, and farther apart the farther it is from there.
+class Keyframes {
+public:
+    explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
+
+    /// Keeps a place if it is far enough from the one before it.
+    void note(size_t blocks, double seconds, const RunState& place);
+
+    /// The last one at or before a place; there is one, once the first place was added.
+    const Keyframe& before(size_t blocks) const;
+
+    /// Where the run is looked at, in seconds of work.
+    void look_at(double seconds) { focus_ = seconds; }
+
+    /// Forgets those after a place.
+    void drop_after(size_t blocks);
+
+    size_t memory() const { return memory_; }
+    size_t size() const { return frames_.size(); }
+    const std::vector<Keyframe>& frames() const { return frames_; }
+
+private:
+    /// Where the first keyframe behind a place is, or would be.
+    size_t index_after(size_t blocks) const;
+    /// Whether a keyframe there would be worth its memory.
+    bool wants(size_t blocks, double seconds) const;
+    void thin_out();
+    void remove(size_t index);
+    /// How bad it would be to go without a keyframe: 1 is a wait that is noticed.
+    double worth(size_t index) const;
+
+    size_t budget_;
+    size_t memory_ = 0;
+    double focus_ = 0.0;
+    std::vector<Keyframe> frames_ = {};
+};
 
 size_t SavedBoxes::bytes_apart(const SavedBoxes& other) const {
     size_t bytes = boxes.bytes_apart(other.boxes) + blocks.bytes_apart(other.blocks)
@@ -179,16 +293,37 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
-    run->keyframes_.note(0, 0.0, run->runner_->state());
+    run->keyframes_->note(0, 0.0, run->runner_->place());
     run->told_.assumptions = run->record().assumptions;
     return run;
 }
 
 RecordedRun::RecordedRun(PreparedCheck check, size_t memory_budget)
-    : check_(std::move(check)),
-      runner_(std::make_unique<ProgramRunner>(check_)),
-      replayer_(check_),
-      keyframes_(memory_budget) {}
+    : check_(std::make_unique<PreparedCheck>(std::move(check))),
+      runner_(std::make_unique<ProgramRunner>(*check_)),
+      replayer_(std::make_unique<BlockRunner>(*check_)),
+      keyframes_(std::make_unique<Keyframes>(memory_budget)) {}
+
+RecordedRun::~RecordedRun() = default;
+
+const CheckRun& RecordedRun::record() const { return check_->run; }
+
+double RecordedRun::share() const { return is_complete_ ? 1.0 : runner_->progress().share; }
+
+gcode::ProgramLibrary& RecordedRun::library() const { return *check_->library; }
+
+void RecordedRun::visit_ahead(size_t place, const RunState& state, const BlockVisit& visit) {
+    replayer_->use(setup_at(place));
+    replayer_->visit_ahead(state.control, state.lowering, visit);
+}
+
+void RecordedRun::look_at(size_t place) { keyframes_->look_at(marks_[place].seconds); }
+
+size_t RecordedRun::keyframe_before(size_t place) const { return keyframes_->before(place).blocks; }
+
+size_t RecordedRun::keyframe_count() const { return keyframes_->size(); }
+
+size_t RecordedRun::keyframe_memory() const { return keyframes_->memory(); }
 
 bool RecordedRun::advance() {
     if (is_complete_) return false;
@@ -199,7 +334,7 @@ bool RecordedRun::advance() {
     }
     const double seconds = marks_.back().seconds + work.seconds();
     marks_.push_back({seconds, record().findings.size()});
-    keyframes_.note(last_place(), seconds, runner_->state());
+    keyframes_->note(last_place(), seconds, runner_->place());
     if (!after_block_ || after_block_(runner_->progress())) return true;
     runner_->stop_here();
     finish();
@@ -210,22 +345,23 @@ void RecordedRun::finish() {
     is_complete_ = true;
     told_.findings = record().findings;
     for (const MadeChange& made : changes_)
-        check_.run.assumptions.push_back(
+        check_->run.assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
-    check_.run.times.check = marks_.back().seconds;
-    conclude(check_, runner_->state().machine, runner_->length_mismatches(), needs_surface_);
+    check_->run.times.check = marks_.back().seconds;
+    conclude(*check_, runner_->place().machine, runner_->length_doubts(), needs_surface_);
 }
 
 const core::Setup& RecordedRun::setup_at(size_t block) const {
     for (size_t i = changes_.size(); i-- > 0;)
         if (changes_[i].block <= block) return *setups_[i];
-    return check_.run.setup;
+    return check_->run.setup;
 }
 
 void RecordedRun::change_at(size_t place, RunState& state) {
     for (size_t i = 0; i < changes_.size(); ++i) {
         if (changes_[i].block != place) continue;
-        core::Setup scratch = i == 0 ? check_.run.setup : *setups_[i - 1]; // as it was for this one
+        core::Setup scratch =
+            i == 0 ? check_->run.setup : *setups_[i - 1]; // as it was for this one
         [[maybe_unused]] const auto done = apply(changes_[i].change, scratch, state);
         assert(done);
     }
@@ -238,12 +374,12 @@ core::Result<RunState> RecordedRun::place_at(size_t place) {
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the program ends after {} blocks", last_place()));
     // Behind the end the runner has closed what was open.
-    if (place == last_place() && !is_complete_) return runner_->state();
+    if (place == last_place() && !is_complete_) return runner_->place();
     return replayed(place);
 }
 
 RunState RecordedRun::replayed(size_t place) {
-    const Keyframe& frame = keyframes_.before(place);
+    const Keyframe& frame = keyframes_->before(place);
     RunState state = frame.restored();
     if (frame.blocks == 0) change_at(0, state); // it is the program's start, whatever was changed
     take_to(state, frame.blocks, place);
@@ -252,17 +388,17 @@ RunState RecordedRun::replayed(size_t place) {
 
 void RecordedRun::take_to(RunState& state, size_t from, size_t place) {
     assert(from <= place && place <= last_place());
-    if (const Keyframe& frame = keyframes_.before(place); frame.blocks > from) {
+    if (const Keyframe& frame = keyframes_->before(place); frame.blocks > from) {
         state = frame.restored();
         from = frame.blocks;
     }
     while (from < place) {
-        replayer_.use(setup_at(from));
-        [[maybe_unused]] const auto step = replayer_.step(state);
+        replayer_->use(setup_at(from));
+        [[maybe_unused]] const auto step = replayer_->step(state);
         assert(step && *step);
         ++from;
         change_at(from, state);
-        keyframes_.note(from, marks_[from].seconds, state);
+        keyframes_->note(from, marks_[from].seconds, state);
     }
 }
 
@@ -272,7 +408,7 @@ size_t RecordedRun::restart_place(size_t place) {
         const RunState state = replayed(place);
         size_t first = std::min<size_t>(place, state.clock.first_open);
         if (state.lengths.is_open)
-            first = std::min<size_t>(first, core::value_of(state.lengths.mismatches.back().first));
+            first = std::min<size_t>(first, core::value_of(state.lengths.doubts.back().first));
         const bool is_open = first < place && replayed(first).lengths.is_open;
         if (!is_open) return first;
         place = first;
@@ -282,7 +418,7 @@ size_t RecordedRun::restart_place(size_t place) {
 void RecordedRun::record_again_from(size_t place) {
     const size_t first = restart_place(place);
     const RunState state = replayed(first); // the runner's own may hold what is taken back
-    CheckRun& run = check_.run;
+    CheckRun& run = check_->run;
     if (is_complete_) {
         run.findings = told_.findings;
         run.assumptions = told_.assumptions;
@@ -295,17 +431,17 @@ void RecordedRun::record_again_from(size_t place) {
     runner_->go_back(state, first, marks_[first].findings);
     for (size_t block = first; block < place; ++block) {
         runner_->use(setup_at(block));
-        if (block > first) change_at(block, runner_->mutable_state());
+        if (block > first) change_at(block, runner_->place_to_change());
         [[maybe_unused]] const bool done = runner_->advance();
         assert(done);
     }
-    if (first < place) change_at(place, runner_->mutable_state());
+    if (first < place) change_at(place, runner_->place_to_change());
     runner_->use(setup_at(place));
     marks_.resize(place + 1);
 }
 
 void RecordedRun::forget_from(size_t place) {
-    keyframes_.drop_after(place == 0 ? 0 : place - 1);
+    keyframes_->drop_after(place == 0 ? 0 : place - 1);
     while (!changes_.empty() && changes_.back().block > place) {
         changes_.pop_back();
         setups_.pop_back();
@@ -320,7 +456,7 @@ core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
     record_again_from(place);
     changes_.push_back({place, change});
     setups_.push_back(std::move(setup));
-    runner_->mutable_state() = std::move(state);
+    runner_->place_to_change() = std::move(state);
     runner_->use(*setups_.back());
     return {};
 }

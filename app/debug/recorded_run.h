@@ -1,206 +1,102 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstring>
 #include <functional>
 #include <memory>
-#include <type_traits>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "app/check/check_job.h"
-#include "app/check/prepared_check.h"
-#include "app/check/program_runner.h"
-#include "app/check/run_state.h"
 #include "app/debug/what_if.h"
-#include "core/dbm/tile_boxes.h"
+#include "core/motion/event.h"
+#include "core/sim/finding.h"
+
+namespace gcode {
+struct BlockResult;
+class ProgramLibrary;
+} // namespace gcode
 
 namespace app {
 
-/// A list in pieces that several may share.
-template <typename T>
-class SharedPieces {
-    static_assert(std::is_trivially_copyable_v<T>);
+class BlockRunner;
+struct CheckJob;
+struct CheckProgress;
+struct CheckRun;
+class Keyframes;
+struct PreparedCheck;
+class ProgramRunner;
 
-public:
-    static constexpr size_t piece = 64;
-
-    SharedPieces() = default;
-    /// Shares the pieces that are the same as in another one.
-    SharedPieces(const std::vector<T>& list, const SharedPieces& like) : size_(list.size()) {
-        for (size_t first = 0; first < list.size(); first += piece) {
-            const size_t count = std::min(piece, list.size() - first);
-            const size_t i = pieces_.size();
-            const bool is_same =
-                i < like.pieces_.size() && like.pieces_[i]->size() == count
-                && std::memcmp(like.pieces_[i]->data(), list.data() + first, count * sizeof(T))
-                       == 0;
-            const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-            pieces_.push_back(is_same ? like.pieces_[i]
-                                      : std::make_shared<const std::vector<T>>(
-                                          begin, begin + static_cast<std::ptrdiff_t>(count)));
-        }
-    }
-
-    std::vector<T> whole() const {
-        std::vector<T> list;
-        list.reserve(size_);
-        for (const auto& part : pieces_) list.insert(list.end(), part->begin(), part->end());
-        return list;
-    }
-
-    /// Bytes that it does not share with another one.
-    size_t bytes_apart(const SharedPieces& other) const {
-        size_t bytes = pieces_.size() * sizeof(pieces_[0]);
-        for (size_t i = 0; i < pieces_.size(); ++i)
-            if (i >= other.pieces_.size() || pieces_[i] != other.pieces_[i])
-                bytes += pieces_[i]->size() * sizeof(T);
-        return bytes;
-    }
-
-private:
-    std::vector<std::shared_ptr<const std::vector<T>>> pieces_;
-    size_t size_ = 0;
-};
-
-/// The boxes of a family of lines, to be had again bit for bit.
-struct SavedBoxes {
-    SharedPieces<core::Aabb> boxes, blocks;
-    SharedPieces<core::BoxGap> gaps, block_gaps;
-    core::TileBoxes rest; // what is small
-
-    size_t bytes_apart(const SavedBoxes& other) const;
-};
-
-/// Takes the boxes out of where they are.
-SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like);
-
-core::TileBoxes restored(const SavedBoxes& kept);
-
-/// A place that is kept, to come back from. It shares with the keyframe before it what is the same.
-struct Keyframe {
-    size_t blocks = 0;    // that were run before it
-    double seconds = 0.0; // of work from the first place to here
-    RunState place;       // but for the boxes round its lines and columns
-    std::array<SavedBoxes, 4> boxes;
-    size_t bytes = 0; // that it does not share with the keyframe before it
-
-    RunState restored() const;
-};
-
-/// Places along a run, kept within a budget of memory: close to one another where the run is looked
-/// at, and farther apart the farther it is from there.
-class Keyframes {
-public:
-    explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
-
-    /// Keeps a place if it is far enough from the one before it.
-    void note(size_t blocks, double seconds, const RunState& place);
-
-    /// The last one at or before a place; there is one, once the first place was added.
-    const Keyframe& before(size_t blocks) const;
-
-    /// Where the run is looked at, in seconds of work.
-    void look_at(double seconds) { focus_ = seconds; }
-
-    /// Forgets those after a place.
-    void drop_after(size_t blocks);
-
-    size_t memory() const { return memory_; }
-    size_t size() const { return frames_.size(); }
-    const std::vector<Keyframe>& frames() const { return frames_; }
-
-private:
-    /// Where the first keyframe behind a place is, or would be.
-    size_t index_after(size_t blocks) const;
-    /// Whether a keyframe there would be worth its memory.
-    bool wants(size_t blocks, double seconds) const;
-    void thin_out();
-    void remove(size_t index);
-    /// How bad it would be to go without a keyframe: 1 is a wait that is noticed.
-    double worth(size_t index) const;
-
-    size_t budget_;
-    size_t memory_ = 0;
-    double focus_ = 0.0;
-    std::vector<Keyframe> frames_ = {};
-};
-
-/// A change and where it was made.
-struct MadeChange {
-    size_t block = 0; // it counts from this block on
-    WhatIf change;
-};
-
-/// A check that is carried out piece by piece, every place of which can be had again, and that can
-/// be changed on the way.
+/// A check that runs block by block. It can return to any earlier position, and the set-up or state
+/// can be changed on the way.
 ///
-/// A place is counted in blocks that have been run: at place p block p of the record is the next.
+/// A position is the number of blocks already run: at position p, block p of the record is next.
 class RecordedRun {
 public:
-    /// Of a check that was read, but not placed. The job's `after_block` can end it as it ends
-    /// run_check.
+    /// Starts a check that was read, but not placed. The job's `after_block` can end it, as it ends
+    /// run_check. `memory_budget`: bytes for keyframes.
     ///
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<RecordedRun>> open(const CheckJob& job, PreparedCheck check,
                                                            size_t memory_budget);
+    ~RecordedRun();
 
-    /// What is known so far: blocks in order, and findings as they were told. Once it is complete,
-    /// what run_check gives.
-    const CheckRun& record() const { return check_.run; }
+    /// The blocks run so far, in order, and their findings as they were reported. When complete, it
+    /// equals the result of run_check.
+    const CheckRun& record() const;
     bool is_complete() const { return is_complete_; }
-    /// The last place that is known.
+    /// The last position that the record reaches.
     size_t last_place() const { return marks_.size() - 1; }
-    /// How far it has come, 0..1, by lines.
-    double share() const { return is_complete_ ? 1.0 : runner_->progress().share; }
+    /// Progress by program lines, 0..1.
+    double share() const;
 
-    /// Carries the record on by a block; whether there was one.
+    /// Runs the next block. False at the end of the program.
     bool advance();
 
-    const PreparedCheck& check() const { return check_; }
-    /// That all places of the run refer to.
-    gcode::ProgramLibrary& library() const { return *check_.library; }
-    /// The set-up that a block is run under.
+    const PreparedCheck& check() const { return *check_; }
+    /// The subprograms that all run states refer to.
+    gcode::ProgramLibrary& library() const;
+    /// The set-up in effect for a block.
     const core::Setup& setup_at(size_t block) const;
 
-    /// A copy of a place.
+    /// A copy of the state at a position.
     ///
-    /// Errors: the program does not go that far.
+    /// Errors: the program has fewer blocks.
     /// Cost:   as take_to, from the nearest keyframe.
     core::Result<RunState> place_at(size_t place);
-    /// Takes a copy of place `from` on to a later one that the record holds.
+    /// Moves a copy of the state at position `from` on to a later position of the record.
     ///
-    /// Cost: running the blocks again, but for those before the nearest keyframe.
+    /// Cost: runs the blocks after the nearest keyframe before `place` again.
     void take_to(RunState& state, size_t from, size_t place);
 
-    /// As BlockRunner::visit_ahead, from a copy of a place.
-    void visit_ahead(size_t place, const RunState& state, const BlockVisit& visit) {
-        replayer_.use(setup_at(place));
-        replayer_.visit_ahead(state.control, state.lowering, visit);
-    }
+    /// As BlockRunner::visit_ahead, from a copy of the state at a position.
+    void visit_ahead(
+        size_t place, const RunState& state,
+        const std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>& visit);
 
-    /// Where one looks: keyframes are kept near it.
-    void look_at(size_t place) { keyframes_.look_at(marks_[place].seconds); }
-    const Keyframes& keyframes() const { return keyframes_; }
+    /// Keeps keyframes densest near this position.
+    void look_at(size_t place);
+    /// The position of the last keyframe at or before a position.
+    size_t keyframe_before(size_t place) const;
+    size_t keyframe_count() const;
+    size_t keyframe_memory() const; // bytes
 
-    /// Changes something from a place on, and drops what the record holds behind it, later changes
+    /// Changes something from a position on, and drops everything recorded after it, later changes
     /// included.
     ///
-    /// Errors: as apply; the program does not go that far. Nothing has changed then.
+    /// Errors: as apply; the program has fewer blocks. Nothing has changed then.
     core::Result<void> change(size_t place, const WhatIf& change);
-    /// Takes the last change back; the place where it was made.
+    /// Undoes the last change. Returns the position where it was made.
     ///
     /// Errors: invalid_value when there is none.
     core::Result<size_t> take_back();
     const std::vector<MadeChange>& changes() const { return changes_; }
 
 private:
-    /// What the record was when it held so many blocks.
+    /// The size of the record at a position.
     struct Mark {
         double seconds = 0.0; // of work
         size_t findings = 0;
     };
-    /// The run as it was told, before what only the whole of it says.
+    /// Findings and assumptions before those added at the end of the run.
     struct Told {
         std::vector<core::Finding> findings;
         std::vector<std::string> assumptions;
@@ -208,26 +104,27 @@ private:
 
     RecordedRun(PreparedCheck check, size_t memory_budget);
     void finish();
-    /// A copy of a place that the record holds, by way of keyframes, changes there included.
+    /// A copy of the state at a recorded position, rebuilt from the nearest keyframe, with the
+    /// changes made there.
     RunState replayed(size_t place);
-    /// Forgets the keyframes from a place on, and the changes behind it.
+    /// Drops the keyframes from a position on, and the changes after it.
     void forget_from(size_t place);
-    /// Makes the record go on from a place anew.
+    /// Continues the record from a position.
     void record_again_from(size_t place);
-    /// The changes that are made at a place, to a copy of it.
+    /// Applies the changes made at a position to a copy of its state.
     void change_at(size_t place, RunState& state);
-    /// A place from which the record can be made again up to another one.
+    /// A position from which the record up to another position can be made again.
     size_t restart_place(size_t place);
 
-    PreparedCheck check_;
+    std::unique_ptr<PreparedCheck> check_;
     bool needs_surface_ = false;
     std::function<bool(const CheckProgress&)> after_block_ = {};
     std::unique_ptr<ProgramRunner> runner_;
-    BlockRunner replayer_;
-    Keyframes keyframes_;
-    std::vector<Mark> marks_ = std::vector<Mark>(1); // by place
+    std::unique_ptr<BlockRunner> replayer_;
+    std::unique_ptr<Keyframes> keyframes_;
+    std::vector<Mark> marks_ = std::vector<Mark>(1); // by position
     std::vector<MadeChange> changes_ = {};
-    std::vector<std::unique_ptr<core::Setup>> setups_ = {}; // behind each change
+    std::vector<std::unique_ptr<core::Setup>> setups_ = {}; // after each change
     Told told_ = {};
     bool is_complete_ = false;
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/check/run_state.h"
 #include "app/debug/inspected_value.h"
 #include "core/base/text.h"
 #include "core/sim/clearance.h"

@@ -3,14 +3,22 @@
 #include <string>
 #include <variant>
 
-#include "app/check/run_state.h"
-#include "core/sim/tool_assembly.h"
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+
+namespace core {
+struct Setup;
+struct ToolAssembly;
+} // namespace core
 
 namespace core {
 struct Setup;
 }
 
 namespace app {
+
+struct RunState;
 
 /// The tool is longer or shorter, as if it was pushed into its holder another way: the stick-out
 /// changes, and of what is behind the flutes and the neck more or less is seen. Of a tool that has
@@ -47,6 +55,12 @@ struct MovedFixture {
 /// Something that is changed on the way.
 using WhatIf =
     std::variant<OtherToolLength, OtherLengthOffset, OtherWorkOffset, OtherAllowance, MovedFixture>;
+
+/// A change and where it was made.
+struct MadeChange {
+    size_t block = 0; // the first one that it applies to
+    WhatIf change;
+};
 
 /// As a person would say it: "T3 is 95 mm long".
 std::string text_of(const WhatIf& change);

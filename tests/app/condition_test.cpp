@@ -7,8 +7,7 @@
 
 #include "app/check/check_run.h"
 #include "app/debug/condition.h"
-#include "core/sim/clearance.h"
-#include "core/sim/tool_assembly.h"
+#include "gcode/exec/interpreter.h"
 
 namespace app_test {
 namespace {

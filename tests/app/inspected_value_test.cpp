@@ -3,6 +3,7 @@
 
 #include "app/debug/inspected_value.h"
 #include "core/motion/machine.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 

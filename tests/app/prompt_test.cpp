@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/run_state.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/prompt.h"
 #include "tests/support/scoped_folder.h"
@@ -187,7 +188,7 @@ TEST(Prompt, GoesToAnyPlace) {
 TEST(Prompt, ChangesNothingWhenItIsAskedForNonsense) {
     const Talk talk;
     talk.say("step 5");
-    const uint64_t before = digest_of(talk.session->place());
+    const uint64_t before = digest_of(talk.session->state());
     EXPECT_THAT(talk.fails("stpe"), HasSubstr("nearest is 'step'"));
     EXPECT_THAT(talk.fails("xyzzyxyzzy"), Not(HasSubstr("nearest")));
     EXPECT_THAT(talk.fails("re"), HasSubstr("may be reverse-next, reverse-continue"));
@@ -205,7 +206,7 @@ TEST(Prompt, ChangesNothingWhenItIsAskedForNonsense) {
     EXPECT_THAT(talk.fails("undo"), HasSubstr("nothing has been changed"));
     EXPECT_THAT(talk.fails("info nothing"), HasSubstr("breakpoints"));
     EXPECT_THAT(talk.fails("print nothing at all"), HasSubstr("nearest name"));
-    EXPECT_EQ(digest_of(talk.session->place()), before);
+    EXPECT_EQ(digest_of(talk.session->state()), before);
 }
 
 TEST(Prompt, AnswersEveryCommandAndTopicThatItNames) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/run_state.h"
 #include "app/debug/debug_session.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
@@ -43,7 +44,7 @@ struct Opened {
         std::vector<core::AxisPosition> all;
         while (session->knows(session->at())) {
             EXPECT_TRUE(session->go_to(session->at() + 1));
-            all.push_back(session->place().machine.position);
+            all.push_back(session->state().machine.position);
         }
         return all;
     }
@@ -59,12 +60,12 @@ void expect_as_programmed(const SetupWriter& setup, const WhatIf& change, const 
     changed.go_to_line(6);
     const auto lines_more = static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
     programmed.go_to_line(6 + lines_more);
-    const core::AxisPosition stood = changed->place().machine.position;
+    const core::AxisPosition stood = changed->state().machine.position;
     ASSERT_TRUE(changed->change(change));
-    EXPECT_EQ(changed->place().machine.position, stood);
-    EXPECT_EQ(changed->place().control.modal.position, programmed->place().control.modal.position);
-    EXPECT_EQ(changed->place().control.modal.offsets, programmed->place().control.modal.offsets);
-    EXPECT_EQ(changed->place().lowering.offsets, programmed->place().lowering.offsets);
+    EXPECT_EQ(changed->state().machine.position, stood);
+    EXPECT_EQ(changed->state().control.modal.position, programmed->state().control.modal.position);
+    EXPECT_EQ(changed->state().control.modal.offsets, programmed->state().control.modal.offsets);
+    EXPECT_EQ(changed->state().lowering.offsets, programmed->state().lowering.offsets);
     const auto places = changed.places();
     EXPECT_EQ(places, programmed.places());
     EXPECT_FALSE(changed->record().stopped) << changed->record().stopped->message;
@@ -90,10 +91,10 @@ TEST(WhatIf, MovesAWorkOffsetUnderARotationAsG10Does) {
 TEST(WhatIf, LeavesTheMachineAloneWhereAnotherOffsetIsOn) {
     const Opened changed(SetupWriter(), start + rest);
     changed.go_to_line(6);
-    const auto before = changed->place().control.modal;
+    const auto before = changed->state().control.modal;
     ASSERT_TRUE(changed->change(app::OtherWorkOffset{1, 0, -100.0}));
-    EXPECT_EQ(changed->place().control.modal, before);
-    EXPECT_EQ(changed->place().control.tables->work[1].origin[0], -100.0);
+    EXPECT_EQ(changed->state().control.modal, before);
+    EXPECT_EQ(changed->state().control.tables->work[1].origin[0], -100.0);
 }
 
 TEST(WhatIf, ChangesALengthThatIsOnAsWritingItAndCallingItAgainDoes) {
@@ -111,10 +112,10 @@ TEST(WhatIf, CountsTheLengthWithItsWear) {
     setup.lengths("[[length_offset]]\nnumber = 1\nlength = 95.0\nwear = 0.25\n");
     const Opened changed(setup, start + rest);
     changed.go_to_line(6);
-    EXPECT_DOUBLE_EQ(changed->place().control.modal.offsets.tool[2], 95.25);
+    EXPECT_DOUBLE_EQ(changed->state().control.modal.offsets.tool[2], 95.25);
     ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 96.0}));
-    EXPECT_DOUBLE_EQ(changed->place().control.modal.offsets.tool[2], 96.0);
-    EXPECT_DOUBLE_EQ(changed->place().machine.length_offset.length, 96.0);
+    EXPECT_DOUBLE_EQ(changed->state().control.modal.offsets.tool[2], 96.0);
+    EXPECT_DOUBLE_EQ(changed->state().machine.length_offset.length, 96.0);
 }
 
 TEST(WhatIf, LeavesALengthAloneThatTheProgramGaveItself) {
@@ -122,9 +123,9 @@ TEST(WhatIf, LeavesALengthAloneThatTheProgramGaveItself) {
     setup.program("dialect = \"linuxcnc\"\nstart = { X = -350, Y = -200, Z = 0 }\n");
     const Opened changed(setup, "G21 G90 G54\nT1 M6\nM3 S2000\nG43.1 Z95\nG0 Z50\n" + rest);
     changed.go_to_line(6);
-    const auto before = changed->place().control.modal;
+    const auto before = changed->state().control.modal;
     ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 60.0}));
-    EXPECT_EQ(changed->place().control.modal, before);
+    EXPECT_EQ(changed->state().control.modal, before);
 }
 
 TEST(WhatIf, ChangesTheLengthThatComesWithTheTool) {
@@ -134,12 +135,12 @@ TEST(WhatIf, ChangesTheLengthThatComesWithTheTool) {
                                 "3 L Z+50 R0 FMAX\n4 L X+10 Y+10 FMAX\n5 L Z+10 F500\n"
                                 "6 END PGM P MM\n");
     changed.go_to_line(5); // as Klartext counts its blocks
-    const double stood = *changed->place().machine.position[2];
+    const double stood = *changed->state().machine.position[2];
     ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 100.0}));
-    EXPECT_EQ(changed->place().machine.position[2], stood);
-    EXPECT_DOUBLE_EQ(*changed->place().control.modal.position[2], 45.0);
+    EXPECT_EQ(changed->state().machine.position[2], stood);
+    EXPECT_DOUBLE_EQ(*changed->state().control.modal.position[2], 45.0);
     ASSERT_TRUE(changed->go_to(changed->at() + 1));
-    EXPECT_DOUBLE_EQ(*changed->place().machine.position[2], -420.0 + 10.0 + 100.0);
+    EXPECT_DOUBLE_EQ(*changed->state().machine.position[2], -420.0 + 10.0 + 100.0);
 }
 
 TEST(WhatIf, DoesNotChangeAnOffsetUnderTheFeetOfRadiusCompensation) {
@@ -147,11 +148,11 @@ TEST(WhatIf, DoesNotChangeAnOffsetUnderTheFeetOfRadiusCompensation) {
                                             + "G41 D1 X20. F500.\nX30.\nX40.\nX50.\nG40 X60.\n"
                                               "M30\n");
     changed.go_to_line(8);
-    const uint64_t before = digest_of(changed->place());
+    const uint64_t before = digest_of(changed->state());
     const auto done = changed->change(app::OtherWorkOffset{0, 0, -340.0});
     ASSERT_FALSE(done);
     EXPECT_THAT(done.error().message, HasSubstr("before G41"));
-    EXPECT_EQ(digest_of(changed->place()), before);
+    EXPECT_EQ(digest_of(changed->state()), before);
     EXPECT_TRUE(changed->change(app::OtherWorkOffset{3, 0, -340.0}));
 }
 

@@ -67,7 +67,7 @@ void expect_same_places(size_t memory_budget, size_t steps, unsigned seed) {
     for (size_t i = 0; i < steps; ++i) {
         walk_somewhere(session, random, walked.digests.size() - 1);
         ASSERT_LT(session.at(), walked.digests.size());
-        ASSERT_EQ(app::digest_of(session.place()), walked.digests[session.at()])
+        ASSERT_EQ(app::digest_of(session.state()), walked.digests[session.at()])
             << "walk " << i << " at " << session.at();
         seen.insert(session.at());
     }
@@ -106,9 +106,9 @@ TEST(Keyframes, StayWithinTheirMemory) {
     }
     for (size_t place = 0; place < walked.digests.size(); place += 7) {
         ASSERT_TRUE(session.go_to(place));
-        EXPECT_LE(session.keyframes().memory(), budget);
+        EXPECT_LE(session.keyframe_memory(), budget);
     }
-    EXPECT_GE(session.keyframes().size(), 2U);
+    EXPECT_GE(session.keyframe_count(), 2U);
 }
 
 } // namespace

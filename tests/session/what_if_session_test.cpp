@@ -56,7 +56,7 @@ TEST(WhatIf, LeavesEverythingBeforeItUntouched) {
         EXPECT_EQ(report_before(session->record(), place - 60), report_before(*whole, place - 60));
         const size_t before = random() % (place - 60);
         ASSERT_TRUE(session->go_to(before));
-        EXPECT_EQ(app::digest_of(session->place()), digests[before]);
+        EXPECT_EQ(app::digest_of(session->state()), digests[before]);
         ASSERT_TRUE(session->take_back());
         EXPECT_EQ(session->at(), place);
     }
@@ -102,14 +102,14 @@ TEST(WhatIf, IsTheSameHoweverOneComesToThePlaceBehindIt) {
     std::vector<uint64_t> digests;
     for (size_t place = 150; place < 320; ++place) {
         ASSERT_TRUE(session->go_to(place));
-        digests.push_back(app::digest_of(session->place()));
+        digests.push_back(app::digest_of(session->state()));
     }
     std::mt19937 random(6);
     for (int i = 0; i < 300; ++i) {
         const size_t place = 100 + random() % 220;
         ASSERT_TRUE(session->go_to(place));
         if (place < 150) continue;
-        ASSERT_EQ(app::digest_of(session->place()), digests[place - 150]);
+        ASSERT_EQ(app::digest_of(session->state()), digests[place - 150]);
     }
 }
 
@@ -126,7 +126,7 @@ TEST(WhatIf, TakenBackAtOnceLeavesNothing) {
               app::WhatIf(app::OtherWorkOffset{0, 2, -400.0}), longer_tool}) {
             ASSERT_TRUE(session->change(change));
             ASSERT_TRUE(session->take_back());
-            ASSERT_EQ(app::digest_of(session->place()), digests[place]) << app::text_of(change);
+            ASSERT_EQ(app::digest_of(session->state()), digests[place]) << app::text_of(change);
         }
     }
     record_all(*session);

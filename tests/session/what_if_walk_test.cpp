@@ -50,7 +50,7 @@ public:
             ASSERT_TRUE(other->change(made.change));
         }
         ASSERT_TRUE(other->go_to(session_->at()));
-        EXPECT_EQ(app::digest_of(session_->place()), app::digest_of(other->place())) << told();
+        EXPECT_EQ(app::digest_of(session_->state()), app::digest_of(other->state())) << told();
         while (session_->record_for(1.0) || other->record_for(1.0)) {
         }
         EXPECT_EQ(report_of(session_->record()), report_of(other->record())) << told();

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
+#include "app/coproc/study/coprocessor_report.h"
+#include "app/view/model/device_worker.h"
 #include "app/view/model/view_model.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/viewer/rows.h"

@@ -3,7 +3,8 @@
 #include "app/check/check_run.h"
 #include "app/commands/output.h"
 #include "app/view/model/navigation.h"
-#include "app/view/ui/window_files.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/window.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/check/check_run.h"
+#include "app/coproc/study/coprocessor_report.h"
 #include "app/view/model/device_worker.h"
 #include "tests/viewer/rows.h"
 

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "app/check/setup_sheet.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
+#include "app/view/model/view_model.h"
 #include "tests/viewer/rows.h"
 
 namespace {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
+#include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/view_model.h"
 #include "tests/support/scoped_folder.h"

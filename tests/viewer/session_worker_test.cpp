@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_run.h"
+#include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
-#include "app/view/ui/perform.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/command.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/view_model.h"
 #include "tests/viewer/rows.h"
 
 namespace viewer_test {

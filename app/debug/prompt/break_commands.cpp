@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
@@ -149,7 +150,7 @@ CommandResult watch_value(PromptState& state, const std::string& arguments) {
                                              "watch #100 or watch offset");
     FEELER_TRY(const int id, state.session.watch(arguments));
     FEELER_TRY(const InspectedValue now,
-               value_of(arguments, state.session.place().control, state.session.environment()));
+               value_of(arguments, state.session.control(), state.session.environment()));
     return fmt::format("watchpoint {}: {}, now {}\n", id, arguments, now.text);
 }
 

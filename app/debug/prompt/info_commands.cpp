@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
@@ -26,7 +27,7 @@ std::string table_of(const std::vector<NamedValue>& values, const char* nothing)
     return text.empty() ? std::string(nothing) + "\n" : text;
 }
 
-const Control& control_of(const PromptState& state) { return state.session.place().control; }
+const Control& control_of(const PromptState& state) { return state.session.control(); }
 
 CommandResult show_modal(PromptState& state, const std::string&) {
     return table_of(modal_values(control_of(state), state.session.environment()), "");
@@ -54,8 +55,7 @@ CommandResult show_tools(PromptState& state, const std::string&) {
                             core::name_of(described.shape), number_text(described.diameter),
                             number_text(tool.length), described.name.empty() ? "" : ", ",
                             trimmed(described.name));
-        if (state.session.place().machine.tool == number)
-            text.insert(text.size() - 1, " <- in the spindle");
+        if (state.session.tool() == number) text.insert(text.size() - 1, " <- in the spindle");
     }
     return text.empty() ? "the set-up describes no tools\n" : text;
 }
@@ -79,7 +79,7 @@ core::Aabb box_of(const core::Setup& setup, const core::Fixture& fixture) {
 
 CommandResult show_fixtures(PromptState& state, const std::string&) {
     const core::Setup& setup = state.session.setup_at(state.session.at());
-    const auto& there = state.session.place().machine.fixtures_there;
+    const auto& there = state.session.fixtures_there();
     std::string text;
     for (size_t i = 0; i < setup.fixtures.size(); ++i) {
         const core::Fixture& fixture = setup.fixtures[i];

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/check/check_run.h"
 #include "core/base/text.h"
 #include "gcode/exec/restart.h"
 #include "gcode/language/dialect.h"

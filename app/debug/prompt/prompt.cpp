@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/state_text.h"

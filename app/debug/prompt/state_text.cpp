@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/check/check_run.h"
 #include "core/sim/verdict.h"
 
 namespace app {
@@ -93,7 +94,7 @@ bool has_block(PromptState& state) {
 }
 
 Condition::Subject subject_of(const PromptState& state) {
-    return {state.session.record(), state.session.at(), &state.session.place().control,
+    return {state.session.record(), state.session.at(), &state.session.control(),
             &state.session.environment()};
 }
 
@@ -123,7 +124,7 @@ std::string finding_text(const core::Finding& finding, size_t indent) {
 }
 
 core::Result<InspectedValue> value_here(PromptState& state, const std::string& expression) {
-    auto value = value_of(expression, state.session.place().control, state.session.environment());
+    auto value = value_of(expression, state.session.control(), state.session.environment());
     if (value || !has_block(state)) return value;
     return evaluate(expression, subject_of(state));
 }

@@ -4,7 +4,14 @@
 
 #include "app/debug/prompt/prompt.h"
 
+namespace core {
+struct BlockResult;
+struct Setup;
+} // namespace core
+
 namespace app {
+
+struct CheckedBlock;
 
 /// Where the session stands, for a person: the block that is next, how near it comes, what was
 /// found about it, and the displays. Behind the last block, how the program ended.

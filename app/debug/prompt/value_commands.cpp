@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
@@ -150,7 +151,7 @@ CommandResult print_value(PromptState& state, const std::string& arguments) {
         return fmt::format("{} = {}\n", arguments, text_of(value));
     }
     std::string text;
-    for (const NamedValue& value : axis_values(state.session.place().control))
+    for (const NamedValue& value : axis_values(state.session.control()))
         text += fmt::format("{:<12} {}\n", value.name, text_of(value.value));
     return text;
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
 #include "app/debug/prompt/state_text.h"
@@ -114,7 +115,7 @@ CommandResult go_to(PromptState& state, const std::string& arguments) {
             if (state.session.is_interrupted && state.session.is_interrupted()) break;
         size_t last = state.session.record().blocks.size();
         // The block that an alarm stops at is in the record, but cannot be run.
-        while (last > 0 && !state.session.place_at(last)) --last;
+        while (last > 0 && !state.session.knows(last - 1)) --last;
         return gone_to(state, last);
     }
     if (first == "block") {

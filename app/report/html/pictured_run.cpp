@@ -16,6 +16,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
+#include "app/view/model/view_model.h"
 #include "render/camera.h"
 #include "render/coarse_mesh.h"
 #include "render/offscreen.h"

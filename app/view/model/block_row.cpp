@@ -3,10 +3,7 @@
 #include <algorithm>
 
 #include "app/check/check_run.h"
-#include "core/sim/clearance.h"
-#include "core/sim/run/simulator.h"
-#include "core/sim/setup.h"
-#include "gcode/language/canonical.h"
+#include "app/debug/condition.h"
 
 namespace app::viewer {
 namespace {

@@ -3,8 +3,16 @@
 #include <optional>
 #include <string>
 
-#include "app/check/block_facts.h"
-#include "render/tool_path.h"
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+#include "core/sim/finding.h"
+#include "core/sim/verdict.h"
+#include "render/palette.h"
+
+namespace app {
+struct BlockFacts;
+struct CheckedBlock;
+} // namespace app
 
 namespace core {
 struct Setup;

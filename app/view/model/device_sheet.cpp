@@ -5,6 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
+#include "app/coproc/study/coprocessor_report.h"
+#include "app/view/model/device_worker.h"
+#include "app/view/model/view_model.h"
+
 namespace app::viewer {
 namespace {
 
@@ -17,12 +22,12 @@ struct Subject {
     const DeviceStudy& study;
     size_t index = 0;
 
-    const DeviceBlock& block() const { return study.result.run.blocks[index]; }
-    const BlockTiming& timing() const { return study.result.timing.blocks[index]; }
-    const core::BlockResult& exact() const { return study.result.run.check.blocks[index].result; }
+    const DeviceBlock& block() const { return study.result->run.blocks[index]; }
+    const BlockTiming& timing() const { return study.result->timing.blocks[index]; }
+    const core::BlockResult& exact() const { return study.result->run.check.blocks[index].result; }
     DeviceAnswer answer() const { return answer_of(&study, index); }
     DeviceTotals before() const {
-        return index == 0 ? DeviceTotals() : study.result.run.blocks[index - 1].after;
+        return index == 0 ? DeviceTotals() : study.result->run.blocks[index - 1].after;
     }
 };
 
@@ -34,7 +39,7 @@ std::string percent(double share) {
 std::string percent(std::optional<double> share) { return share ? percent(*share) : no_value; }
 
 std::string place_words(const DeviceStudy& study, size_t block) {
-    return fmt::format("block {}, line {}", block, study.result.run.check.blocks[block].line);
+    return fmt::format("block {}, line {}", block, study.result->run.check.blocks[block].line);
 }
 
 std::string number_of(const Subject& subject) {
@@ -46,7 +51,7 @@ std::string number_of(const Subject& subject) {
 
 std::string answer_words(const Subject& subject) {
     // Only of a block that the run has come to.
-    const auto why = [&] { return refusal(subject.study.result, subject.index); };
+    const auto why = [&] { return refusal(*subject.study.result, subject.index); };
     switch (subject.answer()) {
     case DeviceAnswer::unknown:
         return "The run ended before this block";
@@ -142,7 +147,7 @@ DevicePart register_part(const Subject& subject) {
 /// What the threads did in the meantime.
 DevicePart share_part(const Subject& subject) {
     const DeviceShares shares =
-        shares_between(subject.before(), subject.block().after, subject.study.result.file.device);
+        shares_between(subject.before(), subject.block().after, subject.study.result->file.device);
     return {"Busy, waiting for, cache hits",
             {{"busy", percent(shares.busy)},
              {"memory", percent(shares.memory)},
@@ -155,7 +160,7 @@ DevicePart share_part(const Subject& subject) {
 
 /// Blocks that are not permitted, and how many are late.
 void add_stops(const DeviceStudy& study, DevicePart& part) {
-    const EngineAgreement& both = study.agreement;
+    const EngineAgreement& both = *study.agreement;
     const auto count = [&](const char* name, size_t blocks) {
         part.lines.push_back({name, fmt::format("{} of {}", blocks, study.size()),
                               blocks == 0 ? Tone::plain : Tone::bad});
@@ -165,10 +170,10 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
     if (study.held)
         part.lines.push_back(
             {"stands before", place_words(study, *study.held), Tone::bad, *study.held});
-    const size_t late = study.result.timing.missed;
+    const size_t late = study.result->timing.missed;
     part.lines.push_back({"late", late == 0 ? "none" : fmt::format("{}", late),
                           late == 0 ? Tone::plain : Tone::bad});
-    const PermitTiming& timing = study.result.timing;
+    const PermitTiming& timing = study.result->timing;
     if (late > 0)
         part.lines.push_back(
             {"waited", time_text(std::max(0.0, timing.taken - timing.planned)), Tone::bad});
@@ -181,18 +186,18 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
 
 DevicePart run_part(const ViewModel& model) {
     const DeviceStudy& study = *model.device.study;
-    const hwsim::DeviceConfig& device = study.result.file.device;
+    const hwsim::DeviceConfig& device = study.result->file.device;
     DevicePart part{"Whole run", {}};
     add_stops(study, part);
-    part.lines.push_back({"latency", time_text(study.figures.p50)});
-    part.lines.push_back({"at most", time_text(study.figures.longest)});
-    part.lines.push_back({"at work", percent(study.figures.busy_share)});
-    if (study.agreement.missed > 0)
-        part.lines.push_back({"missed", fmt::format("{}", study.agreement.missed), Tone::bad});
-    part.lines.push_back({"false alarms", fmt::format("{}", study.agreement.false_alarms)});
+    part.lines.push_back({"latency", time_text(study.figures->p50)});
+    part.lines.push_back({"at most", time_text(study.figures->longest)});
+    part.lines.push_back({"at work", percent(study.figures->busy_share)});
+    if (study.agreement->missed > 0)
+        part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
+    part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});
     part.lines.push_back({"device", fmt::format("{} x {}, {} MHz", device.elements, device.threads,
                                                 device.clock_mhz)});
-    const auto best = smallest(study.result.fits);
+    const auto best = smallest(study.result->fits);
     std::string enough = "none of those tried";
     if (model.device.is_running)
         enough = fmt::format("looked for: {:.0f} %", 100.0 * model.device.share);
@@ -252,9 +257,9 @@ std::string slack_words(const ViewModel& model, size_t block) {
     case DeviceAnswer::nothing:
         return {};
     case DeviceAnswer::refused:
-        return "refused: " + refusal(study->result, block);
+        return "refused: " + refusal(*study->result, block);
     case DeviceAnswer::not_asked:
-        return "not asked: " + refusal(study->result, block);
+        return "not asked: " + refusal(*study->result, block);
     case DeviceAnswer::late:
         return "late by " + time_text(-*slack_of(study, block));
     case DeviceAnswer::permitted:

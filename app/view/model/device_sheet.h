@@ -1,8 +1,13 @@
 #pragma once
 
-#include "app/view/model/view_model.h"
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace app::viewer {
+
+struct ViewModel;
 
 /// How a value is meant.
 enum class Tone : uint8_t { plain, dim, near, bad };

@@ -1,8 +1,15 @@
 #include "app/view/model/device_worker.h"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 #include <utility>
+
+#include "app/check/check_run.h"
+#include "app/coproc/study/coprocessor_report.h"
 
 namespace app::viewer {
 namespace {
@@ -12,10 +19,43 @@ constexpr auto progress_interval = std::chrono::milliseconds(100);
 
 } // namespace
 
-DeviceWorker::DeviceWorker(std::function<void()> wake)
+/// What is to be run.
+struct DeviceJob {
+    CheckJob check;
+    std::string file; // of the device; empty: the default one
+};
+
+class DeviceWorker::Thread {
+public:
+    explicit Thread(std::function<void()> wake);
+    ~Thread();
+
+    uint64_t start(const DeviceJob& job);
+    void stop();
+    DeviceUpdate take();
+
+private:
+    void work();
+    void carry_out(const DeviceJob& job, uint64_t run);
+    core::Result<CoprocessorResult> emulate(const DeviceJob& job, const DeviceFile& file,
+                                            std::vector<uint32_t> others, uint64_t run);
+    bool is_over(uint64_t run) const { return stopping_ || runs_ != run; }
+    void deliver(DeviceUpdate news);
+
+    std::function<void()> wake_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<DeviceJob> wanted_;
+    DeviceUpdate news_;
+    std::atomic<bool> stopping_ = false;
+    std::atomic<uint64_t> runs_ = 0; // that were begun or ended
+    std::thread thread_;             // last: it uses all of the above
+};
+
+DeviceWorker::Thread::Thread(std::function<void()> wake)
     : wake_(std::move(wake)), thread_([this] { work(); }) {}
 
-DeviceWorker::~DeviceWorker() {
+DeviceWorker::Thread::~Thread() {
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
@@ -24,7 +64,7 @@ DeviceWorker::~DeviceWorker() {
     thread_.join();
 }
 
-uint64_t DeviceWorker::start(const DeviceJob& job) {
+uint64_t DeviceWorker::Thread::start(const DeviceJob& job) {
     uint64_t run = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -36,19 +76,19 @@ uint64_t DeviceWorker::start(const DeviceJob& job) {
     return run;
 }
 
-void DeviceWorker::stop() {
+void DeviceWorker::Thread::stop() {
     const std::lock_guard lock(mutex_);
     wanted_.reset();
     news_ = {};
     ++runs_;
 }
 
-DeviceUpdate DeviceWorker::take() {
+DeviceUpdate DeviceWorker::Thread::take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(news_, {});
 }
 
-void DeviceWorker::deliver(DeviceUpdate news) {
+void DeviceWorker::Thread::deliver(DeviceUpdate news) {
     {
         const std::lock_guard lock(mutex_);
         if (is_over(news.run)) return;
@@ -60,7 +100,7 @@ void DeviceWorker::deliver(DeviceUpdate news) {
     wake_();
 }
 
-void DeviceWorker::work() {
+void DeviceWorker::Thread::work() {
     while (true) {
         DeviceJob job;
         uint64_t run = 0;
@@ -75,8 +115,10 @@ void DeviceWorker::work() {
     }
 }
 
-core::Result<CoprocessorResult> DeviceWorker::emulate(const DeviceJob& job, const DeviceFile& file,
-                                                      std::vector<uint32_t> others, uint64_t run) {
+core::Result<CoprocessorResult> DeviceWorker::Thread::emulate(const DeviceJob& job,
+                                                              const DeviceFile& file,
+                                                              std::vector<uint32_t> others,
+                                                              uint64_t run) {
     CoprocessorJob asked;
     asked.check = job.check;
     asked.check.detail = core::Detail::every_pair;
@@ -99,7 +141,7 @@ core::Result<CoprocessorResult> DeviceWorker::emulate(const DeviceJob& job, cons
     return in_time(std::move(made), file, true);
 }
 
-void DeviceWorker::carry_out(const DeviceJob& job, uint64_t run) {
+void DeviceWorker::Thread::carry_out(const DeviceJob& job, uint64_t run) {
     const auto fail = [&](const core::Error& error) {
         deliver({.run = run, .is_done = true, .failure = error});
     };
@@ -122,6 +164,19 @@ void DeviceWorker::carry_out(const DeviceJob& job, uint64_t run) {
     }
 }
 
+DeviceWorker::DeviceWorker(std::function<void()> wake)
+    : thread_(std::make_unique<Thread>(std::move(wake))) {}
+
+DeviceWorker::~DeviceWorker() = default;
+
+uint64_t DeviceWorker::start(const CheckJob& check, const std::string& device_file) {
+    return thread_->start({check, device_file});
+}
+
+void DeviceWorker::stop() { thread_->stop(); }
+
+DeviceUpdate DeviceWorker::take() { return thread_->take(); }
+
 namespace {
 
 /// Set points between permit and need below which slack is little.
@@ -143,27 +198,27 @@ TimelineCell slack_cell(const DeviceStudy& study, size_t block) {
 
 std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result) {
     auto study = std::make_shared<DeviceStudy>();
-    study->figures = figures(result);
-    study->agreement = agreement(result.run);
+    study->figures = std::make_shared<const DeviceFigures>(figures(result));
+    study->agreement = std::make_shared<const EngineAgreement>(agreement(result.run));
     study->near = near_periods * result.file.control.servo.period;
-    study->result = std::move(result);
-    study->result.run.check.stock.reset(); // nobody looks at it
-    study->slack.resize(study->size());
+    result.run.check.stock.reset(); // not used any more
+    study->slack.resize(result.run.blocks.size());
+    study->result = std::make_shared<const CoprocessorResult>(std::move(result));
     for (size_t i = 0; i < study->size(); ++i) {
         const TimelineCell cell = slack_cell(*study, i);
         study->slack.set(i, cell);
         if (cell.offending) study->stops.push_back(i);
-        if (!study->held && !study->result.run.blocks[i].permit.permitted) study->held = i;
+        if (!study->held && !study->result->run.blocks[i].permit.permitted) study->held = i;
     }
     return study;
 }
 
 DeviceAnswer answer_of(const DeviceStudy* study, size_t block) {
     if (!study || block >= study->size()) return DeviceAnswer::unknown;
-    const BlockPermit& permit = study->result.run.blocks[block].permit;
+    const BlockPermit& permit = study->result->run.blocks[block].permit;
     if (!permit.not_asked.empty()) return DeviceAnswer::not_asked;
     if (!permit.permitted) return DeviceAnswer::refused;
-    if (study->result.timing.blocks[block].is_late()) return DeviceAnswer::late;
+    if (study->result->timing.blocks[block].is_late()) return DeviceAnswer::late;
     return permit.segments == 0 ? DeviceAnswer::nothing : DeviceAnswer::permitted;
 }
 
@@ -174,7 +229,7 @@ bool stops_machine(DeviceAnswer answer) {
 
 std::optional<double> slack_of(const DeviceStudy* study, size_t block) {
     if (!study || block >= study->size()) return {};
-    const double slack = study->result.timing.blocks[block].slack();
+    const double slack = study->result->timing.blocks[block].slack();
     if (!std::isfinite(slack)) return {};
     return slack;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/base/text.h"
+#include "app/view/model/view_model.h"
 #include "gcode/text/program_text.h"
 
 namespace app::viewer {

@@ -1,8 +1,13 @@
 #pragma once
 
-#include "app/view/model/view_model.h"
+#include <optional>
+#include <string>
+
+#include "app/view/model/finding_group.h"
 
 namespace app::viewer {
+
+struct ViewModel;
 
 /// Goes to a block. `share` 1 is its end; the view that belongs to it is asked for.
 void go_to(ViewModel& model, size_t block, double share = 1.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/motion/path.h"
+#include "gcode/language/canonical.h"
 #include "render/motion_path.h"
 
 namespace app::viewer {

@@ -3,13 +3,16 @@
 #include <span>
 
 #include "app/view/model/block_row.h"
-#include "gcode/language/canonical.h"
+#include "core/motion/event.h"
 #include "render/tool_path.h"
 
 namespace core {
 struct Machine;
-struct Setup;
 } // namespace core
+
+namespace gcode {
+struct BlockResult;
+} // namespace gcode
 
 namespace app::viewer {
 

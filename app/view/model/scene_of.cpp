@@ -5,9 +5,20 @@
 #include <fmt/format.h>
 
 #include "app/check/setup_sheet.h"
+#include "app/view/model/view_model.h"
 #include "render/picking.h"
 
 namespace app::viewer {
+
+std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
+    auto scene = std::make_shared<SceneSetup>();
+    scene->setup = setup;
+    scene->meshes = render::setup_meshes(setup);
+    for (const auto& [number, tool] : setup.tools)
+        scene->tools.emplace(number, render::tool_meshes(tool));
+    return scene;
+}
+
 namespace {
 
 /// The view of the cursor's block; an older one while the worker makes it.
@@ -143,7 +154,8 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     key.opening = model.opening;
     key.place = model.place ? model.place->serial : 0;
     key.path = model.path.get();
-    key.cursor = model.cursor;
+    key.block = model.cursor.block;
+    key.share = model.cursor.share;
     key.camera = model.camera;
     key.shown = model.settings.shown;
     key.theme = model.settings.theme;

@@ -1,8 +1,28 @@
 #pragma once
 
-#include "app/view/model/view_model.h"
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/view/model/settings.h"
+#include "core/sim/setup.h"
+#include "render/scene.h"
+#include "render/setup_scene.h"
 
 namespace app::viewer {
+
+struct ViewModel;
+
+/// A set-up with all that is drawn of it, made once and shared.
+struct SceneSetup {
+    core::Setup setup;
+    render::SetupMeshes meshes;
+    std::map<core::ToolNumber, std::vector<render::SharedMesh>> tools;
+};
+
+std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup);
 
 /// What is to be seen at the cursor. Cheap: everything large is shared.
 render::Scene scene_of(const ViewModel& model);
@@ -11,7 +31,8 @@ render::Scene scene_of(const ViewModel& model);
 struct SceneKey {
     uint64_t opening = 0, place = 0;
     const void* path = nullptr;
-    Cursor cursor;
+    size_t block = 0;
+    double share = 1.0; // of the block
     render::Camera camera;
     Shown shown;
     render::ColorScheme theme = render::ColorScheme::dark;

@@ -1,26 +1,30 @@
 #pragma once
 
-#include <map>
+#include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
-#include "app/check/setup_sheet.h"
 #include "app/debug/debug_session.h"
-#include "app/debug/inspected_value.h"
 #include "app/view/model/block_row.h"
-#include "render/setup_scene.h"
+#include "core/motion/event.h"
 #include "render/stock_brick.h"
 #include "render/tool_path.h"
 
+namespace core {
+struct Machine;
+} // namespace core
+
+namespace app {
+struct SetupSheet;
+} // namespace app
+
 namespace app::viewer {
 
-/// A set-up with all that is drawn of it, made once and shared.
-struct SceneSetup {
-    core::Setup setup;
-    render::SetupMeshes meshes;
-    std::map<core::ToolNumber, std::vector<render::SharedMesh>> tools;
-};
-
-std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup);
+struct SceneSetup;
 
 /// Where the axes are at a moment of a block.
 struct Pose {
@@ -92,6 +96,10 @@ struct ShowRequest {
     bool at_end = true; // else as the block finds it
 };
 
+/// Writes a set-up file, whole or not at all; the same as app::FileWriter.
+using SetupWriter =
+    std::function<core::Result<void>(const std::string& path, const std::string& text)>;
+
 /// A set-up that was to be saved.
 struct SetupSaved {
     std::string path;
@@ -130,5 +138,36 @@ struct SessionUpdate {
 
 /// Takes a later update into one that nobody has looked at yet.
 void merge(SessionUpdate& news, SessionUpdate later);
+
+/// Turns what a record gains into updates, and keeps what the whole path looks like.
+class SessionPublisher {
+public:
+    /// Another program: all of it is new.
+    void begin(std::vector<render::PathPoint> points, size_t rows);
+    /// From a block on the program goes another way.
+    void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
+
+    /// What the record has gained since the last call.
+    void publish(const DebugSession& session, SessionUpdate& news);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void add_rows(const DebugSession& session, SessionUpdate& news);
+    /// The states of the blocks that were checked.
+    std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
+    void paint_path(const DebugSession& session, SessionUpdate& news);
+    /// The first row whose time has been settled since it was sent.
+    size_t first_changed(const CheckRun& run) const;
+
+    std::vector<render::PathPoint> points_;
+    std::vector<double> durations_;              // as they were sent
+    std::vector<render::ClearanceState> states_; // of blocks, but for the findings about them
+    size_t rows_ = 0;                            // known to the window
+    size_t findings_ = 0;
+    bool is_whole_ = false;
+    Clock::time_point last_path_ = {};
+    Clock::duration path_cost_ = {};
+};
 
 } // namespace app::viewer

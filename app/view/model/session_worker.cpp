@@ -1,17 +1,26 @@
 #include "app/view/model/session_worker.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <filesystem>
-#include <limits>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include "app/check/check_job.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
+#include "app/check/saved_setup.h"
+#include "app/check/setup_sheet.h"
 #include "app/view/model/program_track.h"
-#include "core/motion/timing.h"
+#include "app/view/model/scene_of.h"
+#include "render/stock_surface.h"
 
 namespace app::viewer {
+
 namespace {
 
 /// How long a slice of the record takes, seconds: a request waits for one at most.
@@ -62,11 +71,22 @@ std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
 
 } // namespace
 
+WorkerSession::WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing)
+    : is_interrupted_(std::move(is_interrupted)),
+      is_closing_(std::move(is_closing)),
+      surface_(std::make_unique<render::StockSurface>()) {}
+
+WorkerSession::~WorkerSession() = default;
+
+const CheckRun* WorkerSession::checked() const { return session_ ? &session_->record() : nullptr; }
+
+bool WorkerSession::has_work() const { return session_ && (walk_ || !session_->is_recorded()); }
+
 void WorkerSession::open(const CheckJob& job, const std::function<void()>& publish) {
     session_.reset();
     walk_.reset();
     scenes_.clear();
-    surface_.reset();
+    surface_->reset();
     news_ = {};
     news_.opening = ++openings_;
     news_.has_news = news_.is_busy = true;
@@ -147,17 +167,17 @@ void WorkerSession::show(const ShowRequest& request) {
     view->serial = ++views_;
     if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
     view->scene = scene_at(view->block);
-    const gcode::InterpreterState before = session_->place().control;
+    const gcode::InterpreterState before = session_->control();
     const auto ahead = first_events([&](const BlockVisit& look) { session_->visit_ahead(look); });
     const std::vector<core::Event> events = ahead.value_or(std::vector<core::Event>());
     view->poses = poses_of(view->scene->setup.machine, events);
-    view->tool = tool_of(events, session_->place().machine.tool);
-    if (!request.at_end) surface_.update(session_->place().machine.stock);
+    view->tool = tool_of(events, session_->tool());
+    if (!request.at_end) surface_->update(session_->state().machine.stock);
     // A block that the control refuses has nothing behind it: the view is then that before it.
     if (ahead) static_cast<void>(session_->go_to(view->block + 1));
-    const RunState& after = session_->place();
-    if (request.at_end) surface_.update(after.machine.stock);
-    view->stock = surface_.bricks();
+    const RunState& after = session_->state();
+    if (request.at_end) surface_->update(after.machine.stock);
+    view->stock = surface_->bricks();
     view->standing = known_values(view->scene->setup.machine, after.machine.position);
     view->fixtures_there = after.machine.fixtures_there;
     const gcode::Environment& world = session_->environment();
@@ -215,14 +235,14 @@ void WorkerSession::take_back() {
     follow_anew();
 }
 
-void WorkerSession::save_setup(const SaveRequest& request) {
-    SetupSaved saved{request.path, {}, false};
-    const auto done =
-        app::save_setup(request.job, request.path, request.may_replace, request.write);
+void WorkerSession::save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                               const SetupWriter& write) {
+    SetupSaved saved{path, {}, false};
+    const auto done = app::save_setup(job, path, may_replace, write);
     if (!done) {
         std::error_code ignored; // of a name that no file can have, which the refusal tells of
         saved.refusal = done.error();
-        saved.exists = !request.may_replace && std::filesystem::exists(request.path, ignored);
+        saved.exists = !may_replace && std::filesystem::exists(path, ignored);
     }
     news_.saved = std::move(saved);
     news_.has_news = true;
@@ -231,9 +251,9 @@ void WorkerSession::save_setup(const SaveRequest& request) {
 void WorkerSession::follow_anew() {
     walk_.reset();
     scenes_.clear();
-    surface_.reset();
+    surface_->reset();
     const size_t block = session_->at();
-    ProgramTrack track(session_->setup_at(block), block, session_->place().machine.tool);
+    ProgramTrack track(session_->setup_at(block), block, session_->tool());
     session_->visit_ahead(
         [&](const gcode::BlockCommands& ahead, std::span<const core::Event> events) {
             track.add(ahead, events);
@@ -263,10 +283,34 @@ SessionUpdate WorkerSession::take_news() {
     return news;
 }
 
-SessionWorker::SessionWorker(std::function<void()> wake)
-    : wake_(std::move(wake)), thread_([this] { run(); }) {}
+/// What the threads share.
+struct SessionWorker::State {
+    using Task = std::function<void(WorkerSession&)>;
 
-SessionWorker::~SessionWorker() {
+    explicit State(std::function<void()> wake) : wake_(std::move(wake)) {}
+    ~State();
+
+    void interrupt() { interrupted_ = walks_.load(); }
+    void post(Task task);
+    void run();
+    void deliver(SessionUpdate news);
+    /// The requested view, if it can be made now.
+    std::optional<ShowRequest> wanted(const WorkerSession& session);
+
+    std::function<void()> wake_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Task> tasks_;
+    std::optional<ShowRequest> wanted_;
+    SessionUpdate news_;
+    std::atomic<bool> stopping_ = false;
+    std::atomic<uint64_t> walks_ = 0;       // requested
+    std::atomic<uint64_t> interrupted_ = 0; // up to this one
+    uint64_t walking_ = 0;                  // the last one begun, in the worker's thread
+    std::thread thread_ = std::thread([this] { run(); }); // last: it uses all of the above
+};
+
+SessionWorker::State::~State() {
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
@@ -275,7 +319,7 @@ SessionWorker::~SessionWorker() {
     thread_.join();
 }
 
-void SessionWorker::post(Task task) {
+void SessionWorker::State::post(Task task) {
     {
         const std::lock_guard lock(mutex_);
         tasks_.push_back(std::move(task));
@@ -283,59 +327,7 @@ void SessionWorker::post(Task task) {
     changed_.notify_all();
 }
 
-void SessionWorker::open(const CheckJob& job) {
-    interrupt();
-    post([this, job](WorkerSession& session) {
-        const auto publish = [&] { deliver(session.take_news()); };
-        session.open(job, publish);
-    });
-}
-
-void SessionWorker::show(const ShowRequest& request) {
-    {
-        const std::lock_guard lock(mutex_);
-        wanted_ = request;
-    }
-    changed_.notify_all();
-}
-
-uint64_t SessionWorker::walk(Walk walk, size_t block) {
-    const uint64_t number = ++walks_;
-    post([this, number, walk, block](WorkerSession& session) {
-        walking_ = number;
-        session.walk(walk, block, number);
-    });
-    return number;
-}
-
-void SessionWorker::set_breakpoints(const std::vector<Breakpoint>& breakpoints) {
-    post([breakpoints](WorkerSession& session) { session.set_breakpoints(breakpoints); });
-}
-
-void SessionWorker::watch(const std::vector<std::string>& expressions) {
-    post([expressions](WorkerSession& session) { session.watch(expressions); });
-}
-
-void SessionWorker::change(const WhatIf& change, size_t block) {
-    post([change, block](WorkerSession& session) { session.change(change, block); });
-}
-
-void SessionWorker::take_back() {
-    post([](WorkerSession& session) { session.take_back(); });
-}
-
-void SessionWorker::save_setup(const SaveRequest& request) {
-    post([request](WorkerSession& session) { session.save_setup(request); });
-}
-
-SessionUpdate SessionWorker::take() {
-    const std::lock_guard lock(mutex_);
-    SessionUpdate news = std::move(news_);
-    news_ = {};
-    return news;
-}
-
-void SessionWorker::deliver(SessionUpdate news) {
+void SessionWorker::State::deliver(SessionUpdate news) {
     if (!news.has_news) return;
     {
         const std::lock_guard lock(mutex_);
@@ -344,13 +336,13 @@ void SessionWorker::deliver(SessionUpdate news) {
     wake_();
 }
 
-std::optional<ShowRequest> SessionWorker::wanted(const WorkerSession& session) {
+std::optional<ShowRequest> SessionWorker::State::wanted(const WorkerSession& session) {
     const std::lock_guard lock(mutex_);
     if (!wanted_ || !session.can_show(*wanted_)) return {};
     return std::exchange(wanted_, std::nullopt);
 }
 
-void SessionWorker::run() {
+void SessionWorker::State::run() {
     const auto is_interrupted = [this] {
         return stopping_ || (walking_ != 0 && walking_ <= interrupted_);
     };
@@ -380,94 +372,65 @@ void SessionWorker::run() {
     }
 }
 
-void SessionPublisher::begin(std::vector<render::PathPoint> points, size_t rows) {
-    *this = {};
-    rows_ = rows;
-    points_ = std::move(points);
+SessionWorker::SessionWorker(std::function<void()> wake)
+    : state_(std::make_unique<State>(std::move(wake))) {}
+
+SessionWorker::~SessionWorker() = default;
+
+void SessionWorker::interrupt() { state_->interrupt(); }
+
+void SessionWorker::open(const CheckJob& job) {
+    interrupt();
+    state_->post([state = state_.get(), job](WorkerSession& session) {
+        const auto publish = [&] { state->deliver(session.take_news()); };
+        session.open(job, publish);
+    });
 }
 
-void SessionPublisher::begin_again(size_t block, const std::vector<render::PathPoint>& points,
-                                   size_t rows) {
-    rows_ = rows;
-    const auto from = std::find_if(points_.begin(), points_.end(),
-                                   [&](const auto& point) { return point.block >= block; });
-    points_.erase(from, points_.end());
-    points_.insert(points_.end(), points.begin(), points.end());
-    durations_.resize(std::min(durations_.size(), block));
-    states_.resize(std::min(states_.size(), block));
-    findings_ = std::numeric_limits<size_t>::max(); // send them again
-    is_whole_ = false;
-    last_path_ = {};
-}
-
-size_t SessionPublisher::first_changed(const CheckRun& run) const {
-    // A time is settled when `look_ahead` motions have come after it, at the latest at the end.
-    size_t first = durations_.size(), motions_after = 0;
-    if (is_whole_) return first;
-    for (size_t i = first; i-- > 0 && motions_after <= core::look_ahead;) {
-        const core::BlockResult& result = run.blocks[i].result;
-        if (durations_[i] != result.duration) first = i;
-        if (result.motion != core::BlockMotion::none) ++motions_after;
+void SessionWorker::show(const ShowRequest& request) {
+    {
+        const std::lock_guard lock(state_->mutex_);
+        state_->wanted_ = request;
     }
-    return first;
+    state_->changed_.notify_all();
 }
 
-void SessionPublisher::add_rows(const DebugSession& session, SessionUpdate& news) {
-    const CheckRun& run = session.record();
-    if (durations_.size() > run.blocks.size()) durations_.resize(run.blocks.size());
-    RowsUpdate update;
-    update.first = first_changed(run);
-    durations_.resize(update.first);
-    states_.resize(std::min(states_.size(), update.first));
-    for (size_t i = update.first; i < run.blocks.size(); ++i) {
-        update.rows.push_back(row_of(session.setup_at(i), run.blocks[i]));
-        durations_.push_back(run.blocks[i].result.duration);
-        states_.push_back(state_of(update.rows.back()));
-    }
-    rows_ = std::max(rows_, run.blocks.size());
-    if (session.is_recorded() && rows_ != run.blocks.size()) {
-        rows_ = run.blocks.size();
-        update.count = rows_;
-    }
-    if (!update.empty()) news.rows.append(std::move(update));
+uint64_t SessionWorker::walk(Walk walk, size_t block) {
+    const uint64_t number = ++state_->walks_;
+    state_->post([state = state_.get(), number, walk, block](WorkerSession& session) {
+        state->walking_ = number;
+        session.walk(walk, block, number);
+    });
+    return number;
 }
 
-std::vector<render::ClearanceState> SessionPublisher::known_states(const CheckRun& run) const {
-    std::vector<render::ClearanceState> states = states_;
-    for (const core::Finding& finding : run.findings) {
-        if (finding.severity != core::Severity::error || !finding.block) continue;
-        const size_t block = core::value_of(*finding.block);
-        if (block < states.size()) states[block] = render::ClearanceState::violation;
-    }
-    return states;
+void SessionWorker::set_breakpoints(const std::vector<Breakpoint>& breakpoints) {
+    state_->post([breakpoints](WorkerSession& session) { session.set_breakpoints(breakpoints); });
 }
 
-void SessionPublisher::paint_path(const DebugSession& session, SessionUpdate& news) {
-    const Clock::time_point now = Clock::now();
-    const bool is_due = last_path_ == Clock::time_point{}
-                        || now - last_path_ > std::chrono::milliseconds(300) + 20 * path_cost_;
-    if (!is_due && !(session.is_recorded() && !is_whole_)) return;
-    const std::vector<render::ClearanceState> states = known_states(session.record());
-    for (render::PathPoint& point : points_)
-        if (point.block < states.size()) point.state = states[point.block];
-    news.path = std::make_shared<const render::ToolPath>(render::tool_path(points_));
-    last_path_ = Clock::now();
-    path_cost_ = last_path_ - now;
+void SessionWorker::watch(const std::vector<std::string>& expressions) {
+    state_->post([expressions](WorkerSession& session) { session.watch(expressions); });
 }
 
-void SessionPublisher::publish(const DebugSession& session, SessionUpdate& news) {
-    add_rows(session, news);
-    const CheckRun& run = session.record();
-    if (run.findings.size() != findings_ || (session.is_recorded() && !is_whole_)) {
-        news.findings = run.findings;
-        findings_ = run.findings.size();
-    }
-    if (!is_whole_) paint_path(session, news);
-    if (session.is_recorded() && !is_whole_) news.stopped = run.stopped;
-    is_whole_ = session.is_recorded();
-    news.share = session.recorded_share();
-    news.is_recorded = is_whole_;
-    news.has_news = true;
+void SessionWorker::change(const WhatIf& change, size_t block) {
+    state_->post([change, block](WorkerSession& session) { session.change(change, block); });
+}
+
+void SessionWorker::take_back() {
+    state_->post([](WorkerSession& session) { session.take_back(); });
+}
+
+void SessionWorker::save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                               const SetupWriter& write) {
+    state_->post(
+        [=](WorkerSession& session) { session.save_setup(job, path, may_replace, write); });
+}
+
+SessionUpdate SessionWorker::take() {
+    const std::lock_guard lock(state_->mutex_);
+    SessionUpdate news = std::move(state_->news_);
+    state_->news_ = {};
+    return news;
 }
 
 } // namespace app::viewer

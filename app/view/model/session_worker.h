@@ -1,73 +1,41 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
-#include <thread>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "app/check/check_job.h"
-#include "app/check/saved_setup.h"
-#include "app/view/model/program_track.h"
 #include "app/view/model/session_update.h"
-#include "render/stock_surface.h"
+
+namespace app {
+struct CheckJob;
+} // namespace app
+
+namespace render {
+class StockSurface;
+} // namespace render
 
 namespace app::viewer {
 
-/// Turns what a record gains into updates, and keeps what the whole path looks like.
-class SessionPublisher {
-public:
-    /// Another program: all of it is new.
-    void begin(std::vector<render::PathPoint> points, size_t rows);
-    /// From a block on the program goes another way.
-    void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
-
-    /// What the record has gained since the last call.
-    void publish(const DebugSession& session, SessionUpdate& news);
-
-private:
-    using Clock = std::chrono::steady_clock;
-
-    void add_rows(const DebugSession& session, SessionUpdate& news);
-    /// The states of the blocks that were checked.
-    std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
-    void paint_path(const DebugSession& session, SessionUpdate& news);
-    /// The first row whose time has been settled since it was sent.
-    size_t first_changed(const CheckRun& run) const;
-
-    std::vector<render::PathPoint> points_;
-    std::vector<double> durations_;              // as they were sent
-    std::vector<render::ClearanceState> states_; // of blocks, but for the findings about them
-    size_t rows_ = 0;                            // known to the window
-    size_t findings_ = 0;
-    bool is_whole_ = false;
-    Clock::time_point last_path_ = {};
-    Clock::duration path_cost_ = {};
-};
-
-/// The set-up of a job that is to be put into a file.
-struct SaveRequest {
-    CheckJob job;
-    std::string path;
-    bool may_replace = false;
-    FileWriter write;
-};
+class ProgramTrack;
 
 /// What the worker does, all in its thread: a debugging session and what is made of it for the
 /// window.
 class WorkerSession {
 public:
     /// `is_interrupted` is asked on long walks, `is_closing` while a program is opened.
-    WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing)
-        : is_interrupted_(std::move(is_interrupted)), is_closing_(std::move(is_closing)) {}
+    WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing);
+    ~WorkerSession();
 
     /// Opens another program; `publish` is called when its path is known, before the stock is.
     void open(const CheckJob& job, const std::function<void()>& publish);
     /// The record as far as it is; null when nothing is open.
-    const CheckRun* checked() const { return session_ ? &session_->record() : nullptr; }
+    const CheckRun* checked() const;
     /// Whether there is more to record.
-    bool has_work() const { return session_ && (walk_ || !session_->is_recorded()); }
+    bool has_work() const;
     /// Carries the walk that was asked for on for a slice, else the record.
     void record();
     /// Whether a view needs no more recording.
@@ -79,7 +47,8 @@ public:
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
     void change(const WhatIf& change, size_t block);
     void take_back();
-    void save_setup(const SaveRequest& request);
+    void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                    const SetupWriter& write);
 
     SessionUpdate take_news();
 
@@ -101,7 +70,7 @@ private:
     std::function<bool()> is_interrupted_, is_closing_;
     std::unique_ptr<DebugSession> session_;
     SessionPublisher publisher_;
-    render::StockSurface surface_;
+    std::unique_ptr<render::StockSurface> surface_;
     std::vector<std::pair<size_t, std::shared_ptr<const SceneSetup>>> scenes_; // by first block
     std::vector<std::string> watched_;
     std::vector<Breakpoint> breakpoints_;
@@ -118,57 +87,40 @@ private:
     Clock::time_point last_publish_ = {};
 };
 
-/// The one thread that owns a debugging session. Requests return at once; what comes of them is in
-/// a later update. Between requests the record goes on in slices of some 10 ms, so that a request
-/// waits for no more than one of them.
+/// Owns a debugging session in a thread of its own. Requests return at once; their results come in
+/// a later update. Between requests the worker continues the check in slices of some 10 ms, so that
+/// a request waits for one slice at most.
 class SessionWorker {
 public:
-    /// `wake` is called from the thread whenever there is news.
+    /// `wake` is called from the thread whenever there is an update.
     explicit SessionWorker(std::function<void()> wake);
-    /// Ends the check, wherever it is.
+    /// Ends the check, however far it is.
     ~SessionWorker();
-    SessionWorker(const SessionWorker&) = delete;
-    SessionWorker& operator=(const SessionWorker&) = delete;
 
     void open(const CheckJob& job);
-    /// Of several that wait only the last one counts.
+    /// Only the last of several waiting requests is answered.
     void show(const ShowRequest& request);
-    /// From a block on, which itself is passed; what it stops at comes as a WalkEnd with
+    /// Walks on from a block, starting with the block after it. The result comes as a WalkEnd with
     /// the number that is returned.
     uint64_t walk(Walk walk, size_t block);
-    /// Ends the walks that were asked for so far.
-    void interrupt() { interrupted_ = walks_.load(); }
+    /// Ends the walks requested so far.
+    void interrupt();
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
-    /// Expressions that every view shows the values of.
+    /// Expressions whose values every view includes.
     void watch(const std::vector<std::string>& expressions);
-    /// From the place before a block on.
+    /// Applies a change before a block.
     void change(const WhatIf& change, size_t block);
     void take_back();
-    void save_setup(const SaveRequest& request);
+    /// As app::save_setup.
+    void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
+                    const SetupWriter& write);
 
-    /// What is new since the last call.
+    /// Everything new since the last call.
     SessionUpdate take();
 
 private:
-    using Task = std::function<void(WorkerSession&)>;
-
-    void post(Task task);
-    void run();
-    void deliver(SessionUpdate news);
-    /// The view that is asked for, if it can be made.
-    std::optional<ShowRequest> wanted(const WorkerSession& session);
-
-    std::function<void()> wake_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Task> tasks_;
-    std::optional<ShowRequest> wanted_;
-    SessionUpdate news_;
-    std::atomic<bool> stopping_ = false;
-    std::atomic<uint64_t> walks_ = 0;       // that were asked for
-    std::atomic<uint64_t> interrupted_ = 0; // up to this one
-    uint64_t walking_ = 0;                  // the last that was begun, in the worker's thread
-    std::thread thread_;                    // last: it uses all of the above
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 } // namespace app::viewer

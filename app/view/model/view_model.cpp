@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_run.h"
+#include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
 #include "core/sim/verdict.h"
 
@@ -290,7 +292,7 @@ bool send_device_orders(ViewModel& model, DeviceWorker& worker,
         worker.stop();
         return true;
     }
-    device.run = worker.start({*check, device.file});
+    device.run = worker.start(*check, device.file);
     device.is_running = true;
     return true;
 }

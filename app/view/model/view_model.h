@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "app/view/model/device_worker.h"
 #include "app/view/model/finding_group.h"
 #include "app/view/model/row_filter.h"
 #include "app/view/model/session_update.h"
@@ -10,8 +14,16 @@
 #include "app/view/model/timeline.h"
 #include "render/scene.h"
 
+namespace app {
+struct CheckJob;
+struct SetupEdits;
+} // namespace app
+
 namespace app::viewer {
 
+struct DeviceStudy;
+struct DeviceUpdate;
+class DeviceWorker;
 struct ViewModel;
 
 /// What the window knows of the coprocessor, and what a person wants of it.
@@ -78,7 +90,7 @@ enum class Popup : uint8_t {
 
 /// What the window is to do with the set-up.
 struct SetupRequest {
-    SetupEdits edits;
+    std::shared_ptr<const SetupEdits> edits;
     std::string save_path = {}; // empty: only check with the edits
     bool may_replace = false;
 };
@@ -105,8 +117,8 @@ struct ViewModel {
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const PlaceView> place;
     std::vector<std::string> changes;
-    SetupEdits edits;                // of the set-up, that the program was opened with
-    std::optional<SetupSaved> saved; // the last answer to a wish to save the set-up
+    std::shared_ptr<const SetupEdits> edits; // of the set-up, when opened; null: none
+    std::optional<SetupSaved> saved;         // the last answer to a wish to save the set-up
     std::optional<core::Error> failure, stopped;
     std::string missing; // a file that is shown, but is gone or empty by now
     double share = 0.0;

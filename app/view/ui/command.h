@@ -7,6 +7,9 @@
 
 namespace app::viewer {
 
+class SessionWorker;
+struct ViewModel;
+
 /// What a key or a button does.
 enum class Command : uint8_t {
     step,
@@ -126,5 +129,14 @@ constexpr int function(int number) { return f1 + number - 1; }
 namespace mod {
 constexpr int none = 0, shift = 1, control = 2, alt = 4;
 } // namespace mod
+
+/// Does what a command says. What only a window can do is noted in the model.
+void perform(ViewModel& model, Command command, double now);
+
+/// Puts the closest pair of the current block into the middle of the view.
+void frame_witness(ViewModel& model);
+
+/// Hands what the model wants to the worker. Whether it wanted anything.
+bool send_requests(ViewModel& model, SessionWorker& worker);
 
 } // namespace app::viewer

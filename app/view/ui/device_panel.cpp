@@ -1,7 +1,8 @@
 #include "app/view/model/device_sheet.h"
+#include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
-#include "app/view/ui/widgets.h"
 
 namespace app::viewer {
 namespace {

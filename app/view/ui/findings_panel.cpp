@@ -5,8 +5,8 @@
 #include <imgui_stdlib.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
-#include "app/view/ui/widgets.h"
 
 namespace app::viewer {
 namespace {

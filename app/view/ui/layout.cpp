@@ -1,7 +1,9 @@
-#include "app/view/ui/layout.h"
-
 #include <algorithm>
 #include <utility>
+
+#include "app/view/model/view_model.h"
+#include "app/view/ui/panels.h"
+#include "render/renderer.h"
 
 namespace app::viewer {
 namespace {
@@ -54,6 +56,12 @@ void drag(double& setting, float by, const Frame& frame, double least, double mo
 constexpr double least_view = 560.0; // beside which both columns at the right stand
 
 } // namespace
+
+Layout::Layout(render::Renderer renderer) : scene_(std::move(renderer)) {}
+
+Layout::~Layout() = default;
+
+void Layout::set_samples(int samples) { scene_.set_samples(samples); }
 
 Layout::Parts Layout::parts_of(const Frame& frame, const Area& area) {
     const Settings& settings = frame.model.settings;

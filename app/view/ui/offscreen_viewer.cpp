@@ -1,16 +1,21 @@
-#include "app/view/ui/offscreen_viewer.h"
-
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
 
 #include <epoxy/gl.h>
 #include <imgui.h>
 
+#include "app/check/check_run.h"
+#include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
+#include "app/view/model/session_worker.h"
+#include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
-#include "app/view/ui/layout.h"
-#include "app/view/ui/perform.h"
-#include "app/view/ui/widgets.h"
+#include "app/view/ui/panels.h"
+#include "app/view/ui/window.h"
+#include "render/offscreen.h"
+#include "render/renderer.h"
 
 namespace app::viewer {
 namespace {
@@ -36,23 +41,34 @@ struct Texture {
 
 } // namespace
 
-core::Result<std::unique_ptr<OffscreenViewer>> OffscreenViewer::make(render::ColorScheme theme,
-                                                                     double scale) {
-    FEELER_TRY(render::Offscreen context, render::Offscreen::make());
-    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
-    return std::unique_ptr<OffscreenViewer>(
-        new OffscreenViewer(std::move(context), std::move(renderer), theme, scale));
-}
+struct OffscreenViewer::State {
+    State(render::Offscreen context, render::Renderer renderer);
+    ~State();
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
 
-OffscreenViewer::OffscreenViewer(render::Offscreen context, render::Renderer renderer,
-                                 render::ColorScheme theme, double scale)
+    void wait();
+    /// What is drawn between ImGui's NewFrame and Render, as a picture.
+    core::Result<render::Image> drawn(const render::Viewport& size, render::ColorScheme theme,
+                                      int frames, const std::function<void()>& draw);
+
+    render::Offscreen context_;
+    render::Renderer still_;
+    std::unique_ptr<Layout> layout_;
+    std::unique_ptr<Fonts> fonts_;
+    std::mutex mutex_;
+    std::condition_variable woken_;
+    bool is_woken_ = false;
+    std::optional<CheckJob> job_; // that is open
+    std::unique_ptr<SessionWorker> worker_;
+    std::unique_ptr<DeviceWorker> device_;
+};
+
+OffscreenViewer::State::State(render::Offscreen context, render::Renderer renderer)
     : context_(std::move(context)), still_(std::move(renderer)) {
-    model.settings.theme = theme;
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui_ImplOpenGL3_Init("#version 330 core");
-    fonts_ = std::make_unique<Fonts>(load_fonts(scale));
-    apply_style(Theme{theme}, scale);
     const auto wake = [this] {
         {
             const std::lock_guard lock(mutex_);
@@ -64,7 +80,7 @@ OffscreenViewer::OffscreenViewer(render::Offscreen context, render::Renderer ren
     device_ = std::make_unique<DeviceWorker>(wake);
 }
 
-OffscreenViewer::~OffscreenViewer() {
+OffscreenViewer::State::~State() {
     device_.reset();
     worker_.reset();
     layout_.reset();
@@ -72,25 +88,66 @@ OffscreenViewer::~OffscreenViewer() {
     ImGui::DestroyContext();
 }
 
-void OffscreenViewer::wait() {
+void OffscreenViewer::State::wait() {
     std::unique_lock lock(mutex_);
     woken_.wait(lock, [&] { return is_woken_; });
     is_woken_ = false;
 }
 
+OffscreenViewer::OffscreenViewer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+OffscreenViewer::~OffscreenViewer() = default;
+
+core::Result<std::unique_ptr<OffscreenViewer>> OffscreenViewer::make(render::ColorScheme theme,
+                                                                     double scale) {
+    FEELER_TRY(render::Offscreen context, render::Offscreen::make());
+    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+    auto state = std::make_unique<State>(std::move(context), std::move(renderer));
+    state->fonts_ = std::make_unique<Fonts>(load_fonts(scale));
+    apply_style(Theme{theme}, scale);
+    std::unique_ptr<OffscreenViewer> viewer(new OffscreenViewer(std::move(state)));
+    viewer->model.settings.theme = theme;
+    return viewer;
+}
+
+core::Result<render::Image> OffscreenViewer::State::drawn(const render::Viewport& size,
+                                                          render::ColorScheme theme, int frames,
+                                                          const std::function<void()>& draw) {
+    FEELER_TRY(render::Canvas canvas, render::Canvas::make(size));
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
+    io.DeltaTime = 1.0F / 60.0F;
+    for (int i = 0; i < frames; ++i) {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui::NewFrame();
+        draw();
+        ImGui::Render();
+    }
+    canvas.begin();
+    glViewport(0, 0, size.width, size.height);
+    const ImVec4 back = Theme{theme}.vector(Role::panel);
+    glClearColor(back.x, back.y, back.z, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    canvas.finish();
+    render::Image image = canvas.pixels();
+    for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
 void OffscreenViewer::update() {
-    take_in(model, worker_->take(), 0.0);
-    take_in(model, device_->take());
+    take_in(model, state_->worker_->take(), 0.0);
+    take_in(model, state_->device_->take());
     model.message.clear();
-    send_device_orders(model, *device_, job_);
-    send_requests(model, *worker_);
+    send_device_orders(model, *state_->device_, state_->job_);
+    send_requests(model, *state_->worker_);
 }
 
 core::Result<void> OffscreenViewer::open(const CheckJob& job) {
-    job_ = job;
-    worker_->open(job);
+    state_->job_ = job;
+    state_->worker_->open(job);
     while (!model.failure && !model.is_recorded) {
-        wait();
+        state_->wait();
         update();
     }
     if (model.failure) return tl::unexpected(*model.failure);
@@ -102,7 +159,7 @@ core::Result<void> OffscreenViewer::run_device(const std::string& file) {
     model.device.shown = true;
     update();
     while (model.device.is_running) {
-        wait();
+        state_->wait();
         update();
     }
     if (model.device.failure) return tl::unexpected(*model.device.failure);
@@ -124,7 +181,7 @@ void OffscreenViewer::settle() {
                && model.place->block == model.cursor.block && model.place->at_end == at_end;
     };
     while (!is_there()) {
-        wait();
+        state_->wait();
         update();
     }
 }
@@ -141,44 +198,20 @@ void OffscreenViewer::look(ShotView view, const render::Viewport& size) {
     model.camera_placed = true;
 }
 
-core::Result<render::Image> OffscreenViewer::drawn(const render::Viewport& size, int frames,
-                                                   const std::function<void()>& draw) {
-    FEELER_TRY(render::Canvas canvas, render::Canvas::make(size));
-    ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
-    io.DeltaTime = 1.0F / 60.0F;
-    for (int i = 0; i < frames; ++i) {
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui::NewFrame();
-        draw();
-        ImGui::Render();
-    }
-    canvas.begin();
-    glViewport(0, 0, size.width, size.height);
-    const ImVec4 back = Theme{model.settings.theme}.vector(Role::panel);
-    glClearColor(back.x, back.y, back.z, 1.0F);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    canvas.finish();
-    render::Image image = canvas.pixels();
-    for (size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
-    return image;
-}
-
 core::Result<render::Image> OffscreenViewer::picture(const render::Viewport& size, bool with_ui) {
     if (!with_ui) {
         render::DrawOptions options;
         options.theme = model.settings.theme;
-        return render::still_picture(still_, scene_of(model), model.camera, options, size);
+        return render::still_picture(state_->still_, scene_of(model), model.camera, options, size);
     }
-    if (!layout_) {
+    if (!state_->layout_) {
         FEELER_TRY(render::Renderer renderer, render::Renderer::make());
-        layout_ = std::make_unique<Layout>(std::move(renderer));
-        layout_->scene().set_samples(4);
+        state_->layout_ = std::make_unique<Layout>(std::move(renderer));
+        state_->layout_->set_samples(4);
     }
-    return drawn(size, 4, [&] {
+    return state_->drawn(size, model.settings.theme, 4, [&] {
         model.list_follows = true;
-        layout_->draw(model, *fonts_, 0.0);
+        state_->layout_->draw(model, *state_->fonts_, 0.0);
     });
 }
 
@@ -192,7 +225,8 @@ core::Result<render::Image> OffscreenViewer::sheet(const std::vector<Print>& pri
     std::vector<Texture> textures;
     for (const Print& print : prints) textures.emplace_back(print.image);
     const Theme look{model.settings.theme};
-    return drawn(size, 1, [&] {
+    const Fonts& fonts = *state_->fonts_;
+    return state_->drawn(size, model.settings.theme, 1, [&] {
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
         for (size_t i = 0; i < prints.size(); ++i) {
             const auto x =
@@ -202,9 +236,9 @@ core::Result<render::Image> OffscreenViewer::sheet(const std::vector<Print>& pri
             const auto width = static_cast<float>(first.width);
             const auto bottom = y + static_cast<float>(first.height);
             list.AddImage(textures[i].id(), {x, y}, {x + width, bottom});
-            list.AddText(fonts_->small, fonts_->small->FontSize, {x + 2, bottom + 6},
+            list.AddText(fonts.small, fonts.small->FontSize, {x + 2, bottom + 6},
                          look.color(Role::text),
-                         shortened(fonts_->small, prints[i].caption, width - 4).c_str());
+                         shortened(fonts.small, prints[i].caption, width - 4).c_str());
         }
     });
 }

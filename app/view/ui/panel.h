@@ -1,15 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <imgui.h>
 
-#include "app/view/model/block_row.h"
-#include "app/view/model/view_model.h"
 #include "app/view/ui/command.h"
 #include "render/palette.h"
 
 namespace app::viewer {
+
+struct BlockRow;
+struct ViewModel;
 
 /// The colours of a theme as ImGui wants them.
 struct Theme {
@@ -112,5 +114,32 @@ public:
     virtual ~Panel() = default;
     virtual void draw(Frame& frame, const Area& area) = 0;
 };
+
+/// A square button with an icon; what it does shows when it is pointed at. Whether it was pressed.
+bool icon_button(Frame& frame, Icon icon, Command command, bool is_on = false);
+
+/// A button with an icon and a word beside it.
+bool word_button(Frame& frame, Icon icon, const char* word, bool icon_first, const char* tip);
+
+/// A name in dim letters and its value beside it, cut off with dots where the panel ends.
+void value_row(Frame& frame, const char* name, const std::string& value, double name_width = 84.0,
+               bool is_changed = false);
+
+/// A heading with a line above it.
+void heading(Frame& frame, const char* text);
+
+/// Text in a font and a colour.
+void text(ImFont* font, ImU32 color, const std::string& words);
+/// The same on several lines, within what is left of the panel's width.
+void wrapped_text(ImFont* font, ImU32 color, const std::string& words);
+
+/// What is said of the thing pointed at, after a moment.
+void tip(const Frame& frame, const std::string& words);
+
+/// As much of a text as fits into a width, with dots for the rest.
+std::string shortened(ImFont* font, const std::string& words, float width);
+
+/// Seconds as 00:03:12.
+std::string clock_text(double seconds);
 
 } // namespace app::viewer

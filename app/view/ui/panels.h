@@ -1,10 +1,24 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "app/view/model/finding_group.h"
 #include "app/view/ui/panel.h"
 
+namespace core {
+struct Setup;
+} // namespace core
+
+namespace render {
+class Renderer;
+} // namespace render
+
 namespace app::viewer {
+
+enum class Popup : uint8_t;
 
 /// Everything that can be done, along the upper edge.
 class ToolbarPanel : public Panel {
@@ -68,6 +82,105 @@ public:
 
 private:
     bool scrubbing_ = false;
+};
+
+/// The machine, the work and the path, with the witness line and its number. The picture is kept
+/// in a texture and drawn anew only when something has changed.
+class ScenePanel : public Panel {
+public:
+    explicit ScenePanel(render::Renderer renderer);
+    ~ScenePanel() override;
+
+    void draw(Frame& frame, const Area& area) override;
+    /// 4: smooth edges, for pictures; 1: fast.
+    void set_samples(int samples);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The set-up to be read, edited, checked with and saved. What is typed changes nothing until it is
+/// applied, and is applied only when all of it can be.
+class SetupPopup {
+public:
+    SetupPopup();
+    ~SetupPopup();
+    void draw(Frame& frame);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// What lies on top of the other panels: keys, going to a line, opening a file, what-ifs, settings.
+class PopupPanel : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+
+private:
+    void draw_go_to_line(Frame& frame);
+    void draw_open_file(Frame& frame);
+    void draw_breakpoint(Frame& frame);
+    void draw_what_if(Frame& frame);
+    void draw_lengths(Frame& frame, const core::Setup& setup);
+    void draw_fixture(Frame& frame, const core::Setup& setup);
+
+    std::string line_, path_, condition_;
+    Popup shown_{};
+    SetupPopup setup_;
+    // of what-ifs
+    size_t fixture_ = 0;
+    double length_ = 0.0, table_length_ = 0.0, allowance_ = 0.0, by_[3] = {0.0, 0.0, 0.0};
+    int table_number_ = 1, offset_ = 0, axis_ = 2;
+    double origin_ = 0.0;
+};
+
+/// What stands in the middle while there is no program.
+class WelcomePanel : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+};
+
+/// Why a program, a set-up or a mesh could not be opened, and what can be done.
+class ErrorPanel : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+};
+
+/// All panels and where they stand. Needs a current OpenGL context and an ImGui context, and no
+/// window: pictures are made by the same functions.
+class Layout {
+public:
+    explicit Layout(render::Renderer renderer);
+    ~Layout();
+
+    /// Draws everything between ImGui's NewFrame and Render.
+    void draw(ViewModel& model, const Fonts& fonts, double now);
+
+    /// 4: smooth edges in the 3D view, for pictures; 1: fast.
+    void set_samples(int samples);
+
+private:
+    /// Where everything stands; what is not shown has no width.
+    struct Parts {
+        Area toolbar, list, view, device, inspector, timeline;
+    };
+
+    static Parts parts_of(const Frame& frame, const Area& area);
+    void draw_body(Frame& frame, const Area& area);
+    void draw_splitters(Frame& frame, const Parts& parts);
+
+    ToolbarPanel toolbar_;
+    ProgramPanel program_;
+    FindingsPanel findings_;
+    ScenePanel scene_;
+    InspectorPanel inspector_;
+    DevicePanel device_;
+    TimelinePanel timeline_;
+    PopupPanel popups_;
+    WelcomePanel welcome_;
+    ErrorPanel error_;
 };
 
 } // namespace app::viewer

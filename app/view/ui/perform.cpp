@@ -1,10 +1,11 @@
-#include "app/view/ui/perform.h"
 
 #include <algorithm>
 
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
+#include "app/view/model/settings.h"
+#include "app/view/model/view_model.h"
 #include "app/view/ui/panel.h"
 
 namespace app::viewer {

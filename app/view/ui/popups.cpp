@@ -1,5 +1,3 @@
-#include "app/view/ui/popups.h"
-
 #include <algorithm>
 #include <array>
 
@@ -8,7 +6,10 @@
 #include <imgui_stdlib.h>
 
 #include "app/view/model/navigation.h"
-#include "app/view/ui/widgets.h"
+#include "app/view/model/scene_of.h"
+#include "app/view/model/settings.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/panels.h"
 
 namespace app::viewer {
 namespace {
@@ -347,9 +348,9 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
                  "Mend the file and save it: it is read again by itself. Or drop another program "
                  "or set-up here.");
     ImGui::Dummy(ImVec2(0, frame.px(6)));
-    if (!model.edits.empty() && ImGui::Button("Take the set-up's changes back"))
+    if (model.edits && ImGui::Button("Take the set-up's changes back"))
         frame.model.wanted_setup = SetupRequest{};
-    if (!model.edits.empty()) ImGui::SameLine();
+    if (model.edits) ImGui::SameLine();
     if (ImGui::Button("Read it again")) frame.perform(Command::reload);
     ImGui::SameLine();
     if (ImGui::Button("Open another")) frame.perform(Command::open);

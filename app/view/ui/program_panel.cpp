@@ -8,8 +8,9 @@
 #include <imgui_stdlib.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/row_filter.h"
+#include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
-#include "app/view/ui/widgets.h"
 
 namespace app::viewer {
 namespace {

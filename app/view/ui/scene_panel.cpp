@@ -1,5 +1,3 @@
-#include "app/view/ui/scene_panel.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +7,10 @@
 
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
-#include "app/view/ui/widgets.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/panels.h"
 #include "render/picking.h"
+#include "render/renderer.h"
 
 namespace app::viewer {
 namespace {
@@ -160,7 +160,32 @@ void draw_ball(Frame& frame, ImDrawList& list, const AxisBall& ball, const ImVec
 
 } // namespace
 
-void ScenePanel::place_camera(ViewModel& model, const render::Viewport& size) {
+struct ScenePanel::State {
+    explicit State(render::Renderer renderer) : renderer_(std::move(renderer)) {}
+
+    void draw(Frame& frame, const Area& area);
+
+    void place_camera(ViewModel& model, const render::Viewport& size);
+    void render_scene(Frame& frame, const render::Viewport& size);
+    void take_mouse(Frame& frame, const Area& area, const render::Viewport& size);
+    void take_drag(ViewModel& model, const render::Viewport& size);
+    void take_click(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_labels(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_witness(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_measure(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_axes(Frame& frame, const Area& area);
+
+    render::Renderer renderer_;
+    std::optional<render::Canvas> canvas_;
+    SceneKey drawn_;
+    render::Scene scene_;
+    int samples_ = 1;
+    uint64_t framed_ = 0;                          // the opening that the camera was placed for
+    render::Vec2 last_hover_ = render::Vec2(-1.0); // of the mouse
+    std::optional<size_t> hovered_;                // the block of the path there
+};
+
+void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& size) {
     model.camera.projection = model.settings.projection;
     if (model.camera_placed || !model.program) return;
     const core::Aabb box = render::work_bounds(scene_of(model));
@@ -173,7 +198,7 @@ void ScenePanel::place_camera(ViewModel& model, const render::Viewport& size) {
     framed_ = model.camera_placed ? model.opening : 0;
 }
 
-void ScenePanel::render_scene(Frame& frame, const render::Viewport& size) {
+void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& size) {
     const SceneKey key = key_of(frame.model, size);
     const bool fits = canvas_ && canvas_->size().width == size.width
                       && canvas_->size().height == size.height && canvas_->samples() == samples_;
@@ -194,7 +219,7 @@ void ScenePanel::render_scene(Frame& frame, const render::Viewport& size) {
     drawn_ = key;
 }
 
-void ScenePanel::take_drag(ViewModel& model, const render::Viewport& size) {
+void ScenePanel::State::take_drag(ViewModel& model, const render::Viewport& size) {
     const ImGuiIO& io = ImGui::GetIO();
     const render::Vec2 by(io.MouseDelta.x, io.MouseDelta.y);
     if (by == render::Vec2(0.0)) return;
@@ -212,7 +237,7 @@ void ScenePanel::take_drag(ViewModel& model, const render::Viewport& size) {
     }
 }
 
-void ScenePanel::take_click(Frame& frame, const Area& area, const render::Viewport& size) {
+void ScenePanel::State::take_click(Frame& frame, const Area& area, const render::Viewport& size) {
     ViewModel& model = frame.model;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const render::Vec2 at(mouse.x - area.x, mouse.y - area.y);
@@ -237,7 +262,7 @@ void ScenePanel::take_click(Frame& frame, const Area& area, const render::Viewpo
         say(model, "Raw stock: no block has cut here", frame.now);
 }
 
-void ScenePanel::take_mouse(Frame& frame, const Area& area, const render::Viewport& size) {
+void ScenePanel::State::take_mouse(Frame& frame, const Area& area, const render::Viewport& size) {
     ViewModel& model = frame.model;
     const ImGuiIO& io = ImGui::GetIO();
     const render::Vec2 at(io.MousePos.x - area.x, io.MousePos.y - area.y);
@@ -261,7 +286,7 @@ void ScenePanel::take_mouse(Frame& frame, const Area& area, const render::Viewpo
     if (hovered_) model.pointed_at = hovered_;
 }
 
-void ScenePanel::draw_witness(Frame& frame, const Area& area, const render::Viewport& size) {
+void ScenePanel::State::draw_witness(Frame& frame, const Area& area, const render::Viewport& size) {
     const ViewModel& model = frame.model;
     const auto witness = witness_of(model);
     if (!witness) return;
@@ -282,7 +307,7 @@ void ScenePanel::draw_witness(Frame& frame, const Area& area, const render::View
     draw_tag(frame, list, middle, words_of(model, row), fill, ink);
 }
 
-void ScenePanel::draw_measure(Frame& frame, const Area& area, const render::Viewport& size) {
+void ScenePanel::State::draw_measure(Frame& frame, const Area& area, const render::Viewport& size) {
     const ViewModel& model = frame.model;
     const std::vector<core::Vec3>& places = model.measuring.places;
     if (places.size() != 2) return;
@@ -298,7 +323,7 @@ void ScenePanel::draw_measure(Frame& frame, const Area& area, const render::View
              frame.look.color(Role::accent), IM_COL32(255, 255, 255, 255));
 }
 
-void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewport& size) {
+void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render::Viewport& size) {
     const ViewModel& model = frame.model;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(area.corner(), area.far_corner(), true);
@@ -317,7 +342,7 @@ void ScenePanel::draw_labels(Frame& frame, const Area& area, const render::Viewp
     list.PopClipRect();
 }
 
-void ScenePanel::draw_axes(Frame& frame, const Area& area) {
+void ScenePanel::State::draw_axes(Frame& frame, const Area& area) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float radius = frame.px(43);
     const ImVec2 middle(area.x + area.width - radius - frame.px(14),
@@ -335,7 +360,7 @@ void ScenePanel::draw_axes(Frame& frame, const Area& area) {
                    middle.y - reach * static_cast<float>(glm::dot(ball.axis, seen.up))});
 }
 
-void ScenePanel::draw(Frame& frame, const Area& area) {
+void ScenePanel::State::draw(Frame& frame, const Area& area) {
     const render::Viewport size{std::max(static_cast<int>(area.width), 16),
                                 std::max(static_cast<int>(area.height), 16)};
     place_camera(frame.model, size);
@@ -353,5 +378,14 @@ void ScenePanel::draw(Frame& frame, const Area& area) {
     draw_labels(frame, area, size);
     if (area.width > frame.px(440)) draw_axes(frame, area);
 }
+
+ScenePanel::ScenePanel(render::Renderer renderer)
+    : state_(std::make_unique<State>(std::move(renderer))) {}
+
+ScenePanel::~ScenePanel() = default;
+
+void ScenePanel::draw(Frame& frame, const Area& area) { state_->draw(frame, area); }
+
+void ScenePanel::set_samples(int samples) { state_->samples_ = samples; }
 
 } // namespace app::viewer

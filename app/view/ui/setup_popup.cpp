@@ -1,5 +1,3 @@
-#include "app/view/ui/setup_popup.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -7,13 +5,37 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/check/setup_sheet.h"
 #include "app/setup/holder_library.h"
-#include "app/view/ui/widgets.h"
+#include "app/view/model/view_model.h"
+#include "app/view/ui/panels.h"
 
 namespace app::viewer {
 namespace {
 
 using render::Role;
+
+/// A length to be typed, in the unit of the window; whether it was changed. What is not touched
+/// keeps every bit.
+bool length_field(const Frame& frame, const char* id, double& mm);
+
+/// A small word that says where a value comes from: what a person has stated stands out.
+void source_mark(Frame& frame, SetupSource source, bool is_in_heading = false);
+
+/// What is wrong with the field above, or nothing.
+void field_refusal(Frame& frame, const std::vector<EditRefusal>& refused,
+                   std::optional<core::ToolNumber> tool, std::string_view key);
+
+/// The stock: its shape, corner and size, and where they come from.
+void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
+                       const std::vector<EditRefusal>& refused);
+
+/// The general allowance.
+void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
+                          const std::vector<EditRefusal>& refused);
+
+/// What a row is about; its field stands beside it.
+void field_name(Frame& frame, const std::string& name, double width = 150.0);
 
 SetupSource source_of(const SheetTool& tool, const std::string& key) {
     return tool.stated.contains(key) ? SetupSource::stated : tool.source;
@@ -70,7 +92,26 @@ std::string label_of(const Frame& frame, const core::ToolDescription& tool) {
 
 } // namespace
 
-void SetupPopup::begin(const std::shared_ptr<const SetupSheet>& sheet) {
+struct SetupPopup::State {
+    void draw(Frame& frame);
+
+    void begin(const std::shared_ptr<const SetupSheet>& sheet);
+    void draw_tools(Frame& frame);
+    void draw_tool(Frame& frame, size_t index);
+    void draw_buttons(Frame& frame);
+    void draw_saving(Frame& frame);
+    /// The edits, if all of them can be made; else the mistakes are shown.
+    std::optional<SetupEdits> checked_edits(const ViewModel& model);
+
+    std::shared_ptr<const SetupSheet> shown_; // that `wanted_` began as
+    SetupSheet wanted_;
+    std::vector<EditRefusal> refused_;
+    size_t tool_ = 0;
+    bool is_saving_ = false, asks_to_replace_ = false;
+    std::string path_, refusal_; // of saving
+};
+
+void SetupPopup::State::begin(const std::shared_ptr<const SetupSheet>& sheet) {
     shown_ = sheet;
     wanted_ = *sheet;
     refused_.clear();
@@ -79,8 +120,8 @@ void SetupPopup::begin(const std::shared_ptr<const SetupSheet>& sheet) {
     tool_ = std::min(tool_, sheet->tools.empty() ? 0 : sheet->tools.size() - 1);
 }
 
-std::optional<SetupEdits> SetupPopup::checked_edits(const ViewModel& model) {
-    SetupEdits edits = edits_between(*shown_, wanted_, model.edits);
+std::optional<SetupEdits> SetupPopup::State::checked_edits(const ViewModel& model) {
+    SetupEdits edits = edits_between(*shown_, wanted_, model.edits ? *model.edits : SetupEdits{});
     refused_ = refusals_of(edits);
     if (refused_.empty()) return edits;
     for (size_t i = 0; i < wanted_.tools.size(); ++i)
@@ -88,7 +129,7 @@ std::optional<SetupEdits> SetupPopup::checked_edits(const ViewModel& model) {
     return {};
 }
 
-void SetupPopup::draw_tool(Frame& frame, size_t index) {
+void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
     const SheetTool& shown = shown_->tools[index];
     core::ToolDescription& tool = wanted_.tools[index].tool;
     const core::ToolNumber number = tool.number;
@@ -127,7 +168,7 @@ void SetupPopup::draw_tool(Frame& frame, size_t index) {
     ImGui::PopID();
 }
 
-void SetupPopup::draw_tools(Frame& frame) {
+void SetupPopup::State::draw_tools(Frame& frame) {
     text(frame.fonts.strong, frame.look.color(Role::text), "Tools");
     if (wanted_.tools.empty()) {
         text(frame.fonts.text, frame.look.color(Role::dim), "The program uses none.");
@@ -152,7 +193,7 @@ void SetupPopup::draw_tools(Frame& frame) {
     ImGui::EndGroup();
 }
 
-void SetupPopup::draw_saving(Frame& frame) {
+void SetupPopup::State::draw_saving(Frame& frame) {
     ViewModel& model = frame.model;
     if (model.saved && model.saved->refusal) {
         asks_to_replace_ = model.saved->exists;
@@ -173,16 +214,18 @@ void SetupPopup::draw_saving(Frame& frame) {
     if (!save) return;
     refusal_.clear();
     if (auto edits = checked_edits(model))
-        model.wanted_setup = SetupRequest{*std::move(edits), path_, asks_to_replace_};
+        model.wanted_setup = SetupRequest{std::make_shared<const SetupEdits>(*std::move(edits)),
+                                          path_, asks_to_replace_};
 }
 
-void SetupPopup::draw_buttons(Frame& frame) {
+void SetupPopup::State::draw_buttons(Frame& frame) {
     ViewModel& model = frame.model;
     const bool enter =
         ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
     if (ImGui::Button("Check with it") || enter) {
         if (auto edits = checked_edits(model)) {
-            model.wanted_setup = SetupRequest{*std::move(edits)};
+            model.wanted_setup =
+                SetupRequest{std::make_shared<const SetupEdits>(*std::move(edits))};
             model.popup = Popup::none;
         }
     }
@@ -190,7 +233,7 @@ void SetupPopup::draw_buttons(Frame& frame) {
     ImGui::SameLine();
     if (ImGui::Button("Save as set-up \xE2\x80\xA6")) is_saving_ = !is_saving_;
     ImGui::SameLine();
-    ImGui::BeginDisabled(model.edits.empty());
+    ImGui::BeginDisabled(!model.edits);
     if (ImGui::Button("Take all changes back")) {
         model.wanted_setup = SetupRequest{};
         model.popup = Popup::none;
@@ -204,7 +247,7 @@ void SetupPopup::draw_buttons(Frame& frame) {
     if (is_saving_) draw_saving(frame);
 }
 
-void SetupPopup::draw(Frame& frame) {
+void SetupPopup::State::draw(Frame& frame) {
     const ViewModel& model = frame.model;
     if (!model.program || !model.program->sheet) {
         text(frame.fonts.text, frame.look.color(Role::dim),
@@ -301,8 +344,6 @@ void why_it_is_so(Frame& frame, const std::string& why) {
     if (!why.empty()) wrapped_text(frame.fonts.small, frame.look.color(Role::dim), why);
 }
 
-} // namespace
-
 void field_name(Frame& frame, const std::string& name, double width) {
     const float left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
@@ -391,5 +432,13 @@ void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wan
     }
     field_refusal(frame, refused, {}, "allowance");
 }
+
+} // namespace
+
+SetupPopup::SetupPopup() : state_(std::make_unique<State>()) {}
+
+SetupPopup::~SetupPopup() = default;
+
+void SetupPopup::draw(Frame& frame) { state_->draw(frame); }
 
 } // namespace app::viewer

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
-#include "app/view/ui/widgets.h"
 
 namespace app::viewer {
 namespace {

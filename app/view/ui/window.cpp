@@ -15,16 +15,18 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/check/check_run.h"
+#include "app/view/model/device_worker.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/session_worker.h"
+#include "app/view/model/settings.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
-#include "app/view/ui/layout.h"
-#include "app/view/ui/perform.h"
-#include "app/view/ui/window_files.h"
+#include "app/view/ui/panels.h"
 #include "render/image.h"
+#include "render/renderer.h"
 
 namespace app::viewer {
 
@@ -127,6 +129,7 @@ class Window {
 public:
     Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
         : job_(job),
+          check_(job.check ? std::optional(*job.check) : std::nullopt),
           window_(window),
           gui_(window),
           layout_(std::move(renderer)),
@@ -155,6 +158,7 @@ private:
     double wanted_scale() const;
 
     WindowJob job_;
+    std::optional<CheckJob> check_; // that is open
     GLFWwindow* window_;
     Gui gui_;
     Layout layout_;
@@ -196,25 +200,26 @@ void Window::rebuild_fonts() {
 }
 
 void Window::open_job() {
-    if (!job_.check) return;
+    if (!check_) return;
     worker_.set_breakpoints(model.breakpoints);
-    worker_.open(*job_.check);
-    std::vector<std::string> files = files_of_setup(job_.check->setup);
-    files.push_back(job_.check->program);
+    worker_.open(*check_);
+    std::vector<std::string> files = files_of_setup(check_->setup);
+    files.push_back(check_->program);
     if (!job_.device.file.empty()) files.push_back(job_.device.file);
     files_.set(std::move(files));
-    model.edits = job_.check->edits;
+    model.edits =
+        check_->edits.empty() ? nullptr : std::make_shared<const SetupEdits>(check_->edits);
     damage();
 }
 
 void Window::do_setup(const SetupRequest& request) {
-    if (!job_.check) return;
-    CheckJob edited = *job_.check;
-    edited.edits = request.edits;
+    if (!check_) return;
+    CheckJob edited = *check_;
+    edited.edits = *request.edits;
     damage();
     if (!request.save_path.empty())
-        return worker_.save_setup({edited, request.save_path, request.may_replace, job_.write});
-    job_.check = edited;
+        return worker_.save_setup(edited, request.save_path, request.may_replace, job_.write);
+    check_ = edited;
     open_job();
     say(model, "The program is checked with the set-up as it stands now", glfwGetTime());
 }
@@ -224,18 +229,18 @@ void Window::work_with_saved() {
     const std::string path = model.saved->path;
     model.saved.reset();
     if (model.popup == Popup::setup) model.popup = Popup::none;
-    if (!job_.check) return;
-    job_.check->setup = path;
-    job_.check->edits = {};
+    if (!check_) return;
+    check_->setup = path;
+    check_->edits = {};
     open_job();
     say(model, "Saved " + path, glfwGetTime());
 }
 
 void Window::drop(const std::vector<std::string>& paths) {
     damage();
-    const auto check = with_dropped(job_.check.value_or(CheckJob{}), paths, model, glfwGetTime());
+    const auto check = with_dropped(check_.value_or(CheckJob{}), paths, model, glfwGetTime());
     if (!check) return;
-    job_.check = check;
+    check_ = check;
     open_job();
 }
 
@@ -298,7 +303,7 @@ void Window::update() {
     }
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
-    if (send_device_orders(model, device_, job_.check)) damage();
+    if (send_device_orders(model, device_, check_)) damage();
     if (send_requests(model, worker_)) {
         asked_ = true;
         damage();

@@ -1,10 +1,10 @@
-#include "app/view/ui/window_files.h"
-
 #include <fstream>
 #include <iterator>
 
+#include "app/check/check_run.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"
+#include "app/view/ui/window.h"
 
 namespace app::viewer {
 
@@ -43,7 +43,7 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     return check;
 }
 
-void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
+void keep_notes(ViewModel& model, const std::filesystem::path& path, const SetupWriter& write,
                 double now) {
     if (path.empty() || !model.program) return;
     std::error_code ignored; // the writing tells of it
