@@ -79,15 +79,15 @@ TEST(DeviceWorker, TellsTheAnswersFirstAndTheSmallestDeviceThen) {
     ASSERT_TRUE(run.has_value());
     ASSERT_EQ(device.study->size(), run->blocks.size());
     for (size_t i = 0; i < run->blocks.size(); ++i) {
-        const app::DeviceBlock& block = device.study->result.run.blocks[i];
+        const app::DeviceBlock& block = device.study->result->run.blocks[i];
         EXPECT_EQ(block.permit.permitted, run->blocks[i].permit.permitted) << i;
         EXPECT_EQ(block.cycles, run->blocks[i].cycles) << i;
     }
     EXPECT_EQ(device.study->stops, (std::vector<size_t>{38, 39, 41, 42}));
     ASSERT_TRUE(watcher.wait_for([&] { return !device.is_running; }));
     EXPECT_FALSE(device.failure);
-    EXPECT_EQ(device.study->result.fits.size(), 5U);
-    EXPECT_TRUE(app::smallest(device.study->result.fits));
+    EXPECT_EQ(device.study->result->fits.size(), 5U);
+    EXPECT_TRUE(app::smallest(device.study->result->fits));
 }
 
 TEST(DeviceWorker, ASlowDeviceIsLate) {
@@ -99,7 +99,7 @@ TEST(DeviceWorker, ASlowDeviceIsLate) {
     const DeviceModel& device = watcher.model.device;
     ASSERT_TRUE(watcher.wait_for([&] { return device.study != nullptr || device.failure; }));
     ASSERT_TRUE(device.study);
-    EXPECT_EQ(device.study->result.file.device.elements, 1U);
+    EXPECT_EQ(device.study->result->file.device.elements, 1U);
     EXPECT_FALSE(device.study->stops.empty());
     EXPECT_EQ(answer_of(device.study.get(), device.study->stops[0]), DeviceAnswer::late);
 }

@@ -293,12 +293,14 @@ TEST(SessionWorker, ChecksWithAnEditedSetupAndSavesIt) {
     EXPECT_EQ(edited.tools[0].stated, (std::set<std::string>{"diameter"}));
     EXPECT_EQ(edited.tools[0].tool.diameter, 12.0);
 
-    SaveRequest request{job, folder / "p.toml", false, app::write_output};
-    watcher.worker().save_setup(request);
+    const auto save = [&] {
+        watcher.worker().save_setup(job, folder / "p.toml", false, app::write_output);
+    };
+    save();
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
     EXPECT_FALSE(watcher.model.saved->refusal);
     watcher.model.saved.reset();
-    watcher.worker().save_setup(request);
+    save();
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
     EXPECT_TRUE(watcher.model.saved->refusal && watcher.model.saved->exists);
 }
