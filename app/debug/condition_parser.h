@@ -12,10 +12,10 @@
 
 namespace app {
 
-/// What a part of a condition is, whatever the block.
+/// The type of a part of a condition, the same for all blocks.
 enum class ValueType : uint8_t { number, word, truth };
 
-/// What the record tells of a block.
+/// A fact of a block from the record.
 enum class BlockFact : uint8_t {
     // numbers
     clearance,
@@ -33,20 +33,20 @@ enum class BlockFact : uint8_t {
     motion,
     verdict,
     file,
-    rule, // of its findings: compared, it is any of them
+    rule, // of its findings; a comparison holds if it holds for any of them
 };
 
 enum class NodeKind : uint8_t {
     number,  // `number`
-    word,    // `text` as it stands
+    word,    // `text` literally
     fact,    // `fact` of the block
     control, // value_of `text`
     // true or false
     moves,    // the block's motion is `text`
-    judged,   // its verdict is `text`, or it has a finding of that rule
+    judged,   // its verdict is `text`, or it has a finding of this rule
     rule,     // it has a finding of the rule `text`
-    near,     // it keeps its allowance, but not twice
-    severity, // it has a finding of the severity `text`; of any where it is empty
+    near,     // its clearance is between the allowance and twice the allowance
+    severity, // it has a finding of severity `text`; empty: of any
     has_tool, // its tool is `number`
     numbered, // it begins with `text`, an N word
     body,     // the body `text` is one of a pair or finding
@@ -66,21 +66,21 @@ enum class NodeKind : uint8_t {
     opposite,
 };
 
-/// A part of a condition with what it is made of.
+/// A part of a condition, with its own parts.
 struct Condition::Node {
     NodeKind kind = NodeKind::number;
     ValueType type = ValueType::number;
     double number = 0.0;
     BlockFact fact = BlockFact::clearance;
-    std::string text = {}; // in small letters where case does not matter
+    std::string text = {}; // in lower case where case does not matter
     std::vector<Node> of = {};
     uint32_t column = 0; // where it begins, from 1
 };
 
-/// What a condition, or a part of it, is worth of a block. A number is empty when nobody knows it.
+/// The value of a condition, or of a part of it, for a block. An unknown number is empty.
 using NodeValue = std::variant<std::optional<double>, InspectedValue, bool>;
 
-/// What a condition is asked about; of the control, what is not there is unknown.
+/// The subject of a condition. Without a control its values are unknown.
 struct Condition::Asked {
     const BlockFacts& facts;
     const gcode::InterpreterState* control = nullptr;
@@ -90,37 +90,37 @@ struct Condition::Asked {
 /// Errors: those of value_of.
 core::Result<NodeValue> value_of(const Condition::Node& node, const Condition::Asked& asked);
 
-/// The first part that asks the control for something, or nothing.
+/// The first part that uses a value of the control; null: none.
 const Condition::Node* asked_of_control(const Condition::Node& node);
 
-/// A piece of a condition's text.
+/// A token of a condition's text.
 struct ConditionToken {
     enum class Kind : uint8_t { end, number, name, text, sign };
 
     Kind kind = Kind::end;
-    std::string text = {};  // a name in small letters, a sign in its shortest form, a text as it is
-    std::string whole = {}; // of a name: with what follows behind hyphens, as it was written
+    std::string text = {};  // a name in lower case, a sign in its shortest form, a text as written
+    std::string whole = {}; // a name as written, with what follows after hyphens
     double number = 0.0;
     uint32_t column = 0; // from 1
 };
 
-/// The pieces, the last of which is the end.
+/// The tokens; the last one is the end.
 ///
 /// Errors: syntax, with the column.
 core::Result<std::vector<ConditionToken>> tokens_of(std::string_view text);
 
-/// What a name means where a number or word is wanted (`feed` of the control), and where something
-/// true or false is (`feed`: the block feeds). Empty where it means nothing of the kind.
+/// What a name means as a number or word (`feed`: the feed rate), and as a condition (`feed`: the
+/// block feeds). Empty if it has no such meaning.
 std::optional<Condition::Node> value_named(const std::string& name);
 std::optional<Condition::Node> truth_named(const std::string& name);
 
-/// The words that a part may be compared with; empty where there are too many to list.
+/// The words that a part may be compared with; empty: too many to list.
 std::vector<std::string> words_for(const Condition::Node& node);
 
-/// Every name that is listed somewhere.
+/// All names of the language.
 std::vector<std::string> condition_names();
 
-/// What a text in the language of conditions means, of whatever type.
+/// Parses a text in the language of conditions, of any type.
 ///
 /// Errors: syntax, with the column.
 core::Result<Condition::Node> parse_condition(std::string_view text);

@@ -23,37 +23,37 @@ class RecordedRun;
 struct RunState;
 struct SetupFile;
 
-/// Why a walk through a program ended.
+/// Why a walk through a program stopped.
 enum class StopReason : uint8_t {
-    step,        // it went as far as was asked
+    step,        // after the requested number of blocks
     breakpoint,  // `id`
-    found,       // before the block that was looked for
+    found,       // before the block searched for
     watch,       // a watched value changed, `id`
     end,         // of the program
-    beginning,   // of the program, going back
-    error,       // the control would stop here; the record says why
-    interrupted, // by the one who asked
+    beginning,   // of the program, walking back
+    error,       // the control would stop here with an alarm; see the record
+    interrupted, // by is_interrupted
 };
 
 struct Stop {
     StopReason reason = StopReason::step;
-    int id = 0;               // of the breakpoint or the watch
+    int id = 0;               // of the breakpoint or watch
     std::string message = {}; // of a watch: old and new value
 };
 
-/// A value that walks stop at when it changes.
+/// A walk stops when the value of a watch changes.
 struct Watch {
-    int id = 0; // counted together with breakpoints
+    int id = 0; // from the same sequence as breakpoints
     std::string expression;
     bool enabled = true;
     size_t hits = 0;
 };
 
-/// A program that can be walked through, both ways, and changed on the way.
+/// A program that can be stepped forwards and backwards, with changes on the way.
 ///
-/// The place is counted in blocks that have been run: at place p block p of the record is the next.
-/// The record goes ahead of the place: what a block will do is known before it is run. One thread
-/// at a time: whoever has a window gives it a thread of its own.
+/// The position is the number of blocks already run: at position p, block p of the record is next.
+/// The record runs ahead of the position, so the result of a block is known before the session
+/// steps over it. Not thread-safe; a window uses it from one thread of its own.
 class DebugSession {
 public:
     static constexpr size_t default_memory_budget = size_t(1) << 29; // bytes of keyframes
@@ -61,7 +61,7 @@ public:
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, size_t memory_budget = default_memory_budget);
-    /// The same of a check that has been read, but not placed.
+    /// The same for a check that was read, but not placed.
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, PreparedCheck check, size_t memory_budget = default_memory_budget);
 
@@ -69,31 +69,31 @@ public:
 
     // --- the record ---
 
-    /// What is known so far: blocks in order, findings as they were told. Complete when
-    /// is_recorded: then it is what run_check gives.
+    /// The blocks run so far, in order, and their findings as they were reported. When
+    /// is_recorded, it equals the result of run_check.
     const CheckRun& record() const;
     bool is_recorded() const;
-    /// Carries the record on for about so many seconds; whether there is more to come.
+    /// Extends the record for about so many seconds. False once it is complete.
     bool record_for(double seconds);
-    /// Carries the record on until block `block` is known; whether there is one that can be run.
+    /// Extends the record up to a block. False if no such block can be run.
     bool knows(size_t block);
-    /// The same as a walk does it.
+    /// The same, but stops when is_interrupted returns true.
     ///
-    /// Errors: it was interrupted.
+    /// Errors: interrupted.
     core::Result<bool> reaches(size_t block);
-    /// How far the record is, 0..1, by lines.
+    /// Progress of the record by program lines, 0..1.
     double recorded_share() const;
 
     const gcode::Program& program() const;
     const gcode::Environment& environment() const;
-    /// The set-up that a block is run under; what-ifs change it on the way.
+    /// The set-up in effect for a block, with the what-ifs made before it.
     const core::Setup& setup_at(size_t block) const;
-    /// All but its `setup`, which is where setup_at has it.
+    /// The set-up file. Use setup_at instead of its `setup`.
     const SetupFile& setup_file() const;
 
-    // --- the place ---
+    // --- the position ---
 
-    /// Blocks that have been run.
+    /// The number of blocks already run.
     size_t at() const { return at_; }
     const RunState& state() const { return *state_; }
     const gcode::InterpreterState& control() const;
@@ -104,75 +104,76 @@ public:
     size_t keyframe_count() const;
     size_t keyframe_memory() const; // bytes
 
-    /// Shows the blocks that come next and what they are about to do, as far as `visit` wants.
+    /// Passes the next blocks and their events to `visit`, without running them, until it returns
+    /// false.
     void visit_ahead(
         const std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>& visit);
 
-    /// Goes to a place, recording as far as needed.
+    /// Goes to a position; extends the record if needed.
     ///
-    /// Errors: the program does not go that far. The place has not changed then.
-    /// Cost:   some 10 ms near where one has been lately, under a second anywhere the record has
-    ///         been.
+    /// Errors: the program has fewer blocks. The position has not changed then.
+    /// Cost:   some 10 ms near recent positions, under a second anywhere in the record.
     core::Result<void> go_to(size_t place);
 
-    // --- walking: each says why it ended ---
+    // --- walking: each returns why it stopped ---
 
     Stop step(size_t blocks = 1);
     Stop step_back(size_t blocks = 1);
-    /// As step, but past the blocks of subprograms that are called, if no breakpoint is there.
+    /// As step, but over the blocks of called subprograms, unless a breakpoint stops there.
     Stop next(size_t blocks = 1);
     Stop next_back(size_t blocks = 1);
-    /// To the first block behind the subprogram that the place is in; in the main program, on.
+    /// To the first block after the current subprogram; in the main program, to the end.
     Stop finish();
     /// To the next breakpoint, watch, or the end.
     Stop go_on();
     Stop go_on_back();
-    /// To the next block of which a question is true; breakpoints and watches stop it, too.
+    /// To the next block that meets the condition, or to a breakpoint or watch before it.
     Stop until(const Condition& condition);
-    /// To the next or previous block with a finding of severity error, or of which it is not proven
-    /// that it keeps its allowances.
+    /// To the next or previous block that has a finding of severity error or is not proven clear.
     Stop next_finding();
     Stop previous_finding();
     /// To the next or previous block that changes the tool.
     Stop next_tool();
     Stop previous_tool();
 
-    /// Asked now and then on long walks; true ends them where they are.
+    /// Called at intervals on long walks; true stops them.
     std::function<bool()> is_interrupted;
 
     // --- where to stop ---
 
-    /// Gives it an id, from 1 on and never used twice, and keeps it. The id.
+    /// Adds a breakpoint and returns its id. Ids start at 1 and are never reused.
     int add(Breakpoint breakpoint);
+    /// Adds a watch and returns its id.
+    ///
     /// Errors: an expression that value_of does not know.
     core::Result<int> watch(std::string expression);
-    /// Whether there was one, breakpoint or watch.
+    /// Removes a breakpoint or watch. False if there is none with this id.
     bool remove(int id);
     std::vector<Breakpoint>& breakpoints() { return breakpoints_; }
     std::vector<Watch>& watches() { return watches_; }
 
-    /// A line of the main program, or the next one behind it, that holds more than comments: where
-    /// a breakpoint on it can stop.
+    /// The first line from `line` on in the main program that holds a block, so that a breakpoint
+    /// can stop there.
     ///
-    /// Errors: there is none.
+    /// Errors: no such line.
     core::Result<uint32_t> line_with_block(uint32_t line) const;
 
-    /// The first place before a block of a line of the main program, "120", or of a block number,
-    /// "N210": from the place on, else from the beginning.
+    /// The first position before a block of a line of the main program ("120") or of a block number
+    /// ("N210"), searched from the current position on, then from the beginning.
     ///
-    /// Errors: there is no such line; no block of it is run.
+    /// Errors: no such line; no block of it is run.
     core::Result<size_t> find_line(const std::string& line);
 
     // --- what if ---
 
-    /// Changes something from the place on. What was recorded before stays; what comes, and what
-    /// was changed there, goes, and is recorded anew.
+    /// Applies a change from the current position on. The record after it, with later changes, is
+    /// dropped and made again.
     ///
     /// Errors: as apply. Nothing has changed then.
     core::Result<void> change(const WhatIf& change);
-    /// Takes the last change back and goes to where it was made.
+    /// Undoes the last change and goes to the position where it was made.
     ///
-    /// Errors: nothing has been changed.
+    /// Errors: there is no change to undo.
     core::Result<void> take_back();
     const std::vector<MadeChange>& changes() const;
 

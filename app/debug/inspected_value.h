@@ -16,33 +16,33 @@ struct InterpreterState;
 
 namespace app {
 
-/// A value of the control or the machine, as a report says it: a number in the units of messages
-/// (mm, degrees, mm/min, rev/min, s) or a word.
+/// A value of the control or the machine for display: a number in the units of messages (mm,
+/// degrees, mm/min, rev/min, s) or a word.
 struct InspectedValue {
-    std::optional<double> number; // empty: a word, or nobody knows
+    std::optional<double> number; // empty: a word, or unknown
     std::string text;             // "12.5 mm", "G2", "unknown"
     std::string meaning = {};     // of a code: "arc, clockwise" of G2
 
     bool operator==(const InspectedValue&) const = default;
 };
 
-/// Whether a value is this word: its text or its meaning, whatever the case of the letters.
+/// Whether text or meaning of a value is this word, ignoring case.
 bool is_word(const InspectedValue& value, std::string_view word);
 
-/// The value of an expression in the state of a control: `#100`, `#<_name>`, `R5` (Siemens), `Q5`
-/// (Heidenhain), `$AA_IM[X]` and declared names (Siemens), as a program would read them; the modal
-/// values by the names that modal_values gives; x y z a b c u v w (the tip, program coordinates),
-/// machine.x ...; G54.x ... (origins), G54, G52.x, G92.x; H3 (the length in the table), D3 (the
-/// diameter). The case of letters does not matter.
+/// The value of an expression in a state of the control: `#100`, `#<_name>`, `R5` (Siemens), `Q5`
+/// (Heidenhain), `$AA_IM[X]` and declared names (Siemens), as a program would read them; modal
+/// values by the names of modal_values; x y z a b c u v w (tool tip, program coordinates),
+/// machine.x ...; G54.x ... (origins), G54, G52.x, G92.x; H3 (length offset), D3 (tool diameter).
+/// Case is ignored.
 ///
-/// Units:  lengths in mm; numbered and named parameters as the program has them.
-/// Errors: invalid_value, with the nearest name, when it is none of these.
+/// Units:  lengths in mm; numbered and named parameters in the units of the program.
+/// Errors: invalid_value for any other name, with the nearest known one.
 core::Result<InspectedValue> value_of(const std::string& expression,
                                       const gcode::InterpreterState& control,
                                       const gcode::Environment& environment);
 
-/// Whether it is written like something that value_of may know. A name that a program declares
-/// only its state knows.
+/// Whether an expression has the form of one that value_of knows. Names declared by a program are
+/// only known to its state.
 bool names_value(const std::string& expression);
 
 struct NamedValue {
@@ -52,18 +52,19 @@ struct NamedValue {
     bool operator==(const NamedValue&) const = default;
 };
 
-/// Every modal value with its name, in the order in which a person asks for them.
+/// Every modal value with its name, the most useful first.
 std::vector<NamedValue> modal_values(const gcode::InterpreterState& control,
                                      const gcode::Environment& environment);
-/// Where the axes stand that anything is known of: x y z ... and machine.x ...
+/// The known axis positions: x y z ... and machine.x ...
 std::vector<NamedValue> axis_values(const gcode::InterpreterState& control);
-/// Numbered and named parameters that hold something, of the innermost level and the common ones.
+/// Numbered and named parameters that have a value: local ones of the current level, and global
+/// ones.
 std::vector<NamedValue> parameter_values(const gcode::InterpreterState& control,
                                          const gcode::Environment& environment);
-/// Work offsets that hold something or are on, those of G52 and G92, and the length table.
+/// Work offsets that are not zero or are active, those of G52 and G92, and the length table.
 std::vector<NamedValue> offset_values(const gcode::InterpreterState& control);
 
-/// The names that value_of knows and that begin so, for completion.
+/// The names that value_of knows with this beginning, for completion.
 std::vector<std::string> names_beginning(const std::string& text);
 
 enum class ModalKind : uint8_t { number, word };
@@ -72,35 +73,35 @@ enum class ModalKind : uint8_t { number, word };
 struct ModalEntry {
     std::string_view name;
     ModalKind kind;
-    std::string_view words; // all that a word may be, with commas; empty: too many to list
+    std::string_view words; // the possible words, comma-separated; empty: too many to list
     InspectedValue (*read)(const gcode::InterpreterState& control, const gcode::Dialect& dialect);
 };
 
-/// All of them, in the order in which a person asks.
+/// All modal values, the most useful first.
 std::span<const ModalEntry> modal_table();
 
-/// The entry of that name; null when there is none.
+/// The entry with this name; null: none.
 const ModalEntry* modal_entry(std::string_view name);
 
-/// The words that an entry's value may be.
+/// The possible words of an entry.
 std::vector<std::string> words_of(const ModalEntry& entry);
 
 /// "G54", "G59.1", "G54.1P3", "G500".
 std::string offset_name(size_t index);
 
-/// The index of that name, in capitals; empty when it names none.
+/// The index of an offset by its name in upper case; empty: no such offset.
 std::optional<size_t> offset_named(std::string_view name);
 
-/// At most four decimals, without zeros behind the last one that counts; never "-0".
+/// At most four decimals, without trailing zeros; never "-0".
 std::string number_text(double value);
 
-/// "12.5 mm"; "unknown" where nobody knows.
+/// "12.5 mm"; "unknown" without a value.
 InspectedValue quantity(std::optional<double> value, std::string_view unit = {});
 
-/// Degrees along rotary axes, else mm.
+/// The same in degrees for rotary axes, else in mm.
 InspectedValue axis_quantity(size_t axis, std::optional<double> value);
 
-/// In small letters.
+/// The text in lower case.
 std::string lowered(std::string_view text);
 
 } // namespace app

@@ -12,33 +12,33 @@ namespace app {
 /// A command of the prompt.
 struct PromptCommand {
     std::string_view name;
-    std::string_view aliases; // short forms, with blanks between
-    std::string_view usage;   // what stands behind the name
-    std::string_view help;    // one line; what is behind a newline comes with `help NAME` only
+    std::string_view aliases; // short forms, separated by blanks
+    std::string_view usage;   // the arguments
+    std::string_view help;    // first line: for the list; the rest: for `help NAME` only
     core::Result<std::string> (*carry_out)(PromptState& state, const std::string& arguments);
-    bool repeats = false; // an empty line does it again
+    bool repeats = false; // an empty line repeats it
 };
 
-/// All of them, in the order in which help lists them.
+/// All commands in the order of the help.
 std::span<const PromptCommand> command_table();
 
-/// The command of a name, an alias or the beginning of one name only.
+/// The command with this name, alias or unique beginning.
 ///
-/// Errors: syntax, with the nearest name or with all that begin so.
+/// Errors: syntax, with the nearest name, or with all names that match.
 core::Result<const PromptCommand*> command_named(std::string_view name);
 
-/// The first word of a text and the rest, both without blanks round them.
+/// The first word of a text and the rest, both trimmed.
 std::pair<std::string, std::string> split_word(std::string_view text);
 
 /// All words of a text.
 std::vector<std::string> words_of(std::string_view text);
 
-/// A whole number from 1 on, or 1 where nothing is said.
+/// A whole number from 1 on; 1 for an empty text.
 ///
 /// Errors: invalid_value.
 core::Result<size_t> count_in(const std::string& text);
 
-// The commands, a source for each topic.
+// The commands, one source per topic.
 using CommandResult = core::Result<std::string>;
 
 CommandResult run_program(PromptState& state, const std::string& arguments); // walk_commands.cpp
@@ -85,7 +85,7 @@ CommandResult take_back(PromptState& state, const std::string& arguments);
 CommandResult show_help(PromptState& state, const std::string& arguments); // command_table.cpp
 CommandResult quit(PromptState& state, const std::string& arguments);
 
-/// The words behind `info` and `set`.
+/// The words that `info` and `set` take.
 std::vector<std::string> info_topics();
 std::vector<std::string> set_topics();
 

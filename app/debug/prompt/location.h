@@ -13,20 +13,21 @@ struct Location {
     std::string file = {}; // as CheckedBlock::file; empty: main program
 };
 
-/// Whether a text is written as a place: 23, N210, sub.nc:23, or a block of Klartext.
+/// Whether a text has the form of a location: 23, N210, sub.nc:23, or a block of Klartext.
 bool is_location(const std::string& text);
 
-/// The line that a text means.
+/// The location that a text names.
 ///
-/// Errors: there is no such line, or no such file is known.
+/// Errors: no such line, or no such file.
 core::Result<Location> location_in(PromptState& state, const std::string& text);
 
-/// The first place before a block of that line: from the place on, else from the beginning.
+/// The first position before a block of a line, searched from the current position on, then from
+/// the beginning.
 ///
 /// Errors: no block of it is run.
 core::Result<size_t> place_of(PromptState& state, const Location& location);
 
-/// The text of a program's file: the main program, or a subprogram's that is read once.
+/// The text of a file: the main program, or a subprogram, which is read once.
 ///
 /// Errors: io.
 core::Result<const gcode::Program*> program_of(PromptState& state, const std::string& file);

@@ -23,7 +23,7 @@ struct CheckedBlock;
 
 namespace app::viewer {
 
-/// What the panels show of a block as executed. Plain, so that it can go from thread to thread.
+/// A block as executed, as the panels show it. Plain data that can be passed between threads.
 struct BlockRow {
     uint32_t line = 0;
     std::string text;
@@ -34,11 +34,11 @@ struct BlockRow {
     double time = 0.0;                    // of its start, seconds
     double duration = 0.0;                // seconds
     double removed = 0.0;                 // mm3
-    bool is_known = false;                // the check has been here; all below is empty until then
-    bool is_judged = true;                // false: it moves, but nothing can be said of it
+    bool is_known = false;                // checked; all members below are empty until then
+    bool is_judged = true;                // false: it moves, but could not be checked
     core::Verdict verdict = core::Verdict::clear;
     std::optional<double> lower, upper;   // clearance, mm; upper is empty beyond the search limit
-    std::optional<double> allowance;      // that the deciding pair must keep, mm
+    std::optional<double> allowance;      // of the deciding pair, mm
     std::string part, body;               // of the deciding pair
     core::Vec3 on_tool = core::Vec3(0.0); // witness, frame of the stock
     core::Vec3 on_body = core::Vec3(0.0);
@@ -49,25 +49,25 @@ struct BlockRow {
     bool has_witness() const { return upper.has_value(); }
 };
 
-/// The row of a block that was checked.
+/// The row of a checked block.
 BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked);
 
-/// What a condition can ask of a row. Pairs other than the deciding one are not in it, nor findings
-/// (the window has them in a list of their own), nor anything of the control.
+/// The facts of a row for conditions: of pairs only the deciding one, no findings (the window has a
+/// separate list of them) and no values of the control.
 BlockFacts facts_of(const BlockRow& row, size_t block);
 
-/// Whether anything moves in it.
+/// Whether the block moves anything.
 inline bool moves(const BlockRow& row) { return row.motion != core::BlockMotion::none; }
 
-/// Whether N stops at it: an error was found in it, or its allowance is not proven to be kept.
+/// Whether N stops at it: it has an error, or is not proven clear.
 inline bool is_offending(const BlockRow& row) {
     return row.worst == core::Severity::error || row.verdict != core::Verdict::clear;
 }
 
-/// Whether it keeps its allowance, but not twice.
+/// Whether its clearance is between the allowance and twice the allowance.
 bool is_near(const BlockRow& row);
 
-/// How it is coloured wherever it is drawn.
+/// The state that gives its colour everywhere.
 render::ClearanceState state_of(const BlockRow& row);
 
 } // namespace app::viewer

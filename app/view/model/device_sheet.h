@@ -9,41 +9,40 @@ namespace app::viewer {
 
 struct ViewModel;
 
-/// How a value is meant.
+/// The emphasis of a value.
 enum class Tone : uint8_t { plain, dim, near, bad };
 
-/// A value with its name.
+/// A named value.
 struct DeviceLine {
     std::string name, value;
     Tone tone = Tone::plain;
-    std::optional<size_t> block = {}; // where a click goes
+    std::optional<size_t> block = {}; // that a click goes to
 };
 
-/// Values under one heading.
+/// The values under one heading.
 struct DevicePart {
     std::string title;
     std::vector<DeviceLine> lines;
-    bool is_short = false; // so that two fit side by side
+    bool is_short = false; // two fit side by side
 };
 
-/// All that the panel says of the device and the block at the cursor, in words.
+/// All texts of the panel about the device and the current block.
 struct DeviceSheet {
-    std::string number; // in large letters: slack, or what there is in place of it
+    std::string number; // in large type: the slack, or its replacement
     Tone tone = Tone::plain;
-    std::string answer; // what the device says of the block
-    std::string exact;  // how the exact engine stands to that
+    std::string answer; // of the device for the block
+    std::string exact;  // the exact engine compared with it
     Tone exact_tone = Tone::dim;
     std::vector<DevicePart> parts;
 };
 
-/// For a model with rows and a device that has answered.
+/// The model must have rows and a study.
 DeviceSheet device_sheet(const ViewModel& model);
 
-/// What goes on, where something does or nothing can be shown: reading, running, what is wrong.
-/// Empty while all is there.
+/// The progress or error that is shown while there are no results. Empty if there are.
 std::string device_status(const ViewModel& model);
 
-/// What a tooltip says of the slack of a block: empty without a run, or where nothing was asked.
+/// The tooltip for the slack of a block; empty without a run or an answer.
 std::string slack_words(const ViewModel& model, size_t block);
 
 } // namespace app::viewer

@@ -19,14 +19,14 @@ struct EngineAgreement;
 
 namespace app::viewer {
 
-/// What the device has said of a block.
+/// The answer of the device for a block.
 enum class DeviceAnswer : uint8_t {
-    unknown,   // no run, or none that came so far
-    nothing,   // nothing moves that it could be asked about
+    unknown,   // no run, or it has not reached the block
+    nothing,   // the block moves nothing
     permitted, // in time
-    late,      // permitted when the machine needed it already
+    late,      // permitted after the machine needed it
     refused,
-    not_asked // the device cannot be asked, so it is not permitted
+    not_asked // the device cannot check it, so it is not permitted
 };
 
 /// A program run with the coprocessor, as the window shows it. Never changes.
@@ -36,32 +36,32 @@ struct DeviceStudy {
     std::shared_ptr<const EngineAgreement> agreement;
     MinimumTree slack;          // cells: seconds between permit and need
     std::vector<size_t> stops;  // blocks that are late or not permitted, in order
-    std::optional<size_t> held; // the first that is not permitted: the machine stands before it
-    double near = 0.0;          // slack below which there is little of it, seconds
+    std::optional<size_t> held; // the first that is not permitted: the machine stops before it
+    double near = 0.0;          // slack that counts as little, seconds
 
     size_t size() const { return slack.size(); }
 };
 
-/// Makes ready what the window shows.
+/// Prepares a result for the window.
 std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result);
 
-/// Of a block; unknown without a study.
+/// The answer for a block; unknown without a study.
 DeviceAnswer answer_of(const DeviceStudy* study, size_t block);
 
-/// Whether the machine has to wait before it, or may not run it at all.
+/// Whether the machine has to wait before the block, or may not run it.
 bool stops_machine(DeviceAnswer answer);
 
-/// Seconds from the permit of a block until it was due; empty where nothing was.
+/// Seconds from the permit of a block until it was needed; empty if none was needed.
 std::optional<double> slack_of(const DeviceStudy* study, size_t block);
 
-/// Everything that has become known of a run since the last look.
+/// Everything new of a run since the last update.
 struct DeviceUpdate {
     uint64_t run = 0; // its number
     double share = 0.0;
-    size_t blocks = 0;                        // that were asked
-    bool is_fitting = false;                  // smaller and larger devices are tried
-    bool is_done = false;                     // nothing more will come
-    std::shared_ptr<const DeviceStudy> study; // a later one replaces the one before
+    size_t blocks = 0;                        // answered
+    bool is_fitting = false;                  // other devices are tried
+    bool is_done = false;                     // this is the last update
+    std::shared_ptr<const DeviceStudy> study; // replaces an earlier one
     std::optional<core::Error> failure;
     bool has_news = false;
 };

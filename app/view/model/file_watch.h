@@ -6,23 +6,23 @@
 
 namespace app::viewer {
 
-/// Whether a path has the ending of a mesh, or of a set-up.
+/// Whether the extension of a path is that of a mesh or a set-up.
 bool is_mesh_file(const std::string& path);
 bool is_setup_file(const std::string& path);
 
-/// The set-up and the files it names: meshes, and the machine with its own. They are found even
-/// where the set-up cannot be read as a whole.
+/// The set-up and the files it names: meshes, and the machine file with its meshes. Works even if
+/// the set-up has errors.
 std::vector<std::string> files_of_setup(const std::string& setup);
 
-/// Files that are looked at now and then, to see whether somebody has saved them again.
+/// Polls files for changes.
 class FileWatch {
 public:
     void set(std::vector<std::string> paths);
 
-    /// Whether one of them has changed since the last time, and has rested since: a file that is
-    /// still being written is not read.
+    /// Whether a file changed since the last call and is the same in two calls in a row, so that it
+    /// is not read while it is being written.
     bool has_changed();
-    /// The first that was there and is gone or empty, at rest as of the last look; or nothing.
+    /// The first file that existed and is now deleted or empty, as of the last call; or empty.
     const std::string& missing() const { return missing_; }
 
 private:

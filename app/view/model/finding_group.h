@@ -8,13 +8,13 @@
 
 namespace app::viewer {
 
-/// Findings of one rule about one pair, in blocks that follow one another but for such that do not
-/// move.
+/// Findings of one rule about one pair in successive blocks; blocks without motion do not
+/// interrupt.
 struct FindingStretch {
     size_t first = 0, last = 0;      // blocks
     size_t count = 0;                // blocks that have the finding
-    size_t worst = 0;                // the block where most is missing
-    std::optional<double> clearance; // there, mm; empty where the finding is about none
+    size_t worst = 0;                // the block with the largest shortfall
+    std::optional<double> clearance; // there, mm; empty: not about a clearance
     double shortfall = 0.0;          // there, mm
     std::string message, cure;       // there
 };
@@ -30,28 +30,27 @@ struct FindingGroup {
     std::string message, cure;             // of one about the program as a whole
 };
 
-/// The findings of a program, grouped: the most severe groups first, then those where most is
-/// missing, then in the order of the program.
+/// The findings of a program in groups, sorted by severity, then by shortfall, then by block.
 std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
                                   const std::vector<core::Finding>& findings);
 
-/// A stretch among all groups.
+/// The indices of a stretch.
 struct StretchPlace {
     size_t group = 0, stretch = 0;
 
     bool operator==(const StretchPlace&) const = default;
 };
 
-/// The first stretch that holds a block.
+/// The first stretch that contains a block.
 std::optional<StretchPlace> stretch_at(const std::vector<FindingGroup>& groups, size_t block);
 
-/// The stretch behind or before another one, as they are listed; from the first or last one on
-/// without another. Empty at the end of the list.
+/// The next or previous stretch of the list; without `from`, the first or last one. Empty at the
+/// end of the list.
 std::optional<StretchPlace> stretch_beside(const std::vector<FindingGroup>& groups,
                                            const std::optional<StretchPlace>& from, bool forward);
 
-/// What a person has written on a stretch of findings. It is known again by its rule, its bodies
-/// and the text of its first line, also when lines were put in before it.
+/// A note of the user on a stretch of findings. It is matched by rule, bodies and the text of the
+/// first line, so it survives inserted lines.
 struct FindingNote {
     std::string program; // path of the file
     std::string rule;
@@ -64,22 +63,22 @@ struct FindingNote {
     bool operator==(const FindingNote&) const = default;
 };
 
-/// What is written on a stretch; of several lines that read the same, on the nearest one. Empty
-/// where nothing is.
+/// The note on a stretch; among several lines with the same text, that of the nearest line. Empty:
+/// none.
 std::string note_on(const std::vector<FindingNote>& notes, const std::string& program,
                     const FindingGroup& group, const BlockRow& first);
 
-/// Writes on a stretch in place of what is there; an empty text takes it away.
+/// Sets the note on a stretch; an empty text removes it.
 void write_note(std::vector<FindingNote>& notes, const std::string& program,
                 const FindingGroup& group, const BlockRow& first, const std::string& text);
 
-/// The notes in a text; what it says in a wrong way is left out.
+/// Parses notes; entries with errors are left out.
 std::vector<FindingNote> notes_in(const std::string& text);
 
 std::string text_of(const std::vector<FindingNote>& notes);
 
-/// Notes as they are to be kept: those of a program in place of what was known of it, those of all
-/// others as they were, so that two windows do not lose each other's.
+/// Stored notes with those of one program replaced, so that two windows do not overwrite each
+/// other.
 std::vector<FindingNote> merged(std::vector<FindingNote> kept,
                                 const std::vector<FindingNote>& notes, const std::string& program);
 

@@ -9,55 +9,56 @@ namespace app::viewer {
 
 struct ViewModel;
 
-/// Goes to a block. `share` 1 is its end; the view that belongs to it is asked for.
+/// Goes to a block, at a share of its time (1: its end), and requests its view.
 void go_to(ViewModel& model, size_t block, double share = 1.0);
 
-/// Goes to a block at the moment at which it comes nearest, if that is known.
+/// Goes to a block at its moment of least clearance, if known.
 void go_to_witness(ViewModel& model, size_t block);
 
-/// Steps by so many blocks; with a filter, by blocks that it lets through.
+/// Steps by a number of blocks; with a filter, by blocks that pass it.
 void step(ViewModel& model, int blocks);
 /// To the next or previous block that changes the tool.
 void step_tool(ViewModel& model, bool forward);
-/// Past the blocks that a call makes.
+/// Steps over the blocks of a called subprogram.
 void step_over(ViewModel& model, bool forward);
-/// Behind the call of the subprogram that the cursor is in.
+/// Goes to the block after the call of the current subprogram.
 void step_out(ViewModel& model);
 
-/// To the next or previous violation. Whether there is one that is known, or may still be found: if
-/// the check still runs, the model goes there as soon as one is.
+/// Goes to the next or previous violation. While the check still runs, the model goes there as soon
+/// as one is found. False: there is none.
 bool go_to_offending(ViewModel& model, bool forward);
-/// Goes to the violation that is awaited, if it is known by now. False: there is none.
+/// Goes to the awaited violation if it is known by now. False: there is none.
 bool await_offending(ViewModel& model);
 
 void go_to_bookmark(ViewModel& model);
 
-/// To the worst block of a stretch of findings.
+/// Goes to the worst block of a stretch of findings.
 void go_to_stretch(ViewModel& model, const StretchPlace& place);
-/// To the stretch behind or before the one selected, as the list has them; whether there is one.
+/// Goes to the next or previous stretch of the list. False: there is none.
 bool step_stretch(ViewModel& model, bool forward);
-/// The stretch that the list marks: the one gone to, else the first one that holds the block.
+/// The selected stretch of the list: the one last gone to, else the first one with the current
+/// block.
 std::optional<StretchPlace> selected_stretch(const ViewModel& model);
-/// Shows the findings in place of the lines, or the lines again.
+/// Shows the findings or the lines in the list.
 void show_findings(ViewModel& model, bool shown);
-/// By what notes know the program: its path from the root.
+/// The key of the program in notes: its absolute path.
 std::string notes_key(const ViewModel& model);
 std::string note_at(const ViewModel& model, const StretchPlace& place);
 void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text);
 
-/// The block with the worst verdict, among equals one with an error, then the least margin. There
-/// must be rows.
+/// The block with the worst verdict; among equals, one with an error, then the one with the least
+/// margin. There must be rows.
 size_t worst_block(const ViewModel& model);
 
-/// The first block of a line ("188") or N number ("N1880") from the cursor on, then from the
-/// beginning.
+/// The first block of a line ("188") or N number ("N1880"), searched from the cursor on, then from
+/// the beginning.
 std::optional<size_t> find_line(const ViewModel& model, const std::string& text);
 
-/// Sets a breakpoint on the line of a block, or takes it away.
+/// Sets or removes a breakpoint on the line of a block.
 void toggle_breakpoint(ViewModel& model, size_t block);
 bool has_breakpoint(const ViewModel& model, const BlockRow& row);
 
-/// Plays on by so many seconds of wall time. Whether the cursor has moved.
+/// Advances playback by some seconds of wall time. True if the cursor moved.
 bool play(ViewModel& model, double seconds);
 
 /// The speed after the next or before the last of 0.1 0.2 0.5 1 2 5 ... 100.

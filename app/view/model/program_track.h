@@ -16,15 +16,15 @@ struct BlockResult;
 
 namespace app::viewer {
 
-/// Chords of arcs are drawn within this of them, mm: less than a pixel.
+/// Largest deviation of drawn chords from arcs, mm: less than a pixel.
 constexpr double drawing_error = 0.02;
 
-/// What is known of a program before it is checked: its blocks in order and the way of the tip.
+/// A program before it is checked: its blocks in order and the path of the tool tip.
 ///
 /// Frame: path in that of the stock.
 class ProgramTrack {
 public:
-    /// The set-up must outlive it. It begins at block `first`, with this tool in the spindle.
+    /// Starts at block `first` with this tool in the spindle. The set-up must outlive it.
     explicit ProgramTrack(const core::Setup& setup, size_t first = 0,
                           std::optional<core::ToolNumber> tool = {});
 
@@ -44,7 +44,7 @@ private:
     double time_ = 0.0;
 };
 
-/// The values of all axes, those that the machine lacks at 0; empty where one may stand anywhere.
+/// The values of all axes, 0 for axes that the machine lacks; empty if one is not known.
 std::optional<core::AxisValues> known_values(const core::Machine& machine,
                                              const core::AxisPosition& position);
 

@@ -9,29 +9,30 @@
 
 namespace app::viewer {
 
-/// Which blocks the list shows: those of which a condition is true, as breakpoints have it
-/// (`clearance < 1 and rapid`, `T3`, `rule = near-miss`), or those whose line has a text (`G81`).
+/// Selects the blocks that the list shows: those that meet a condition, as in breakpoints
+/// (`clearance < 1 and rapid`, `T3`, `rule = near-miss`), or those whose line contains a text
+/// (`G81`).
 ///
-/// What cannot be read as a condition, and has none of its signs and words, is such a text.
+/// Input that is no condition, and has none of its signs and words, is such a text.
 class RowFilter {
 public:
     RowFilter() = default;
     explicit RowFilter(const std::string& text);
 
-    /// Whether it lets all rows through, because nothing was written or it was refused.
+    /// Whether all rows pass, because the filter is empty or invalid.
     bool empty() const { return !condition_ && wanted_.empty(); }
-    /// What is wrong with the condition, or cannot be asked of rows; empty if nothing is.
+    /// The error of the condition; empty: none.
     const std::string& refusal() const { return refusal_; }
-    /// The text that lines must have; empty for a condition.
+    /// The text that lines must contain; empty for a condition.
     const std::string& wanted_text() const { return wanted_; }
 
-    /// The rows that it lets through, in order. `findings` are those about all rows.
+    /// The rows that pass, in order. `findings`: of all rows.
     std::vector<size_t> passed(const std::vector<BlockRow>& rows,
                                const std::vector<core::Finding>& findings) const;
 
 private:
     std::optional<Condition> condition_;
-    std::string wanted_; // in small letters
+    std::string wanted_; // in lower case
     std::string refusal_;
 };
 

@@ -15,7 +15,7 @@ namespace app::viewer {
 
 struct ViewModel;
 
-/// A set-up with all that is drawn of it, made once and shared.
+/// A set-up with its meshes, made once and shared.
 struct SceneSetup {
     core::Setup setup;
     render::SetupMeshes meshes;
@@ -24,10 +24,10 @@ struct SceneSetup {
 
 std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup);
 
-/// What is to be seen at the cursor. Cheap: everything large is shared.
+/// The scene at the cursor. Cheap: large parts are shared.
 render::Scene scene_of(const ViewModel& model);
 
-/// Everything that the picture of a scene follows from: while it is the same, so is the picture.
+/// Everything that the picture of a scene depends on: equal keys give equal pictures.
 struct SceneKey {
     uint64_t opening = 0, place = 0;
     const void* path = nullptr;
@@ -48,20 +48,20 @@ struct SceneKey {
 
 SceneKey key_of(const ViewModel& model, const render::Viewport& size);
 
-/// Where the tip of the tool stands. Frame: that of the stock. Empty when nobody knows.
+/// The position of the tool tip, frame of the stock. Empty: not known.
 std::optional<core::Vec3> tip_now(const ViewModel& model);
 
-/// The witness of the current block, if there is one and the view stands at it.
+/// The witness of the current block, if it has one and its view is loaded.
 std::optional<render::Witness> witness_of(const ViewModel& model);
 
-/// A view of the closest pair of the current block from where nothing hides it, if there is such a
-/// side; the one that turns the camera least. Without a pair the whole block is framed.
+/// A camera that shows the closest pair of the current block unobstructed, if possible, with the
+/// smallest turn. Without a pair the whole block is framed.
 ///
 /// Cost: a ray through the scene for each of some dozens of directions.
 render::Camera witness_camera(const ViewModel& model, const render::Viewport& size);
 
-/// What a program is checked with where nobody has said it, in short lines: the stock, the tools,
-/// and that no fixtures are known. Empty where a set-up says it, or nothing is open.
+/// The inferred set-up in short lines: the stock, the tools, and that no fixtures are known. Empty
+/// with a set-up file or without a program.
 std::vector<std::string> inferred_summary(const ViewModel& model);
 
 } // namespace app::viewer

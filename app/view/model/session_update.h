@@ -26,97 +26,97 @@ namespace app::viewer {
 
 struct SceneSetup;
 
-/// Where the axes are at a moment of a block.
+/// The axis positions at a moment of a block.
 struct Pose {
     double time = 0.0; // seconds after the block's start
     core::AxisValues values{};
 };
 
-/// The poses of a block in order of time, every motion from end to end; empty when nothing moves or
-/// an axis may stand anywhere.
+/// The poses of a block in order of time, covering every motion; empty if nothing moves or the
+/// position of an axis is not known.
 std::vector<Pose> poses_of(const core::Machine& machine, std::span<const core::Event> events);
 
-/// Where the axes are at a share of a block's time, 0..1.
+/// The axis positions at a share of a block's time, 0..1.
 std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double share);
 
-/// A value with a name, and whether the block has changed it.
+/// A named value, and whether the block changed it.
 struct ShownValue {
     std::string name, text;
     bool changed = false;
 };
 
-/// Values after a block, marked where they differ from those before.
+/// The values after a block, marked if they differ from those before.
 std::vector<ShownValue> compared(const std::vector<NamedValue>& before,
                                  const std::vector<NamedValue>& after);
 
-/// A block and the state round it, for the window. It never changes once it is made.
+/// A block with the state before or after it, for the window. Never changes.
 struct PlaceView {
     size_t block = 0;
-    bool at_end = true; // the stock is as the block leaves it; false: as it found it
+    bool at_end = true; // true: the stock after the block; false: before it
     std::shared_ptr<const SceneSetup> scene;
     std::vector<Pose> poses;                  // of the block
-    std::optional<core::AxisValues> standing; // where the axes are after it
-    std::optional<core::ToolNumber> tool;     // that moves in it
+    std::optional<core::AxisValues> standing; // axis positions after it
+    std::optional<core::ToolNumber> tool;     // used in it
     std::vector<bool> fixtures_there;
     render::StockBricks stock;
     std::vector<ShownValue> modal, axes, offsets, parameters;
     std::vector<ShownValue> watched;
-    uint64_t serial = 0; // counts views
+    uint64_t serial = 0; // number of the view
 };
 
-/// What a program was opened with, as the window spells it out.
+/// A program as it was opened.
 struct OpenedProgram {
-    std::string program, setup; // paths; setup is empty when it was inferred
+    std::string program, setup; // paths; setup is empty if inferred
     std::string dialect;
     std::vector<std::string> assumptions;
     bool is_inferred = false;
-    bool counts_blocks = false; // its lines begin with the numbers of their blocks, without N
+    bool counts_blocks = false; // its lines begin with block numbers without N
     std::shared_ptr<const SceneSetup> scene;
-    std::shared_ptr<const SetupSheet> sheet; // what of the set-up can be edited
-    std::string proposed_path;               // where the set-up is saved if nobody says otherwise
+    std::shared_ptr<const SetupSheet> sheet; // the editable part of the set-up
+    std::string proposed_path;               // default file for saving the set-up
 };
 
-/// Rows that are new or have changed: they replace those from `first` on.
+/// New or changed rows; they replace those from `first` on.
 struct RowsUpdate {
     size_t first = 0;
     std::vector<BlockRow> rows;
-    std::optional<size_t> count; // of all rows, where that is settled anew
+    std::optional<size_t> count; // of all rows, if it changed
 
     bool empty() const { return rows.empty() && !count; }
-    /// Takes in a later update.
+    /// Merges a later update.
     void append(RowsUpdate later);
 };
 
-/// How far a walk goes.
+/// The direction of a walk.
 enum class Walk : uint8_t { go_on, go_on_back };
 
-/// A block that the window wants to see the state round.
+/// A request for the view of a block.
 struct ShowRequest {
     size_t block = 0;
-    bool at_end = true; // else as the block finds it
+    bool at_end = true; // the state after the block; false: before it
 };
 
 /// Writes a set-up file, whole or not at all; the same as app::FileWriter.
 using SetupWriter =
     std::function<core::Result<void>(const std::string& path, const std::string& text)>;
 
-/// A set-up that was to be saved.
+/// The result of saving a set-up.
 struct SetupSaved {
     std::string path;
     std::optional<core::Error> refusal;
-    bool exists = false; // it was refused because the file is there
+    bool exists = false; // refused because the file exists
 };
 
 /// Where a walk ended.
 struct WalkEnd {
     uint64_t walk = 0; // its number
-    size_t block = 0;  // the block before which it stands
+    size_t block = 0;  // the next block
     Stop stop;
 };
 
-/// Everything that has become known since the last look.
+/// Everything new since the last update.
 struct SessionUpdate {
-    uint64_t opening = 0; // counts programs opened
+    uint64_t opening = 0; // number of the opened program
     std::shared_ptr<const OpenedProgram> opened;
     RowsUpdate rows;
     std::optional<std::vector<core::Finding>> findings;
@@ -126,43 +126,43 @@ struct SessionUpdate {
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
     std::optional<core::Error> failure;              // the program could not be opened
-    std::optional<std::string> refusal;              // of a request, in a sentence
+    std::optional<std::string> refusal;              // of a request, as a sentence
     std::optional<SetupSaved> saved;
     std::optional<core::Error> stopped; // the program could not be run to its end
-    double share = 0.0;                 // of the program that is checked
+    double share = 0.0;                 // of the program, checked so far
     bool is_recorded = false;
     bool is_busy = false; // with opening or walking
 
     bool has_news = false;
 };
 
-/// Takes a later update into one that nobody has looked at yet.
+/// Merges a later update into one that was not read yet.
 void merge(SessionUpdate& news, SessionUpdate later);
 
-/// Turns what a record gains into updates, and keeps what the whole path looks like.
+/// Turns the growth of a record into updates, and keeps the whole path.
 class SessionPublisher {
 public:
-    /// Another program: all of it is new.
+    /// Starts with another program.
     void begin(std::vector<render::PathPoint> points, size_t rows);
-    /// From a block on the program goes another way.
+    /// Restarts from a block after a change.
     void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
 
-    /// What the record has gained since the last call.
+    /// Adds everything that is new in the record since the last call.
     void publish(const DebugSession& session, SessionUpdate& news);
 
 private:
     using Clock = std::chrono::steady_clock;
 
     void add_rows(const DebugSession& session, SessionUpdate& news);
-    /// The states of the blocks that were checked.
+    /// The states of the checked blocks.
     std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
     void paint_path(const DebugSession& session, SessionUpdate& news);
-    /// The first row whose time has been settled since it was sent.
+    /// The first row whose time changed since it was sent.
     size_t first_changed(const CheckRun& run) const;
 
     std::vector<render::PathPoint> points_;
     std::vector<double> durations_;              // as they were sent
-    std::vector<render::ClearanceState> states_; // of blocks, but for the findings about them
+    std::vector<render::ClearanceState> states_; // of blocks, without their findings
     size_t rows_ = 0;                            // known to the window
     size_t findings_ = 0;
     bool is_whole_ = false;

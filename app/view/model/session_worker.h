@@ -22,26 +22,25 @@ namespace app::viewer {
 
 class ProgramTrack;
 
-/// What the worker does, all in its thread: a debugging session and what is made of it for the
-/// window.
+/// A debugging session and its updates for the window, in one thread.
 class WorkerSession {
 public:
-    /// `is_interrupted` is asked on long walks, `is_closing` while a program is opened.
+    /// `is_interrupted` is called on long walks, `is_closing` while a program is opened.
     WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing);
     ~WorkerSession();
 
-    /// Opens another program; `publish` is called when its path is known, before the stock is.
+    /// Opens a program; calls `publish` when its path is known, before the stock model is made.
     void open(const CheckJob& job, const std::function<void()>& publish);
-    /// The record as far as it is; null when nothing is open.
+    /// The record so far; null: no program is open.
     const CheckRun* checked() const;
     /// Whether there is more to record.
     bool has_work() const;
-    /// Carries the walk that was asked for on for a slice, else the record.
+    /// Continues the requested walk, else the record, for one slice.
     void record();
-    /// Whether a view needs no more recording.
+    /// Whether the record is long enough for a view.
     bool can_show(const ShowRequest& request) const;
     void show(const ShowRequest& request);
-    /// Begins a walk; `record` goes on with it, so that what is found on the way is told.
+    /// Starts a walk; `record` continues it, so that updates are published on the way.
     void walk(Walk walk, size_t block, uint64_t number);
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
@@ -57,13 +56,13 @@ private:
 
     void publish_if_due();
     void walk_on();
-    /// The program cannot be opened.
+    /// Reports that the program cannot be opened.
     void fail(const core::Error& error);
     void show_early(ProgramTrack track);
     void refuse(const core::Error& error);
-    /// What is drawn of the set-up that a block is run under.
+    /// The drawn set-up in effect for a block.
     std::shared_ptr<const SceneSetup> scene_at(size_t block);
-    /// The way of the program from the session's place on, which a change has altered.
+    /// Reads the path ahead again after a change.
     void follow_anew();
     std::vector<ShownValue> watched_values(const gcode::InterpreterState& control) const;
 
@@ -76,14 +75,14 @@ private:
     std::vector<Breakpoint> breakpoints_;
     SessionUpdate news_;
     uint64_t openings_ = 0, views_ = 0;
-    /// A walk that has not come to its end, and the block before which it stands.
+    /// A walk in progress, and its next block.
     struct WalkOnItsWay {
         Walk walk = Walk::go_on;
         size_t block = 0;
         uint64_t number = 0;
     };
     std::optional<WalkOnItsWay> walk_;
-    Clock::time_point walk_rests_ = {}; // when others get their turn
+    Clock::time_point walk_rests_ = {}; // end of the current slice
     Clock::time_point last_publish_ = {};
 };
 

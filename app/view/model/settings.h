@@ -19,7 +19,7 @@ constexpr const char* mouse_preset_names[] = {"Middle turns, Shift+middle moves"
                                               "Middle moves, Shift+middle turns",
                                               "Middle turns, Ctrl+middle moves"};
 
-/// What is drawn.
+/// The visible parts of the scene.
 struct Shown {
     bool stock = true, fixtures = true, tool = true, machine = true, path = true, witness = true;
     bool holder_xray = true;
@@ -27,11 +27,11 @@ struct Shown {
     bool operator==(const Shown&) const = default;
 };
 
-/// What the window remembers from one time to the next.
+/// The settings that the window stores.
 struct Settings {
     render::ColorScheme theme = render::ColorScheme::dark;
     bool inch = false;
-    double scale = 1.0; // of everything, on top of the screen's
+    double scale = 1.0; // on top of the scale of the screen
     MousePreset mouse = MousePreset::middle_orbits;
     render::Projection projection = render::Projection::perspective;
     Shown shown;
@@ -46,16 +46,15 @@ struct Settings {
 
 constexpr double least_scale = 0.6, largest_scale = 3.0;
 
-/// The settings in a text; what it does not say, or says in a wrong way, stays as it is by default.
+/// Parses settings; missing or invalid ones have their defaults.
 Settings settings_in(const std::string& text);
 
 std::string text_of(const Settings& settings);
 
-/// Those that were remembered; the usual ones where there is no file.
+/// Reads the settings; the defaults if there is no file.
 Settings read_settings(const std::filesystem::path& file);
 
-/// Remembers them, with the folder they are in. Nobody is told where that fails. Without a path
-/// nothing is written.
+/// Writes the settings and creates their folder. Ignores errors. Does nothing without a path.
 void write_settings(const Settings& settings, const std::filesystem::path& file);
 
 } // namespace app::viewer

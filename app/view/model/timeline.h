@@ -6,12 +6,11 @@
 
 namespace app::viewer {
 
-/// What a stretch of blocks comes to: a column of the timeline.
+/// A stretch of blocks as a column of the timeline.
 struct TimelineCell {
-    double least = core::infinity; // what is kept beyond need: clearance beyond the
-                                   // allowance, mm, or slack, s; infinite: nothing is near
+    double least = core::infinity; // margin, mm, or slack, s; infinite: nothing is near
     bool moves = false;            // any of them
-    bool known = false;            // the check has been at any of them
+    bool known = false;            // any of them is checked
     bool near = false;
     bool offending = false;
 
@@ -21,10 +20,10 @@ struct TimelineCell {
 TimelineCell cell_of(const BlockRow& row);
 TimelineCell merged(const TimelineCell& a, const TimelineCell& b);
 
-/// The cell of any stretch of blocks at the cost of a logarithm, while blocks become known.
+/// The cell of any stretch of blocks in logarithmic time, while the check continues.
 class MinimumTree {
 public:
-    /// Blocks that are new are empty.
+    /// New blocks are empty.
     void resize(size_t count);
     size_t size() const { return count_; }
     void set(size_t block, const TimelineCell& cell);
@@ -48,8 +47,8 @@ struct TimelineRange {
 /// All of it.
 TimelineRange whole(size_t blocks);
 
-/// Nearer (factor below 1) or farther, the block at a share of the width staying where it is. Never
-/// less than ten blocks, never more than there are.
+/// Zoomed in (factor below 1) or out, with the block at a share of the width fixed. At least ten
+/// blocks, at most all.
 TimelineRange zoomed(const TimelineRange& range, size_t blocks, double at, double factor);
 
 /// Moved by a share of its width, within the program.
@@ -58,23 +57,23 @@ TimelineRange moved(const TimelineRange& range, size_t blocks, double by);
 /// Moved as little as possible so that a block is in it.
 TimelineRange showing(const TimelineRange& range, size_t blocks, size_t block);
 
-/// The block at a share of the width; the last one beyond the end. There must be blocks.
+/// The block at a share of the width; beyond the end, the last one. There must be blocks.
 size_t block_at(const TimelineRange& range, size_t blocks, double at);
 
-/// Where the middle of a block is, as a share of the width.
+/// The middle of a block as a share of the width.
 double place_of(const TimelineRange& range, size_t block);
 
-/// A cell for each of so many pixels: the least clearance of all blocks that a pixel covers, so
-/// that no single block is ever overlooked.
+/// A cell for each pixel, with the least value of all blocks that the pixel covers, so that no
+/// block is lost.
 std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& range,
                                   size_t pixels);
 
-/// How high the bar of a slack is, as a share of its row's height: by decades, from `least_slack`
-/// seconds to `most_slack`, as slack goes from microseconds to minutes.
+/// The height of the bar for a slack, as a share of its row: logarithmic, from `least_slack` to
+/// `most_slack` seconds.
 double slack_height(double seconds);
 constexpr double least_slack = 1e-4, most_slack = 100.0;
 
-/// Blocks in a row with one tool in the spindle.
+/// Successive blocks with one tool in the spindle.
 struct ToolBand {
     size_t first = 0, last = 0; // one past the last
     std::optional<core::ToolNumber> tool;

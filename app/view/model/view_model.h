@@ -26,40 +26,39 @@ struct DeviceUpdate;
 class DeviceWorker;
 struct ViewModel;
 
-/// What the window knows of the coprocessor, and what a person wants of it.
+/// The state of the coprocessor in the window, and what the user requested.
 struct DeviceModel {
-    std::string file;     // of the device; empty: the usual one
-    bool shown = false;   // its panel; while it is open, the program that is open is run
-    uint64_t opening = 0; // of the program that was run, or is; 0: none
+    std::string file;     // of the device; empty: the default one
+    bool shown = false;   // its panel; while shown, the open program is run
+    uint64_t opening = 0; // of the program that is or was run; 0: none
     uint64_t run = 0;     // its number
     bool is_running = false;
-    bool is_fitting = false; // the answers are there, other devices are tried
+    bool is_fitting = false; // all blocks are answered, other devices are tried
     double share = 0.0;
-    size_t blocks = 0; // that were asked so far
+    size_t blocks = 0; // answered so far
     std::shared_ptr<const DeviceStudy> study;
     std::optional<core::Error> failure;
 };
 
-/// Shows the panel, or hides it. What it has shown stays on the timeline; a run that has not
-/// answered yet ends.
+/// Shows or hides the panel. Results stay on the timeline; a run without results ends.
 void show_device(ViewModel& model, bool shown);
 
-/// Ends the run and forgets what came of it.
+/// Ends the run and drops its results.
 void switch_off_device(ViewModel& model);
 
-/// Takes in what the worker has to tell; nothing of runs that nobody waits for any more.
+/// Applies an update of the worker; ignores those of earlier runs.
 void take_in(ViewModel& model, DeviceUpdate news);
 
-/// Begins and ends runs, as the model says: what is run is the program that is open, as its files
-/// and the edits of the set-up have it. Whether anything was begun or ended.
+/// Starts and ends runs as the model requires. The run is of the open program, from its files and
+/// the edits of the set-up. True if a run was started or ended.
 bool send_device_orders(ViewModel& model, DeviceWorker& worker,
                         const std::optional<CheckJob>& check);
 
-/// To the next or previous block that the machine has to wait for or may not run, past the end to
-/// the other one. Whether there is one that is known.
+/// Goes to the next or previous block for which the machine waits or that it may not run, wrapping
+/// around at the ends. False: none is known.
 bool go_to_stop(ViewModel& model, bool forward);
 
-/// The block that everything follows, and how far it is through, 0..1 of its time.
+/// The current block, and the share of its time, 0..1.
 struct Cursor {
     size_t block = 0;
     double share = 1.0;
@@ -69,14 +68,14 @@ struct Cursor {
 
 constexpr double slowest = 0.1, fastest = 100.0;
 
-/// Playing at the speed of the machine, times so much.
+/// Playback at a multiple of the speed of the machine.
 struct Playback {
     bool running = false;
     double speed = 1.0;
     bool slow_near = false; // slower where the clearance is small
 };
 
-/// What lies on top of everything else.
+/// The window that is open on top of the panels.
 enum class Popup : uint8_t {
     none,
     shortcuts,
@@ -88,23 +87,23 @@ enum class Popup : uint8_t {
     setup
 };
 
-/// What the window is to do with the set-up.
+/// A request to check with edits of the set-up, or to save them.
 struct SetupRequest {
     std::shared_ptr<const SetupEdits> edits;
-    std::string save_path = {}; // empty: only check with the edits
+    std::string save_path = {}; // empty: only check
     bool may_replace = false;
 };
 
-/// Two places clicked, and the way between them.
+/// Measuring between two clicked points.
 struct Measuring {
     bool on = false;
-    std::vector<core::Vec3> places; // frame of the stock; at most two
+    std::vector<core::Vec3> places; // at most two, frame of the stock
 };
 
-/// Everything the window shows and everything a person has said, without a window. The functions
-/// that change it are in navigation.h and news.h.
+/// Everything the window shows, and the input of the user, independent of a window. Functions that
+/// change it are here and in navigation.h.
 struct ViewModel {
-    // what is known of the program
+    // the program and its check
     uint64_t opening = 0;
     std::shared_ptr<const OpenedProgram> program;
     std::vector<BlockRow> rows;
@@ -118,19 +117,19 @@ struct ViewModel {
     std::shared_ptr<const PlaceView> place;
     std::vector<std::string> changes;
     std::shared_ptr<const SetupEdits> edits; // of the set-up, when opened; null: none
-    std::optional<SetupSaved> saved;         // the last answer to a wish to save the set-up
+    std::optional<SetupSaved> saved;         // result of the last request to save
     std::optional<core::Error> failure, stopped;
-    std::string missing; // a file that is shown, but is gone or empty by now
+    std::string missing; // a file that was read, but is now deleted or empty
     double share = 0.0;
     bool is_recorded = false, is_busy = false;
-    DeviceModel device; // beside which it is run
+    DeviceModel device;
 
-    // what a person has said
+    // input of the user
     Cursor cursor;
     Playback playback;
     std::string filter_text;
-    RowFilter filter;             // as it was read
-    std::vector<size_t> filtered; // rows that the filter lets through; only with a filter
+    RowFilter filter;             // parsed
+    std::vector<size_t> filtered; // rows that pass the filter; only with a filter
     std::vector<Breakpoint> breakpoints;
     std::set<size_t> bookmarks;
     std::vector<FindingNote> notes;            // of all programs
@@ -141,22 +140,22 @@ struct ViewModel {
     bool follows_timeline = true; // the whole program, as it grows
     render::Camera camera;
     bool camera_placed = false;
-    std::optional<size_t> hovered;    // block that was pointed at when the last frame was drawn
-    std::optional<size_t> pointed_at; // in this one
-    std::optional<BlockRow> resume;   // where to go on when the program has been read again
+    std::optional<size_t> hovered;    // block under the mouse in the last frame
+    std::optional<size_t> pointed_at; // in this frame
+    std::optional<BlockRow> resume;   // where to return to after the program is read again
     bool opens_another = false;       // the next opening is of another program
     std::optional<render::SectionPlane> section;
     Measuring measuring;
     Popup popup = Popup::none;
-    std::string message; // shown for a while
+    std::string message; // shown for some seconds
     double message_until = 0.0;
-    bool awaits_offending = false;   // goes to the next violation as soon as one is found
-    std::optional<uint64_t> walking; // number of the walk whose end the worker shall tell
-    bool wants_interrupt = false;    // of walks whose end nobody waits for any more
-    bool list_follows = true;        // the list scrolls to the cursor once
+    bool awaits_offending = false;   // go to the next violation once one is found
+    std::optional<uint64_t> walking; // number of the walk whose end is awaited
+    bool wants_interrupt = false;    // of walks no longer awaited
+    bool list_follows = true;        // the list scrolls to the cursor in the next frame
     bool filter_wants_focus = false;
 
-    // what the worker is to be asked
+    // requests to the worker
     std::optional<ShowRequest> wanted;
     std::optional<Walk> walk;
     std::optional<WhatIf> wanted_change; // from the cursor's block on
@@ -165,10 +164,10 @@ struct ViewModel {
     std::vector<std::string> watches; // expressions
     bool watches_changed = false;
     std::optional<SetupRequest> wanted_setup;
-    bool wants_saving = false; // the popup is to ask for a file
-    std::string wanted_path;   // of a program, set-up or mesh that was dropped or typed
+    bool wants_saving = false; // the popup shows its field for the file
+    std::string wanted_path;   // a program, set-up or mesh that was dropped or typed
 
-    // what the window is to do
+    // requests to the window
     bool notes_changed = false;
     bool wants_picture = false, wants_reload = false, wants_quit = false;
 
@@ -176,31 +175,31 @@ struct ViewModel {
     const BlockRow& row() const { return rows[cursor.block]; }
 };
 
-/// Goes on to nothing that was asked for before: no walk, no violation that is still to be found.
+/// Cancels the awaited walk and the search for a violation.
 void stay(ViewModel& model);
 
-/// Takes in what the worker has to tell. `now`: seconds, as messages are timed.
+/// Applies an update of the worker. `now`: seconds, for the time of messages.
 void take_in(ViewModel& model, SessionUpdate news, double now);
 
-/// That there is no violation, as far as that is known.
+/// The message that there is no violation, with what was checked.
 std::string no_violation(const ViewModel& model);
 
-/// Says something at the foot of the view for some seconds.
+/// Shows a message at the bottom of the view for some seconds.
 void say(ViewModel& model, const std::string& text, double now);
 
-/// Filters anew.
+/// Parses the filter again and applies it.
 void apply_filter(ViewModel& model);
 
 /// Findings about a block, or about the program as a whole.
 std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block);
 
-/// A length as it is shown: mm or inch, without its unit.
+/// A length in the unit of the window, mm or inch, without the unit.
 std::string length_text(const ViewModel& model, double mm, int decimals = 2);
 
-/// A lower bound of a clearance in the same way: never more than it is, and never below 0.
+/// The same for a lower bound of a clearance: rounded down, never below 0.
 std::string length_at_least(const ViewModel& model, double mm, int decimals = 2);
 
-/// An upper bound, or what must be kept: never less than it is.
+/// The same for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);
 const char* length_unit(const ViewModel& model);
 

@@ -10,7 +10,7 @@ namespace app::viewer {
 class SessionWorker;
 struct ViewModel;
 
-/// What a key or a button does.
+/// The action of a key or button.
 enum class Command : uint8_t {
     step,
     step_back,
@@ -83,7 +83,7 @@ enum class Command : uint8_t {
     quit
 };
 
-/// Under which heading the list of keys has it.
+/// The heading in the list of keys.
 enum class CommandGroup : uint8_t { walk, stops, look, show, window };
 
 const char* title_of(CommandGroup group);
@@ -94,20 +94,20 @@ struct KeyBinding {
     CommandGroup group;
     int code;         // as key_codes.h has it
     int modifiers;    // all of them and no others
-    const char* keys; // as a person reads it
-    const char* help; // what it does; empty: another key for the command above
+    const char* keys; // for the list of keys
+    const char* help; // empty: another key for the command above
 };
 
-/// All of them, in the order in which they are listed.
+/// All key bindings, in the order of the list.
 std::span<const KeyBinding> key_bindings();
 
-/// The command of a key; empty when it has none.
+/// The command of a key; empty: none.
 std::optional<Command> command_of(int code, int modifiers);
 
 /// The help and the key of a command: "Next block (Right)".
 std::string tip_of(Command command);
 
-/// Keys by the numbers that GLFW gives them: ImGui 1.86 has no names for most of them.
+/// Key codes of GLFW; ImGui 1.86 has no names for most of them.
 namespace key {
 constexpr int space = 32, comma = 44, minus = 45, period = 46, slash = 47, equal = 61;
 constexpr int left_bracket = 91, right_bracket = 93;
@@ -130,13 +130,13 @@ namespace mod {
 constexpr int none = 0, shift = 1, control = 2, alt = 4;
 } // namespace mod
 
-/// Does what a command says. What only a window can do is noted in the model.
+/// Performs a command. Requests that need a window are stored in the model.
 void perform(ViewModel& model, Command command, double now);
 
-/// Puts the closest pair of the current block into the middle of the view.
+/// Centres the view on the closest pair of the current block.
 void frame_witness(ViewModel& model);
 
-/// Hands what the model wants to the worker. Whether it wanted anything.
+/// Passes the requests of the model to the worker. True if there were any.
 bool send_requests(ViewModel& model, SessionWorker& worker);
 
 } // namespace app::viewer

@@ -13,17 +13,17 @@ namespace app::viewer {
 struct BlockRow;
 struct ViewModel;
 
-/// The colours of a theme as ImGui wants them.
+/// The colours of a theme in the formats of ImGui.
 struct Theme {
     render::ColorScheme theme = render::ColorScheme::dark;
 
     ImU32 color(render::Role role, double alpha = 1.0) const;
     ImVec4 vector(render::Role role, double alpha = 1.0) const;
-    /// Of words. What is too pale for them on white is darker.
+    /// For text: colours too pale on white are darker.
     ImU32 ink(render::Role role) const;
     /// A mixture of two roles: the first at share 0.
     ImU32 mixed(render::Role a, render::Role b, double share) const;
-    /// Of a block's clearance; `otherwise` where it is clear.
+    /// Of a block's clearance; `otherwise` if it is clear.
     ImU32 of(const BlockRow& row, render::Role otherwise) const;
 };
 
@@ -36,7 +36,7 @@ struct ImFont;
 
 namespace app::viewer {
 
-/// The pictures on buttons and in lists.
+/// The icons on buttons and in lists.
 enum class Icon : uint8_t {
     program,
     first,
@@ -69,8 +69,8 @@ enum class Icon : uint8_t {
     device
 };
 
-/// The fonts of the window at one scale. Where a file is missing ImGui's own font stands in, and
-/// words or signs of plain text for icons.
+/// The fonts of the window at one scale. Without a font file, ImGui's own font is used, and plain
+/// text for icons.
 struct Fonts {
     ImFont* text = nullptr;  // 15 px
     ImFont* small = nullptr; // 12.5 px
@@ -83,8 +83,8 @@ struct Fonts {
     const char* icon(Icon icon) const;
 };
 
-/// Loads all fonts anew into ImGui's current context, FreeType hinting them lightly. Their texture
-/// must be made again after that.
+/// Loads all fonts into ImGui's current context, lightly hinted by FreeType. Their texture must be
+/// made again afterwards.
 Fonts load_fonts(double scale);
 
 /// A part of the window, pixels.
@@ -104,7 +104,7 @@ struct Frame {
     double now = 0.0; // seconds
 
     float px(double length) const { return static_cast<float>(length * fonts.scale); }
-    /// Does what a key would do.
+    /// Performs a command as its key does.
     void perform(Command command);
 };
 
@@ -115,13 +115,13 @@ public:
     virtual void draw(Frame& frame, const Area& area) = 0;
 };
 
-/// A square button with an icon; what it does shows when it is pointed at. Whether it was pressed.
+/// A square button with an icon and a tooltip. True when pressed.
 bool icon_button(Frame& frame, Icon icon, Command command, bool is_on = false);
 
 /// A button with an icon and a word beside it.
 bool word_button(Frame& frame, Icon icon, const char* word, bool icon_first, const char* tip);
 
-/// A name in dim letters and its value beside it, cut off with dots where the panel ends.
+/// A dim name with its value, cut off with dots at the edge of the panel.
 void value_row(Frame& frame, const char* name, const std::string& value, double name_width = 84.0,
                bool is_changed = false);
 
@@ -130,13 +130,13 @@ void heading(Frame& frame, const char* text);
 
 /// Text in a font and a colour.
 void text(ImFont* font, ImU32 color, const std::string& words);
-/// The same on several lines, within what is left of the panel's width.
+/// The same, wrapped at the remaining width of the panel.
 void wrapped_text(ImFont* font, ImU32 color, const std::string& words);
 
-/// What is said of the thing pointed at, after a moment.
+/// A tooltip for the last item.
 void tip(const Frame& frame, const std::string& words);
 
-/// As much of a text as fits into a width, with dots for the rest.
+/// A text cut off with dots to fit a width.
 std::string shortened(ImFont* font, const std::string& words, float width);
 
 /// Seconds as 00:03:12.

@@ -20,13 +20,13 @@ namespace app::viewer {
 
 enum class Popup : uint8_t;
 
-/// Everything that can be done, along the upper edge.
+/// The toolbar along the upper edge.
 class ToolbarPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// The lines of the program as they are executed, with the clearance of each.
+/// The lines of the program as executed, each with its clearance.
 class ProgramPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -34,15 +34,15 @@ public:
 private:
     void draw_head(Frame& frame, const Area& area);
     void draw_filter_note(Frame& frame);
-    /// Scrolls to the cursor in the frame that is begun, where it is not seen.
+    /// Scrolls to the cursor if it is not visible.
     void follow_cursor(Frame& frame);
     void draw_rows(Frame& frame);
     void draw_row(Frame& frame, size_t block, float width);
 
-    float scroll_ = 0.0F, room_ = 0.0F; // pixels, of the rows as they were drawn last
+    float scroll_ = 0.0F, room_ = 0.0F; // pixels, of the rows in the last frame
 };
 
-/// What was found, grouped by rule and pair of bodies, with what a person has written on it.
+/// The findings, grouped by rule and pair of bodies, with the notes on them.
 class FindingsPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -57,10 +57,10 @@ private:
     std::string typed_;
 };
 
-/// The names of the two lists at the left, of which one is shown.
+/// The tabs of the two lists at the left.
 void draw_list_tabs(Frame& frame);
 
-/// What is known of the current block: clearance, pair, state, findings; and of the program.
+/// The current block: clearance, pair, state, findings; and the program.
 class InspectorPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -69,13 +69,14 @@ private:
     std::string watch_;
 };
 
-/// The coprocessor: what it says of the current block, and how it stood then.
+/// The coprocessor: its answer for the current block, and its state then.
 class DevicePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// The least clearance of every block, along the lower edge; slack below it where a device was run.
+/// The least clearance of every block, along the lower edge; below it the slack, if a device was
+/// run.
 class TimelinePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -84,8 +85,8 @@ private:
     bool scrubbing_ = false;
 };
 
-/// The machine, the work and the path, with the witness line and its number. The picture is kept
-/// in a texture and drawn anew only when something has changed.
+/// The 3D view: machine, stock, path, and the witness line with its clearance. The picture is kept
+/// in a texture and drawn again only after a change.
 class ScenePanel : public Panel {
 public:
     explicit ScenePanel(render::Renderer renderer);
@@ -100,8 +101,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// The set-up to be read, edited, checked with and saved. What is typed changes nothing until it is
-/// applied, and is applied only when all of it can be.
+/// Shows, edits and saves the set-up. Edits take effect when they are applied, and only if all of
+/// them are valid.
 class SetupPopup {
 public:
     SetupPopup();
@@ -113,7 +114,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// What lies on top of the other panels: keys, going to a line, opening a file, what-ifs, settings.
+/// The windows on top of the panels: keys, going to a line, opening a file, what-ifs, settings.
 class PopupPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -136,20 +137,20 @@ private:
     double origin_ = 0.0;
 };
 
-/// What stands in the middle while there is no program.
+/// The screen without a program.
 class WelcomePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// Why a program, a set-up or a mesh could not be opened, and what can be done.
+/// The error of a program, set-up or mesh that could not be opened, and its remedy.
 class ErrorPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// All panels and where they stand. Needs a current OpenGL context and an ImGui context, and no
-/// window: pictures are made by the same functions.
+/// All panels and their areas. Needs a current OpenGL context and an ImGui context, but no window,
+/// so it also draws pictures.
 class Layout {
 public:
     explicit Layout(render::Renderer renderer);
@@ -162,7 +163,7 @@ public:
     void set_samples(int samples);
 
 private:
-    /// Where everything stands; what is not shown has no width.
+    /// The areas of the panels; hidden ones have no width.
     struct Parts {
         Area toolbar, list, view, device, inspector, timeline;
     };

@@ -17,50 +17,49 @@ struct CheckJob;
 
 namespace app::viewer {
 
-/// Beside which coprocessor programs are run, and whether that is wanted from the beginning.
+/// The coprocessor, and whether to run programs with it from the start.
 struct DeviceChoice {
-    std::string file; // empty: the usual one
+    std::string file; // empty: the default one
     bool shown = false;
 };
 
-/// What the window begins with.
+/// The options of the window.
 struct WindowJob {
     std::shared_ptr<const CheckJob> check; // null: the welcome screen
     DeviceChoice device;
-    std::filesystem::path settings_file; // read at the start, written at the end; empty: neither
-    std::filesystem::path notes_file;    // what is written on findings; empty: nowhere
-    std::filesystem::path pictures;      // folder that F12 saves into
+    std::filesystem::path settings_file; // read at the start, written at the end; empty: none
+    std::filesystem::path notes_file;    // notes on findings; empty: not stored
+    std::filesystem::path pictures;      // folder for pictures by F12
     SetupWriter write;                   // for set-ups and notes
-    std::filesystem::path frame_log;     // where frames are written down; empty: nowhere
+    std::filesystem::path frame_log;     // log of frames; empty: none
 };
 
-/// Opens the window and stays until it is closed.
+/// Opens the window and returns when it is closed.
 ///
 /// Errors: unsupported, in a line, when there is no display or no OpenGL 3.3.
 core::Result<void> run_window(const WindowJob& job);
 
-/// The title of the window: it tells the place, for lists of windows and for those who have it read
-/// to them; with the coprocessor's panel also what the device says of the block.
+/// The title of the window: it names the position, for lists of windows and screen readers; with
+/// the coprocessor's panel also the answer of the device.
 std::string window_title(const ViewModel& model);
 
 /// Errors: io.
 core::Result<std::string> read_text(const std::filesystem::path& path);
 
-/// What is to be checked once files were dropped into the window: a program, a set-up, or both.
-/// Another program comes without the set-up and the breakpoints of the one before. Empty when there
-/// is nothing to be opened, of which a sentence tells.
+/// The job after files were dropped on the window: a program, a set-up, or both. Another program
+/// drops the set-up and the breakpoints of the old one. Empty if there is nothing to open, with a
+/// message.
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
                                      ViewModel& model, double now);
 
-/// Keeps the notes of the program that is open, and takes in those that others have kept of theirs.
+/// Stores the notes of the open program, and merges those stored by other windows.
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const SetupWriter& write,
                 double now);
 
-/// From which side a picture is taken.
+/// The view of a picture.
 enum class ShotView : uint8_t { iso, top, front, witness };
 
-/// Takes pictures of a program without a window or a screen, by the functions that the window
-/// draws with.
+/// Takes pictures of a program without a window or screen, with the same drawing as the window.
 class OffscreenViewer {
 public:
     /// Errors: unsupported, when there is no OpenGL 3.3.
@@ -68,12 +67,12 @@ public:
                                                                double scale);
     ~OffscreenViewer();
 
-    /// Opens a program and checks it to its end.
+    /// Opens a program and checks all of it.
     ///
     /// Errors: as DebugSession::open.
     core::Result<void> open(const CheckJob& job);
 
-    /// Runs the program that is open beside a coprocessor, to its end, and shows its panel.
+    /// Runs all of the open program with a coprocessor, and shows its panel.
     ///
     /// Errors: those of read_device_file and run_beside_coprocessor.
     core::Result<void> run_device(const std::string& file);
@@ -82,7 +81,7 @@ public:
 
     /// Waits for the view of the cursor's block.
     void settle();
-    /// Turns the camera; the cursor's view must be there.
+    /// Sets the camera. The view of the current block must be loaded: call settle() first.
     void look(ShotView view, const render::Viewport& size);
     /// The whole window, or the 3D view alone.
     core::Result<render::Image> picture(const render::Viewport& size, bool with_ui);
