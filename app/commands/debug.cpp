@@ -18,6 +18,7 @@
 
 #include "app/base/text.h"
 #include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/commands/commands.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/output.h"

@@ -11,7 +11,13 @@
 #include "app/check/check_run.h"
 #include "app/debug/condition_parser.h"
 #include "app/debug/inspected_value.h"
+#include "core/sim/clearance.h"
+#include "core/sim/finding.h"
+#include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
 #include "core/sim/verdict.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 namespace {

@@ -8,11 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "app/check/check_job.h"
+#include "app/check/check_run.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
+#include "app/check/run_state.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/recorded_run.h"
+#include "app/setup/setup_file.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/exec/restart.h"
 #include "gcode/text/program_text.h"
+#include "gcode/text/source.h"
 
 namespace app {
 

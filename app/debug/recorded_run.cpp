@@ -12,7 +12,10 @@
 #include <fmt/format.h>
 
 #include "app/base/stopwatch.h"
+#include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/check/conclusion.h"
+#include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/check/run_state.h"
 #include "core/dbm/tile_boxes.h"
@@ -293,7 +296,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
             return tl::unexpected(named(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
-    run->keyframes_->note(0, 0.0, run->runner_->place());
+    run->keyframes_->note(0, 0.0, run->runner_->state());
     run->told_.assumptions = run->record().assumptions;
     return run;
 }
@@ -334,7 +337,7 @@ bool RecordedRun::advance() {
     }
     const double seconds = marks_.back().seconds + work.seconds();
     marks_.push_back({seconds, record().findings.size()});
-    keyframes_->note(last_place(), seconds, runner_->place());
+    keyframes_->note(last_place(), seconds, runner_->state());
     if (!after_block_ || after_block_(runner_->progress())) return true;
     runner_->stop_here();
     finish();
@@ -348,7 +351,7 @@ void RecordedRun::finish() {
         check_->run.assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
     check_->run.times.check = marks_.back().seconds;
-    conclude(*check_, runner_->place().machine, runner_->length_doubts(), needs_surface_);
+    conclude(*check_, runner_->state().machine, runner_->length_mismatches(), needs_surface_);
 }
 
 const core::Setup& RecordedRun::setup_at(size_t block) const {
@@ -374,7 +377,7 @@ core::Result<RunState> RecordedRun::place_at(size_t place) {
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the program ends after {} blocks", last_place()));
     // Behind the end the runner has closed what was open.
-    if (place == last_place() && !is_complete_) return runner_->place();
+    if (place == last_place() && !is_complete_) return runner_->state();
     return replayed(place);
 }
 
@@ -408,7 +411,7 @@ size_t RecordedRun::restart_place(size_t place) {
         const RunState state = replayed(place);
         size_t first = std::min<size_t>(place, state.clock.first_open);
         if (state.lengths.is_open)
-            first = std::min<size_t>(first, core::value_of(state.lengths.doubts.back().first));
+            first = std::min<size_t>(first, core::value_of(state.lengths.mismatches.back().first));
         const bool is_open = first < place && replayed(first).lengths.is_open;
         if (!is_open) return first;
         place = first;
@@ -431,11 +434,11 @@ void RecordedRun::record_again_from(size_t place) {
     runner_->go_back(state, first, marks_[first].findings);
     for (size_t block = first; block < place; ++block) {
         runner_->use(setup_at(block));
-        if (block > first) change_at(block, runner_->place_to_change());
+        if (block > first) change_at(block, runner_->mutable_state());
         [[maybe_unused]] const bool done = runner_->advance();
         assert(done);
     }
-    if (first < place) change_at(place, runner_->place_to_change());
+    if (first < place) change_at(place, runner_->mutable_state());
     runner_->use(setup_at(place));
     marks_.resize(place + 1);
 }
@@ -456,7 +459,7 @@ core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
     record_again_from(place);
     changes_.push_back({place, change});
     setups_.push_back(std::move(setup));
-    runner_->place_to_change() = std::move(state);
+    runner_->mutable_state() = std::move(state);
     runner_->use(*setups_.back());
     return {};
 }

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/check/run_state.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/prompt.h"
+#include "core/sim/setup.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/check/run_state.h"
 #include "app/debug/debug_session.h"
+#include "core/sim/setup.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

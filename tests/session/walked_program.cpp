@@ -90,8 +90,8 @@ std::vector<uint64_t> digests_of(const app::CheckJob& job) {
     auto check = app::prepare_check(job);
     if (!check) return {};
     app::BlockRunner runner(*check);
-    app::RunState place =
-        app::start_of_program(check->file.environment, check->run.setup, std::move(check->machine));
+    app::RunState place = app::start_of_program(check->file.environment, check->run.setup,
+                                                std::move(*check->machine));
     std::vector<uint64_t> digests = {app::digest_of(place)};
     while (true) {
         const auto step = runner.step(place);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/coproc/study/coprocessor_report.h"
 #include "app/view/model/device_worker.h"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/commands/output.h"
 #include "app/view/model/navigation.h"

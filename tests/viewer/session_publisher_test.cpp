@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"

@@ -11,6 +11,7 @@
 #include "app/debug/prompt/state_text.h"
 #include "core/base/text.h"
 #include "core/sim/verdict.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 

@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "gcode/exec/restart.h"
 #include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 
 namespace app {

@@ -9,7 +9,9 @@
 #include "app/debug/inspected_value.h"
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/state_text.h"
+#include "app/setup/setup_file.h"
 #include "core/sim/finding.h"
+#include "gcode/text/source.h"
 
 namespace app {
 namespace {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"

@@ -4,6 +4,8 @@
 
 #include "app/check/check_run.h"
 #include "app/debug/condition.h"
+#include "core/sim/clearance.h"
+#include "core/sim/run/simulator.h"
 
 namespace app::viewer {
 namespace {

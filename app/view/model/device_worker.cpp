@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/coproc/study/coprocessor_report.h"
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/check/saved_setup.h"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/check/check_run.h"
+#include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
 #include "core/sim/verdict.h"

@@ -5,7 +5,7 @@
 #include <epoxy/gl.h>
 #include <imgui.h>
 
-#include "app/check/check_run.h"
+#include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "app/check/check_run.h"
+#include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"

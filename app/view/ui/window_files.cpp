@@ -1,7 +1,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/check/check_run.h"
+#include "app/check/check_job.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
