@@ -11,7 +11,7 @@
 #include "core/motion/event.h"
 
 namespace gcode {
-struct BlockResult;
+struct BlockCommands;
 struct Program;
 } // namespace gcode
 
@@ -106,8 +106,8 @@ public:
 
     /// Passes the next blocks and their events to `visit`, without running them, until it returns
     /// false.
-    void visit_ahead(
-        const std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>& visit);
+    void visit_ahead(const std::function<bool(const gcode::BlockCommands&,
+                                              std::span<const core::Event>)>& visit);
 
     /// Goes to a position; extends the record if needed.
     ///

@@ -11,7 +11,7 @@
 #include "core/sim/finding.h"
 
 namespace gcode {
-struct BlockResult;
+struct BlockCommands;
 class ProgramLibrary;
 } // namespace gcode
 
@@ -68,9 +68,9 @@ public:
     void take_to(RunState& state, size_t from, size_t place);
 
     /// As BlockRunner::visit_ahead, from a copy of the state at a position.
-    void visit_ahead(
-        size_t place, const RunState& state,
-        const std::function<bool(const gcode::BlockResult&, std::span<const core::Event>)>& visit);
+    void visit_ahead(size_t place, const RunState& state,
+                     const std::function<bool(const gcode::BlockCommands&,
+                                              std::span<const core::Event>)>& visit);
 
     /// Keeps keyframes densest near this position.
     void look_at(size_t place);

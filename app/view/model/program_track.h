@@ -11,7 +11,7 @@ struct Machine;
 } // namespace core
 
 namespace gcode {
-struct BlockResult;
+struct BlockCommands;
 } // namespace gcode
 
 namespace app::viewer {
