@@ -94,7 +94,7 @@ TEST_F(WorkedExample, HasEveryPairOfTheSlotWorkedOutByHand) {
 
 TEST_F(WorkedExample, NamesTheCure) {
     ASSERT_FALSE(checked.findings.empty());
-    EXPECT_NE(checked.findings[0].cure.find("0.500 mm more room towards Y-"), std::string::npos)
+    EXPECT_NE(checked.findings[0].cure.find("at least 0.500 mm towards Y-"), std::string::npos)
         << checked.findings[0].cure;
 }
 

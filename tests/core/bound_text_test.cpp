@@ -92,19 +92,24 @@ Finding near_miss(double lower, double upper, double keep) {
 }
 
 TEST(FindingText, ShowsWhatIsKeptBelowWhatMustBe) {
-    EXPECT_THAT(near_miss(1.2346, 1.2346, 2.0).message,
-                HasSubstr("at 1.234 mm; 2.000 mm must be kept, 0.766 mm are missing"));
-    EXPECT_THAT(near_miss(1.9996, 1.9996, 2.0).message,
-                HasSubstr("at 1.999600 mm; 2.000 mm must be kept, 0.000400 mm are missing"));
-    EXPECT_THAT(near_miss(1.9, 1.9996, 2.0).message,
-                HasSubstr("at 1.900000 to 1.999600 mm; 2.000 mm must be kept"));
-    EXPECT_THAT(near_miss(2.0002, 2.0002, 2.0004).message, HasSubstr("2.001 mm must be kept"));
+    EXPECT_THAT(
+        near_miss(1.2346, 1.2346, 2.0).message,
+        HasSubstr("within 1.234 mm of the stock (minimum clearance 2.000 mm; short by 0.766 mm)"));
+    EXPECT_THAT(
+        near_miss(1.9996, 1.9996, 2.0).message,
+        HasSubstr(
+            "within 1.999600 mm of the stock (minimum clearance 2.000 mm; short by 0.000400 mm)"));
+    EXPECT_THAT(
+        near_miss(1.9, 1.9996, 2.0).message,
+        HasSubstr("within 1.900000 to 1.999600 mm of the stock (minimum clearance 2.000 mm"));
+    EXPECT_THAT(near_miss(2.0002, 2.0002, 2.0004).message, HasSubstr("minimum clearance 2.001 mm"));
 }
 
 TEST(FindingText, SaysHowNearItMayBeWithoutComingNearerThanThat) {
     EXPECT_THAT(near_miss(1.9996, 2.5, 2.0).message,
-                HasSubstr("as near to the stock as 1.999 mm; 2.000 mm must be kept"));
-    EXPECT_THAT(near_miss(1.999998, 2.5, 2.0).message, HasSubstr("as 1.999 mm; 2.000 mm must be"));
+                HasSubstr("within 1.999 mm of the stock (minimum clearance 2.000 mm)"));
+    EXPECT_THAT(near_miss(1.999998, 2.5, 2.0).message,
+                HasSubstr("within 1.999 mm of the stock (minimum clearance 2.000 mm)"));
 }
 
 } // namespace

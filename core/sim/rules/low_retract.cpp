@@ -145,10 +145,9 @@ std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<Trac
                           "{} by {} mm only.",
                           finding.pair[0], finding.pair[1],
                           bounds_text(near->lower, near->upper, " to ", 2))
-            : fmt::format("The retract before this rapid is lower than what stands between its "
-                          "ends: {} is in the way of the {}.",
+            : fmt::format("The retract before this rapid is too low: {} is in the way of the {}.",
                           finding.pair[1], finding.pair[0]);
-    finding.cure = fmt::format("Retract {:.1f} mm higher before going across.",
+    finding.cure = fmt::format("Retract {:.1f} mm higher before moving across.",
                                std::ceil(10.0 * *higher - 1e-9) / 10.0);
     return finding;
 }

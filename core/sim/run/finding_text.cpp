@@ -34,7 +34,7 @@ std::string way_out(const PairClearance& pair, double missing) {
         if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
     // Rounded up: what is printed has to do.
     const std::string along = at_most(missing * length / std::abs(away[axis]));
-    return fmt::format("{} mm more room towards {}{}", along, "XYZ"[axis],
+    return fmt::format("Move the tool path at least {} mm towards {}{}", along, "XYZ"[axis],
                        away[axis] > 0.0 ? '+' : '-');
 }
 
@@ -83,7 +83,7 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     const double missing = pair.allowance.distance - pair.upper;
     const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
-    if (!room.empty()) return fmt::format("{} would do{}.", room, move);
+    if (!room.empty()) return fmt::format("{}{}.", room, move);
     if (pair.pair.part == PartKind::machine)
         return "Move the work, or use a longer tool: a part of the machine comes too near.";
     if (pair.pair.part == PartKind::shank && !fixture)
@@ -97,7 +97,7 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
 const char* words_for_rapid(MoveWithin within) {
     switch (within) {
     case MoveWithin::way_home:
-        return "On the way to the reference point (G28, G30), a rapid, the";
+        return "On the rapid to the reference point (G28, G30), the";
     case MoveWithin::cycle:
         return "On a rapid of this cycle, the";
     case MoveWithin::block:
@@ -113,19 +113,19 @@ std::string rapid_into_stock(const std::string& part, MoveWithin within) {
                         : within == MoveWithin::cycle ? " on a rapid of this cycle"
                         : within == MoveWithin::block ? " on a rapid within this block"
                                                       : "";
-    return fmt::format("Rapid into material: the {} runs into the stock{}.", part, whose);
+    return fmt::format("Rapid into material: the {} collides with the stock{}.", part, whose);
 }
 
 /// When in its block something happens.
 std::string how_far(double at) {
-    if (at < 0.005) return "right at its start";
-    return fmt::format("{:.0f} % of the way", 100.0 * at);
+    if (at < 0.005) return "at the start of the block";
+    return fmt::format("after {:.0f} % of the block", 100.0 * at);
 }
 
 std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
-    const char* kind = move.only_dog_leg ? "Straight this rapid would be free, but the axes do not "
-                                           "arrive together: the"
+    const char* kind = move.only_dog_leg ? "On a straight line this rapid would be clear, but the "
+                                           "axes do not arrive together: the"
                        : move.turns      ? "While rotary axes turn, the"
                        : move.motion == BlockMotion::rapid ? words_for_rapid(move.within)
                                                            : "The";
@@ -133,25 +133,25 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
     if (rule == "spindle-off")
         return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
-        return fmt::format("{} {} runs into {}, {}.", kind, part, body, how_far(at));
+        return fmt::format("{} {} collides with {} {}.", kind, part, body, how_far(at));
     const double keep = pair.allowance.distance;
     const int digits = digits_below(pair.upper, keep);
     if (pair.verdict == Verdict::violation)
-        return fmt::format("{} {} passes {} at {} mm; {} mm must be kept, {} mm are missing.", kind,
-                           part, body, bounds_text(pair.lower, pair.upper, " to ", digits),
-                           at_most(keep),
-                           missing_text(keep - pair.upper, keep - pair.lower, " to ", digits));
+        return fmt::format(
+            "{} {} comes within {} mm of {} (minimum clearance {} mm; short by {} mm).", kind, part,
+            bounds_text(pair.lower, pair.upper, " to ", digits), body, at_most(keep),
+            missing_text(keep - pair.upper, keep - pair.lower, " to ", digits));
     if (keep <= resolution)
-        return fmt::format("{} {} may run into {}: whether there is only contact is not decided.",
-                           kind, part, body);
-    return fmt::format("{} {} may be as near to {} as {} mm; {} mm must be kept.", kind, part, body,
-                       clearance_at_least(pair.lower), at_most(keep));
+        return fmt::format("{} {} may collide with {}: contact or collision is undecided.", kind,
+                           part, body);
+    return fmt::format("{} {} may come within {} mm of {} (minimum clearance {} mm).", kind, part,
+                       clearance_at_least(pair.lower), body, at_most(keep));
 }
 
-/// "The flutes run", "the holder runs".
+/// "The flutes come", "the holder comes".
 std::string in_the_plural(std::string message) {
     for (const auto& [one, many] :
-         {std::pair{"flutes runs", "flutes run"}, std::pair{"flutes passes", "flutes pass"}})
+         {std::pair{"flutes comes", "flutes come"}, std::pair{"flutes collides", "flutes collide"}})
         if (const size_t at = message.find(one); at != std::string::npos)
             message.replace(at, std::string(one).size(), many);
     return message;
