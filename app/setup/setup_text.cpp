@@ -15,10 +15,6 @@ std::string key(const char* name, double value) {
     return fmt::format("{} = {}\n", name, toml_number(value));
 }
 
-std::string key(const char* name, const std::optional<double>& value) {
-    return value ? key(name, *value) : std::string();
-}
-
 std::string cones(const char* name, const std::vector<core::ConeStep>& steps) {
     std::vector<std::string> rows;
     for (const core::ConeStep& s : steps)

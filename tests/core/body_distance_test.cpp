@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/dbm/solid.h"
 #include "core/distance/body_distance.h"
 #include "core/geom/triangle_bvh.h"
 #include "tests/support/convex_oracle.h"
