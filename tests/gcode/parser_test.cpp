@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gcode/language/block.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/language.h"
 
 namespace gcode {
