@@ -1,7 +1,8 @@
-/// Checks one program against a set-up and prints the report as JSON: the smallest program that uses
-/// Feeler as a library. check_only.sh verifies that it needs neither a window nor a database.
+/// Checks one program against a set-up and prints the report as JSON: the smallest program that
+/// uses Feeler as a library. check_only.sh verifies that it needs neither a window nor a database.
 #include <cstdio>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/report/json/json_report.h"
 

@@ -74,7 +74,7 @@ TEST(Arc, AbsoluteCentresAreProgramCoordinates) {
               "straight_traverse x=10 y=0 z=0\n"
               "arc_feed x=20 y=0 z=0 plane=XY centre=15,0 turns=-1 feed=100\n");
     EXPECT_THAT(error_of("G90.1\nG2 X10 I5 F100", DialectId::linuxcnc),
-                HasSubstr("2:1: G2: under G90.1"));
+                HasSubstr("2:1: G2: with G90.1 an arc needs both words of its centre"));
     EXPECT_EQ(error_of("G90.1\nG91.1\nG2 X10 I5 F100", DialectId::linuxcnc), "");
 }
 
@@ -87,7 +87,8 @@ TEST(Arc, RefusesRadiiThatDifferAndNamesBoth) {
 
 TEST(Arc, WarnsOfSmallDifferencesWhereTheControlHasAParameter) {
     EXPECT_EQ(warnings_of("G21 G2 X10.004 I5. F100\nM30"), "");
-    EXPECT_THAT(warnings_of("G21 G2 X10.04 I5 F100\nM30"), HasSubstr("the arc's radius is 5.0000"));
+    EXPECT_THAT(warnings_of("G21 G2 X10.04 I5 F100\nM30"),
+                HasSubstr("G2: the radius of the arc is 5.0000 mm at its start and 5.0400"));
     EXPECT_THAT(error_of("G21 G2 X10.052 I5 F100"), HasSubstr("5.0520 mm at its end"));
 }
 
@@ -119,7 +120,8 @@ TEST(Arc, FromAnUnknownPlaceIsAnErrorThatSaysSo) {
     const Ran ran = run_text("G0 X0\nG2 X10 I5 F100\n", unknown);
     ASSERT_TRUE(ran.run.error);
     EXPECT_EQ(ran.run.error->where.line, 2u);
-    EXPECT_THAT(ran.run.error->message, HasSubstr("G2: where the arc starts is unknown along Y"));
+    EXPECT_THAT(ran.run.error->message,
+                HasSubstr("G2: the start position of the arc is unknown in Y"));
     EXPECT_FALSE(run_text("G0 X0 Y0\nG2 X10 I5 F100\n", unknown).run.error);
 }
 

@@ -104,12 +104,14 @@ TEST(Corners, ThatDoNotFitAreRefusedWithTheirWord) {
 }
 
 TEST(Corners, NeedAMotionInThePlaneBehindThem) {
-    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nM30\n"), HasSubstr("1:14: ,R5: the next block"));
+    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nM30\n"),
+                HasSubstr("in the plane, but the program ends"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\n"), HasSubstr("the program ends"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nM8\nY20.\n"), HasSubstr("only a dwell"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nZ5.\n"), HasSubstr("leaves the plane"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG0 Y5.\n"), HasSubstr("a rapid follows"));
-    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG18 Z5.\n"), HasSubstr("change first"));
+    EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nG18 Z5.\n"),
+                HasSubstr("only a dwell is allowed between the two motions"));
 }
 
 TEST(Corners, BelongToFeedsOnly) {

@@ -24,7 +24,7 @@ const std::vector<Expected> errors = {
      "I and J are coordinates of the centre; Fanuc takes distances and stops (PS0020)"},
     {"fanuc-like/MaestroFusio__TEST2.NC", 12, "at its start and",
      "I and J were meant as coordinates here as well, and do not even fit as these"},
-    {"fanuc-like/dillonhuff__mazak_sample.EIA", 2, "G53.5: there is no such code",
+    {"fanuc-like/dillonhuff__mazak_sample.EIA", 2, "G53.5: the dialect fanuc has no such code",
      "a program for a turning and milling centre of Mazak, with codes of its own"},
     {"grbl-hobby/Michael-F-Br___fresa.gcode", 99, "the byte 0x01",
      "a stray control byte: Grbl passes over it, the others stop"},

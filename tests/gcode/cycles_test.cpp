@@ -157,13 +157,15 @@ TEST(Cycle, NamesTheWordItMisses) {
     EXPECT_EQ(error_of("G83 X1 Z-2 R3 F100"), "1:1: G83 needs a Q word");
     EXPECT_EQ(error_of("G83 X1 Z-2 R3 Q0 F100"), "1:15: Q0: the peck depth must be greater than 0");
     EXPECT_THAT(error_of("G81 X1 Z-2 R3"), HasSubstr("1:1: G81: no feed rate"));
-    EXPECT_THAT(error_of("G81 X1 Z-2 R-3 F100"), HasSubstr("R is at -3.0000 mm, below"));
+    EXPECT_THAT(error_of("G81 X1 Z-2 R-3 F100"),
+                HasSubstr("G81: R at -3.0000 mm is below the bottom of the hole at -2.0000"));
 }
 
 TEST(Cycle, RefusesToMakeEndlessMoves) {
     EXPECT_THAT(error_of("G83 X1 Z-200 R3 Q0.0001 F100"), HasSubstr("this Q gives more than"));
     EXPECT_THAT(error_of("G91 G83 X1 Z-20 R0 Q0.01 F100 L10000"), HasSubstr("gives more than"));
-    EXPECT_THAT(error_of("G81 X1 Z-2 R3 F100 L100000"), HasSubstr("L takes a whole number"));
+    EXPECT_THAT(error_of("G81 X1 Z-2 R3 F100 L100000"),
+                HasSubstr("L100000: L must be a whole number from 0 to 10000"));
 }
 
 TEST(Cycle, RetractsToAnUnknownLevelAsUnknown) {

@@ -122,8 +122,10 @@ TEST(FanucContour, WarnsOfBlocksWithoutAMoveInThePlane) {
 }
 
 TEST(FanucContour, RefusesAnotherPlaneAndASkip) {
-    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG18 X20.\n"), HasSubstr("G18 is not possible"));
-    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG31 X20.\n"), HasSubstr("G31 is not possible"));
+    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG18 X20.\n"),
+                HasSubstr("G18 is not allowed between G41 and G40"));
+    EXPECT_THAT(path_of("G1 G41 D1 X10. F9\nG31 X20.\n"),
+                HasSubstr("G31 is not allowed between G41 and G40"));
 }
 
 TEST(FanucContour, WorksInEveryPlane) {

@@ -30,7 +30,7 @@ TEST(ExtendedOffsets, HaasNamesTheFirstTwentyG110ToG129) {
     EXPECT_EQ(machine_after("G10 L20 P20 X10\nG129 G0 X1", haas)[0], 11.0);
     EXPECT_EQ(machine_after("G10 L20 P99 X10\nG154 P99 G0 X1", haas)[0], 11.0);
     EXPECT_THAT(error_of("G154 P100", haas), HasSubstr("from 1 to 99"));
-    EXPECT_THAT(error_of("G110"), HasSubstr("no such code in the dialect fanuc"));
+    EXPECT_THAT(error_of("G110"), HasSubstr("G110: the dialect fanuc has no such code"));
 }
 
 TEST(ExtendedOffsets, APOfAnotherCodeIsNotAnOffset) {

@@ -87,13 +87,14 @@ TEST(Frames, G68UnderG91AddsToTheAngleAndSaysSo) {
     expect_same_path("G68 X0 Y0 R30\nG91 G68 X0 Y0 R60\nG90 G1 X10 Y0 F9", "G1 X0 Y10 F9");
     expect_same_path("G68 X0 Y0 R30\nG68 X0 Y0 R90\nG90 G1 X10 Y0 F9", "G1 X0 Y10 F9");
     EXPECT_THAT(warnings_of("G21 G68 X0 Y0 R30\nG91 G68 X0 Y0 R60\nM30"),
-                HasSubstr("R60: counted from the angle before"));
+                HasSubstr("R60: assumed to be relative to the previous angle"));
 }
 
 TEST(Frames, TheFirstMoveAfterG68WithOneAxisKeepsTheOtherCoordinate) {
     // The example of parameter 11600#5 as delivered: X10 stays X10, then everything is rotated.
     expect_same_path("G0 X10 Y0\nG68 X0 Y0 R90\nG1 Y4 F9\nX3", "G0 X10 Y0\nG1 X-4 Y10 F9\nX-4 Y3");
-    EXPECT_THAT(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3\nM30"), HasSubstr("does not name Y"));
+    EXPECT_THAT(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3\nM30"),
+                HasSubstr("the first move after G68 has no Y word"));
     EXPECT_EQ(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3 Y1\nX7\nG69\nM30"), "");
 }
 
@@ -119,7 +120,7 @@ TEST(Frames, AnArcScaledUnequallyIsRefused) {
 }
 
 TEST(Frames, AScaleWithoutPointIsDoubtedWhenTiny) {
-    EXPECT_THAT(warnings_of("G21 G51 X0 Y0 Z0 P2\nM30"), HasSubstr("the scale is 0.002"));
+    EXPECT_THAT(warnings_of("G21 G51 X0 Y0 Z0 P2\nM30"), HasSubstr("the scaling factor is 0.002"));
     EXPECT_THAT(error_of("G51 X0 Y0"), HasSubstr("add P, or I, J and K"));
     EXPECT_THAT(error_of("G51 P0"), HasSubstr("a scaling factor must not be 0"));
 }

@@ -50,15 +50,17 @@ TEST(StoredOffsets, AreG54WhereTheNumberIsNone) {
 }
 
 TEST(MachinePlaces, AreNoneWithoutAMove) {
-    EXPECT_THAT(refused("G53"), HasSubstr("2:1: G53 is for its own block only"));
-    EXPECT_THAT(refused("G0 X1\nG53 M3 S100"), HasSubstr("3:1: G53 is for its own block only"));
+    EXPECT_THAT(refused("G53"), HasSubstr("2:1: G53 applies to its own block only"));
+    EXPECT_THAT(refused("G0 X1\nG53 M3 S100"), HasSubstr("3:1: G53 applies to its own block only"));
     EXPECT_EQ(refused("G53 G0"), "");
 }
 
 TEST(MachinePlaces, AreRefusedUnderG91AndInPolarWords) {
-    EXPECT_THAT(refused("G91 G53 G0 X5"), HasSubstr("2:5: G53 under G91"));
+    EXPECT_THAT(refused("G91 G53 G0 X5"),
+                HasSubstr("2:5: G53 with G91 stops some controls and is ignored by others"));
     EXPECT_EQ(refused("G91\nG53 G90 G0 X5"), "");
-    EXPECT_THAT(refused("G53 G0 @5 ^3"), HasSubstr("2:8: @5: @ and ^ are about the origin"));
+    EXPECT_THAT(refused("G53 G0 @5 ^3"),
+                HasSubstr("2:8: @5: @ and ^ are relative to the program origin"));
 }
 
 TEST(MachinePlaces, OfRotaryAxesDoNotCountTheTool) {
@@ -71,12 +73,13 @@ TEST(Home, IsReachedAlongTheProgramsAxesWhereTheWorkIsTurned) {
 }
 
 TEST(Arcs, AreNoneInThePlanesOfSecondaryAxes) {
-    EXPECT_THAT(refused("G17.1 F100\nG2 U10 V0 I5 J0"), HasSubstr("3:1: G2: there are no arcs"));
+    EXPECT_THAT(refused("G17.1 F100\nG2 U10 V0 I5 J0"),
+                HasSubstr("3:1: G2: arcs are not possible in the G17.1"));
 }
 
 TEST(ToolEntries, NeedAValue) {
     for (const char* code : {"G10 L1 P5", "G10 L10 P5", "G10 L11 P5"})
-        EXPECT_THAT(refused(code), HasSubstr("2:1: G10 does not say what to write"));
+        EXPECT_THAT(refused(code), HasSubstr("2:1: G10 has no value for the tool table"));
     EXPECT_EQ(refused("G10 L1 P5 R2"), "");
 }
 

@@ -63,7 +63,7 @@ TEST(KlartextCorner, RefusesWhatDoesNotFit) {
     EXPECT_THAT(klartext_error("L X+0 Y+0 F100\nL X+20\nCHF 15\nL Y+10\n"),
                 HasSubstr("4:1: CHF: it is too large"));
     EXPECT_THAT(klartext_error("L X+0 Y+0 F100\nL X+20\nRND R5\n"),
-                HasSubstr("4:1: RND: a motion with feed"));
+                HasSubstr("4:1: RND: it must be followed by a feed move in the plane at"));
     EXPECT_THAT(klartext_error("L X+0 Y+0 F100\nL X+20\nRND\nL Y+20\n"), HasSubstr("RND needs R"));
 }
 

@@ -56,7 +56,8 @@ TEST(KlartextFormula, FunctionsOfFnComputeToo) {
 TEST(KlartextFormula, SaysWhatIsWrong) {
     EXPECT_THAT(klartext_error("Q1 = 5 / 0\n"), HasSubstr("2:8: this is a division by zero"));
     EXPECT_THAT(klartext_error("Q1 = FOO 5\n"), HasSubstr("there is no function 'FOO'"));
-    EXPECT_THAT(klartext_error("Q2500 = 5\n"), HasSubstr("go to 1999"));
+    EXPECT_THAT(klartext_error("Q2500 = 5\n"),
+                HasSubstr("'Q2500': the highest number of these Q parameters is 1999"));
     EXPECT_THAT(klartext_error("QS1 = 5\n"), HasSubstr("QS"));
     EXPECT_THAT(klartext_error("FN 14: ERROR= 1042\n"), HasSubstr("FN 14: the program stops"));
     EXPECT_THAT(klartext_error("FN 26: TABOPEN TNC:\\A.TAB\n"), HasSubstr("'FN 26'"));
@@ -96,7 +97,8 @@ TEST(KlartextFlow, FindsProgramsThatNeverEnd) {
 TEST(KlartextFlow, JoinsTheLinesOfABlock) {
     EXPECT_EQ(way("L X+1 ~\n  FMAX\nL X+2 ;Z ~\n FMAX\n"), "1000 2000 ");
     EXPECT_EQ(way(";L X+1 FMAX and more ~\nL X+2 FMAX\nL X+3 FMAX\n"), "3000 ");
-    EXPECT_THAT(klartext_error("L X+1 ~\n  H5\n"), HasSubstr("3:3: 'H' has"));
+    EXPECT_THAT(klartext_error("L X+1 ~\n  H5\n"),
+                HasSubstr("3:3: 'H' is not allowed in this block"));
 }
 
 TEST(KlartextFlow, ReadsPositionsOfTheSystem) {

@@ -63,10 +63,13 @@ TEST(KlartextMotion, RefusesRadiusCompensationByName) {
 }
 
 TEST(KlartextMotion, NamesWhatItCannotRead) {
-    EXPECT_THAT(klartext_error("L X+10 H5\n"), HasSubstr("2:8: 'H' has no meaning"));
-    EXPECT_THAT(klartext_error("HELLO X+10\n"), HasSubstr("2:1: 'HELLO' begins no statement"));
-    EXPECT_THAT(klartext_error("L X FMAX\n"), HasSubstr("2:3: 'X ' needs a number"));
-    EXPECT_THAT(klartext_error("L X+1 X+2 FMAX\n"), HasSubstr("2:7: 'X+2' stands twice"));
+    EXPECT_THAT(klartext_error("L X+10 H5\n"), HasSubstr("2:8: 'H' is not allowed in this block"));
+    EXPECT_THAT(klartext_error("HELLO X+10\n"),
+                HasSubstr("2:1: 'HELLO' does not start a Klartext statement"));
+    EXPECT_THAT(klartext_error("L X FMAX\n"),
+                HasSubstr("2:3: 'X ' must be followed by a number or a Q parameter"));
+    EXPECT_THAT(klartext_error("L X+1 X+2 FMAX\n"),
+                HasSubstr("2:7: 'X+2' appears twice in this block"));
     EXPECT_THAT(klartext_error("L X+10\n"), HasSubstr("no F has been programmed yet"));
     EXPECT_THAT(klartext_error("L X+10 FMAX M140 MB MAX\n"), HasSubstr("M140"));
 }
@@ -85,8 +88,9 @@ TEST(KlartextArc, PoleCountsFromTheToolWithI) {
 }
 
 TEST(KlartextArc, RefusesWhatIsNoCircle) {
-    EXPECT_THAT(klartext_error("L X+10 F100\nCC X+0 Y+0\nC X+0 Y+11 DR+\n"),
-                HasSubstr("radius is 10.0000 mm at its start and 11.0000 mm at its end"));
+    EXPECT_THAT(
+        klartext_error("L X+10 F100\nCC X+0 Y+0\nC X+0 Y+11 DR+\n"),
+        HasSubstr("the radius of the arc is 10.0000 mm at its start and 11.0000 mm at its end"));
     EXPECT_THAT(klartext_error("L X+10 F100\nC X+0 Y+10 DR+\n"), HasSubstr("no CC"));
     EXPECT_THAT(klartext_error("CC X+0 Y+0\nL X+10 F100\nC X+0 Y+10\n"), HasSubstr("DR+"));
 }
@@ -145,7 +149,7 @@ TEST(KlartextTool, WarnsWhereProgramAndTableDiffer) {
     environment.tool_lengths[core::ToolNumber(5)] = 80.0;
     const std::string text = "BEGIN PGM A MM\nTOOL DEF 5 L+20 R+3\nEND PGM A MM\n";
     EXPECT_THAT(warnings_of(run_text(text, environment).run),
-                HasSubstr("the tool table has the length 80.0000 mm"));
+                HasSubstr("L20: the tool table gives 80.0000 mm as the length of tool 5"));
 }
 
 TEST(KlartextFrame, DatumShiftMovesTheProgram) {

@@ -34,7 +34,8 @@ TEST(Linuxcnc, ThreadsKeepPaceWithTheSpindle) {
     EXPECT_THAT(traced("M3 S100\nG33.1 Z-5 K1.5\nG0 X1"),
                 HasSubstr("pitch=1.5 back_again=1\nstraight_traverse x=1 y=0 z=0\n"));
     EXPECT_THAT(refused("G33.1 Z-1 K1"), HasSubstr("G33.1: the spindle is stopped"));
-    EXPECT_THAT(refused("M3 S1 G33 Z-1"), HasSubstr("G33 needs K"));
+    EXPECT_THAT(refused("M3 S1 G33 Z-1"),
+                HasSubstr("G33 needs a K word, the distance per revolution of the spindle"));
 }
 
 TEST(Linuxcnc, ProbesAreFollowedToTheirEnds) {
@@ -115,7 +116,8 @@ TEST(Linuxcnc, ContoursMoveAsideByTheCuttersRadius) {
               "straight_feed x=20 y=22 z=0 feed=100\n"
               "straight_traverse x=30 y=20 z=0\n");
     EXPECT_THAT(refused("F100 G41.1 D4 G1 X1"), HasSubstr("1:"));
-    EXPECT_THAT(refused("G21 F100 G41.1 D4 G1 X10\nG28"), HasSubstr("G28 is not possible"));
+    EXPECT_THAT(refused("G21 F100 G41.1 D4 G1 X10\nG28"),
+                HasSubstr("G28 is not allowed between G41 and G40"));
 }
 
 TEST(Linuxcnc, BlocksBeforeARefusedContourMoveAreGiven) {

@@ -92,7 +92,8 @@ TEST(Tools, AreSelectedByTAndChangedByM6) {
                                              "select_tool tool=0\nchange_tool tool=0\n");
     EXPECT_EQ(error_of("M6"),
               "1:1: M6 has no tool to change to: no T word has been programmed yet");
-    EXPECT_THAT(error_of("T1.5 M6"), HasSubstr("1:1: T1.5: T takes a whole number"));
+    EXPECT_THAT(error_of("T1.5 M6"),
+                HasSubstr("1:1: T1.5: T must be a whole number from 0 to 99999999"));
     EXPECT_THAT(error_of("T-1 M6"), HasSubstr("1:1: T-1"));
 }
 

@@ -118,7 +118,8 @@ TEST(Offsets, G53MovesInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_EQ(in_shop("G21 G91 G53 G0 X-350", DialectId::haas),
               "straight_traverse x=0 y=200 z=420\n");
     for (const DialectId dialect : {DialectId::linuxcnc, DialectId::fanuc})
-        EXPECT_THAT(error_of("G91 G53 G0 X-350", dialect), HasSubstr("1:5: G53 under G91"));
+        EXPECT_THAT(error_of("G91 G53 G0 X-350", dialect),
+                    HasSubstr("1:5: G53 with G91 stops some controls and is ignored by others"));
     EXPECT_EQ(error_of("G53 X1", DialectId::linuxcnc), "1:1: G53 needs G0 or G1");
     EXPECT_EQ(error_of("G53 X1", DialectId::fanuc), "");
     EXPECT_EQ(error_of("G2 X10 I5 F100\nG53 X1", DialectId::linuxcnc), "2:1: G53 needs G0 or G1");
@@ -170,7 +171,8 @@ TEST(LengthOffset, ALoneHChangesTheOneThatIsOn) {
 }
 
 TEST(LengthOffset, OfAnUnknownNumberIsAWarning) {
-    EXPECT_THAT(warnings_of("G43 H9"), HasSubstr("nothing is known about length offset H9"));
+    EXPECT_THAT(warnings_of("G43 H9"),
+                HasSubstr("G43: length offset H9 is unknown and assumed to be 0"));
     EXPECT_THAT(error_of("G43 H-1"), HasSubstr("1:5: H-1"));
 }
 

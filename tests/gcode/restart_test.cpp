@@ -74,7 +74,7 @@ TEST(Restart, BeginsInTheStateAfterSwitchingOn) {
 TEST(Restart, RefusesALineThatTheProgramNeverComesTo) {
     const auto refused = restarted(99);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("does not come to line 99"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("does not reach line 99"), std::string::npos);
 }
 
 TEST(LineMeant, IsALineOfTheFileOrTheBlockOfThatNumber) {

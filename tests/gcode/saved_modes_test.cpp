@@ -82,8 +82,10 @@ TEST(LinuxcncState, RefusesWhatTheControlRefuses) {
     EXPECT_THAT(refused("G21\nG10 L20 P1 X1 R5"), HasSubstr("use L2"));
     EXPECT_THAT(refused("o1 repeat [2]\no1 break\no1 endrepeat"), HasSubstr("'break' in a"));
     EXPECT_THAT(refused("o1 if [1]\no1 elseif [1/0]\no1 endif"), HasSubstr("division by zero"));
-    EXPECT_THAT(refused("o1 sub\no2 sub\no2 endsub\no1 endsub"), HasSubstr("inside of 1"));
-    EXPECT_THAT(refused("o1 sub\no1 endsub\no1 sub\no1 endsub"), HasSubstr("two subprograms 1"));
+    EXPECT_THAT(refused("o1 sub\no2 sub\no2 endsub\no1 endsub"),
+                HasSubstr("a subprogram starts here inside 1, which starts in line 1"));
+    EXPECT_THAT(refused("o1 sub\no1 endsub\no1 sub\no1 endsub"),
+                HasSubstr("subprogram 1 is defined twice, first in line 1"));
     EXPECT_THAT(refused("o1.5 if [1]\no1.5 endif"), HasSubstr("whole"));
     EXPECT_THAT(refused("o1 if [0]\no2 foo\no1 endif"), HasSubstr("not a keyword"));
     EXPECT_THAT(refused("o1 endif"), HasSubstr("'if' of 1 is missing before this line"));

@@ -35,7 +35,8 @@ TEST(SiemensJump, NamesATargetThatIsNotThere) {
     EXPECT_THAT(siemens_error("G0 X1\nGOTOF GONE\n"),
                 HasSubstr("2:1: there is no GONE after this block to jump to"));
     EXPECT_THAT(siemens_error("GONE: G0 X1\nGOTOF GONE\n"), HasSubstr("in the other direction"));
-    EXPECT_THAT(siemens_error("GOTOF\n"), HasSubstr("1:1: 'GOTOF' needs a label"));
+    EXPECT_THAT(siemens_error("GOTOF\n"),
+                HasSubstr("1:1: 'GOTOF' must be followed by a label or a block number"));
     EXPECT_THAT(siemens_error("G0 X1 GOTOF GONE\n"), HasSubstr("must be in a block by itself"));
 }
 
@@ -97,7 +98,7 @@ TEST(SiemensCall, RefusesWhatDoesNotFit) {
 
 TEST(SiemensCall, VariablesAreOfTheirProgram) {
     EXPECT_THAT(siemens_error("DEF REAL LEN=5\nSUB_E\n%_N_SUB_E_SPF\nG0 X=LEN\nM17\n"),
-                HasSubstr("'len': there is no variable"));
+                HasSubstr("'len': this variable is not defined in this program"));
 }
 
 TEST(SiemensCall, FindsFilesOfTheSearchPathInAnyCase) {

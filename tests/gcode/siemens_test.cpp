@@ -40,20 +40,27 @@ TEST(SiemensWords, DwellsInSecondsOrTurns) {
 }
 
 TEST(SiemensWords, NamesWhatItCannotRead) {
-    EXPECT_THAT(siemens_error("N10 G0 X10 FOO\n"), HasSubstr("1:12: 'FOO' is no word"));
+    EXPECT_THAT(siemens_error("N10 G0 X10 FOO\n"),
+                HasSubstr("1:12: 'FOO' is not a word of this control"));
     EXPECT_THAT(siemens_error("FOO X10\n"), HasSubstr("1:1: 'FOO' is called here"));
-    EXPECT_THAT(siemens_error("FOO\n"), HasSubstr("1:1: 'FOO' is no word of this control, and "
-                                                  "there is no program FOO.SPF"));
+    EXPECT_THAT(
+        siemens_error("FOO\n"),
+        HasSubstr("1:1: 'FOO' is not a word of this control, and there is no program FOO.SPF"));
     EXPECT_THAT(siemens_error("G0 X\n"), HasSubstr("1:4: 'X' must be followed by a number"));
-    EXPECT_THAT(siemens_error("G0 X1 X2\n"), HasSubstr("1:7: 'X2' stands twice"));
-    EXPECT_THAT(siemens_error("G777 X1\n"), HasSubstr("1:1: G777: there is no such code"));
+    EXPECT_THAT(siemens_error("G0 X1 X2\n"), HasSubstr("1:7: 'X2' appears twice in this block"));
+    EXPECT_THAT(siemens_error("G777 X1\n"),
+                HasSubstr("1:1: G777: the dialect siemens has no such code"));
     EXPECT_THAT(siemens_error("G1 X1 F1 RND=5\n"), HasSubstr("1:10: 'RND': corners"));
-    EXPECT_THAT(siemens_error("G1 X=FOO F1\n"), HasSubstr("1:6: 'foo': there is no variable"));
-    EXPECT_THAT(siemens_error("G1 X=FOO(1)\n"), HasSubstr("1:6: 'FOO': there is no such function"));
-    EXPECT_THAT(siemens_error("FOO=1\n"), HasSubstr("'foo': there is no variable"));
+    EXPECT_THAT(siemens_error("G1 X=FOO F1\n"),
+                HasSubstr("1:6: 'foo': this variable is not defined in this program"));
+    EXPECT_THAT(siemens_error("G1 X=FOO(1)\n"),
+                HasSubstr("1:6: 'FOO': this function is not supported; supported are SIN"));
+    EXPECT_THAT(siemens_error("FOO=1\n"),
+                HasSubstr("'foo': this variable is not defined in this program"));
     EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments start with ';'"));
     EXPECT_THAT(siemens_error("G1 A3=1 F1\n"), HasSubstr("1:4: 'A3=': tool orientation"));
-    EXPECT_THAT(siemens_error("G0 X10 R5\n"), HasSubstr("1:8: 'R5' stands alone"));
+    EXPECT_THAT(siemens_error("G0 X10 R5\n"),
+                HasSubstr("1:8: 'R5' alone has no effect: set the parameter with '='"));
     EXPECT_THAT(siemens_error("G1 X1 F1 E5\n"), HasSubstr("1:10: 'E'"));
     EXPECT_THAT(siemens_error("G1 X1\n"), HasSubstr("no feed rate"));
     EXPECT_THAT(siemens_error("ASPLINE X1\n"), HasSubstr("'ASPLINE': splines"));
@@ -61,11 +68,12 @@ TEST(SiemensWords, NamesWhatItCannotRead) {
 
 TEST(SiemensWords, WarnsOfUnknownMCodesOnly) {
     EXPECT_THAT(warnings_of("G710\nM123\nM30\n", DialectId::siemens),
-                HasSubstr("M123: unknown here"));
+                HasSubstr("M123: unknown M code, probably of the machine builder"));
     EXPECT_EQ(
         warnings_of("G710 SOFT FFWON COMPCAD\nCYCLE832(0.01,3)\nSTOPRE\nM30\n", DialectId::siemens),
         "");
-    EXPECT_THAT(warnings_of("G710\nTRAORI\nM30\n", DialectId::siemens), HasSubstr("TRAORI: taken"));
+    EXPECT_THAT(warnings_of("G710\nTRAORI\nM30\n", DialectId::siemens),
+                HasSubstr("TRAORI: not modelled"));
 }
 
 TEST(SiemensWords, PassOverNothingInSilence) {
@@ -74,8 +82,8 @@ TEST(SiemensWords, PassOverNothingInSilence) {
     };
     EXPECT_THAT(warned("X1 I5"), HasSubstr("I5: no code in this block uses this word"));
     EXPECT_THAT(warned("X1 CR=5"), HasSubstr("CR=5: no code in this block uses this word"));
-    EXPECT_THAT(warned("X1 RPL=5"), HasSubstr("RPL=5: nothing"));
-    EXPECT_THAT(warned("X1 I1=5"), HasSubstr("I1=5: nothing"));
+    EXPECT_THAT(warned("X1 RPL=5"), HasSubstr("RPL=5: no code in this block uses this word"));
+    EXPECT_THAT(warned("X1 I1=5"), HasSubstr("I1=5: no code in this block uses this word"));
     EXPECT_THAT(warned("M2=3 S2=100"), HasSubstr("not for spindle 1"));
     EXPECT_THAT(siemens_error("G4 F1 X10\n"), HasSubstr("1:1: G4 must be in a block by itself"));
     EXPECT_THAT(siemens_error("GOTOF OUT G0 X10\nOUT:\n"),
@@ -224,7 +232,7 @@ TEST(SiemensFrame, RefusesArcsThatAreNoneAndTiltedPlanes) {
     EXPECT_THAT(siemens_error("SCALE X2\nG1 X5 F100\nG2 X10 I2.5\n"),
                 HasSubstr("SCALE uses different factors"));
     EXPECT_THAT(siemens_error("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1)\n"),
-                HasSubstr("1:1: CYCLE800: its value 8 is 30"));
+                HasSubstr("1:1: CYCLE800: parameter 8 is 30"));
     EXPECT_EQ(siemens_error("CYCLE800()\n"), "");
     EXPECT_TRUE(run_text("ROT X30\n", DialectId::siemens).run.state.modal.offsets.frame.tilts_tool);
 }
