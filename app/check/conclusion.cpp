@@ -316,7 +316,7 @@ core::Finding finding_of(const core::DeviationRegion& region) {
                     region.place.x, region.place.y, region.place.z, region.area);
     finding.message =
         fmt::format("{} mm {} {}.", core::at_most(region.amount),
-                    gouge ? "of the part is missing" : "too much material is left", where);
+                    gouge ? "of the part is missing" : "of excess material is left", where);
     if (gouge)
         finding.cure = region.block
                            ? "Check the path, the tool's dimensions and the offsets of this block."

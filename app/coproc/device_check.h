@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "app/coproc/device_answer.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
 #include "core/sim/run/simulator.h"
@@ -48,34 +49,6 @@ private:
     const core::ToolAssembly* tool_ = nullptr; // whose parts are in the device
     std::map<Key, Loaded> bodies_;
     std::map<size_t, hwsim::CubeCover> cubes_; // of the machine's bodies that have been at an angle
-};
-
-/// A pair of bodies that the coprocessor was asked about in a block.
-struct AskedPair {
-    core::Pair pair;
-    core::Allowance allowance;
-    bool refused = false;
-    double lower = core::infinity; // they keep at least this, if it was measured
-    bool may_overlap = false;      // their models met
-};
-
-/// What the coprocessor says of a block.
-struct BlockPermit {
-    bool permitted = true; // also of a block that moves nothing
-    size_t segments = 0;   // that were asked
-    hwsim::Stop stop = hwsim::Stop::none;
-    std::optional<core::Pair> pair; // that was refused
-    std::string not_asked;          // why a motion could not be asked; it is not permitted then
-    bool is_told = false;           // why is a thing that a run of the program tells of as well
-    std::vector<AskedPair> pairs;   // each of them once
-    hwsim::DeviceReport report;     // the device's word, before a stop is cleared
-};
-
-/// A block whose questions are in the device.
-struct PushedBlock {
-    BlockPermit permit = {};            // what is known before the answers
-    uint32_t first = 0;                 // number of its first segment
-    std::vector<core::Pair> asked = {}; // by its segments, in order
 };
 
 /// What the coprocessor said of a block: `report` is of a time when it had permitted all of it, or

@@ -1,10 +1,14 @@
 #include "app/coproc/device_judge.h"
 
 #include <algorithm>
+#include <deque>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "app/coproc/device_check.h"
 #include "core/sim/verdict.h"
+#include "hwsim/coprocessor.h"
 
 namespace app {
 namespace {
@@ -75,21 +79,31 @@ core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
 
 } // namespace
 
+struct DeviceJudge::State {
+    const core::Setup& setup;
+    hwsim::FunctionalDevice device; // the check's driver refers to it
+    std::optional<CoprocessorCheck> check = {};
+};
+
+DeviceJudge::DeviceJudge(std::unique_ptr<State> state) : state_(std::move(state)) {}
+DeviceJudge::DeviceJudge(DeviceJudge&&) noexcept = default;
+DeviceJudge& DeviceJudge::operator=(DeviceJudge&&) noexcept = default;
+DeviceJudge::~DeviceJudge() = default;
+
 core::Result<DeviceJudge> DeviceJudge::with(const core::Setup& setup, const core::CutModel& stock) {
-    DeviceJudge judge(setup);
     FEELER_TRY(hwsim::FunctionalDevice device, hwsim::functional_device({}));
-    judge.device_ = std::make_unique<hwsim::FunctionalDevice>(std::move(device));
-    FEELER_TRY(judge.check_, CoprocessorCheck::with(hwsim::port_of(*judge.device_), setup, stock,
+    auto state = std::make_unique<State>(State{setup, std::move(device)});
+    FEELER_TRY(state->check, CoprocessorCheck::with(hwsim::port_of(state->device), setup, stock,
                                                     Asking::everything));
-    return judge;
+    return DeviceJudge(std::move(state));
 }
 
 core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> block,
                                                  const core::SimulatorState& before) {
-    FEELER_TRY(const BlockPermit permit, check_->ask(block, before));
+    FEELER_TRY(const BlockPermit permit, state_->check->ask(block, before));
     core::Judgement judgement;
     for (const AskedPair& asked : permit.pairs) {
-        judgement.pairs.push_back(clearance_of(asked, setup_->search_limit));
+        judgement.pairs.push_back(clearance_of(asked, state_->setup.search_limit));
         judgement.runs_into_stock =
             judgement.runs_into_stock
             || (asked.refused && asked.pair == core::Pair{core::PartKind::flutes});
@@ -98,7 +112,7 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
     judgement.verdict = Verdict::undecided;
     judgement.checked = permit.not_asked.empty() || worst_of(permit);
     if (!permit.is_told || permit.stop != hwsim::Stop::none)
-        judgement.finding = refusal(*setup_, permit);
+        judgement.finding = refusal(state_->setup, permit);
     return judgement;
 }
 
@@ -117,19 +131,83 @@ uint32_t last_of(const PushedBlock& pushed) {
 
 } // namespace
 
+struct DevicePipeline::State {
+    /// A block without an answer.
+    struct Pending {
+        std::vector<core::Event> events;
+        core::SimulatorState before;
+        bool is_pushed = false;
+        uint64_t begin = 0; // cycle of its first word
+        PushedBlock pushed = {};
+        DeviceBlock block = {}; // what is known of it
+        uint64_t end = 0;       // cycle of its last answer
+    };
+    /// A segment that the device has finished.
+    struct Finished {
+        uint32_t sequence = 0;
+        uint64_t cycle = 0;
+        hwsim::SearchCounts counts;
+        DeviceTotals after;
+    };
+
+    State(hwsim::EmulatedDevice device, const core::Setup& setup)
+        : device_(std::move(device)), setup_(&setup) {}
+
+    core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before);
+    core::Result<void> finish();
+    DeviceTotals totals();
+
+    void note(const hwsim::CoprocessorState& state);
+    /// Goes on until every block is in the device.
+    core::Result<void> settle();
+    core::Result<void> ask(Pending& pending);
+    /// Gives finished segments to their blocks, and blocks that have all of them to the list.
+    void collect();
+    bool is_answered(const Pending& pending) const;
+    /// What the device said when it had permitted a block.
+    static hwsim::DeviceReport permitted(const Pending& pending);
+    /// The oldest block has its answer.
+    void close(const hwsim::DeviceReport& report);
+    /// The block that made the device stop is refused; those behind it are to be asked again.
+    void take_stop();
+
+    hwsim::EmulatedDevice device_;
+    const core::Setup* setup_;
+    std::optional<CoprocessorCheck> check_ = {};
+    std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle_ = {};
+    std::deque<Pending> pending_ = {};
+    std::vector<Finished> finished_ = {}; // and not given to their blocks
+    std::vector<DeviceBlock> blocks_ = {};
+    uint64_t last_end_ = 0;
+};
+
+DevicePipeline::DevicePipeline(std::unique_ptr<State> state) : state_(std::move(state)) {}
+DevicePipeline::~DevicePipeline() = default;
+
 Result<std::unique_ptr<DevicePipeline>> DevicePipeline::with(
     const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
     std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle) {
     FEELER_TRY(hwsim::EmulatedDevice device, hwsim::emulated_device(config));
-    std::unique_ptr<DevicePipeline> pipeline(new DevicePipeline(std::move(device), setup));
-    pipeline->on_cycle_ = std::move(on_cycle);
+    auto state = std::make_unique<State>(std::move(device), setup);
+    state->on_cycle_ = std::move(on_cycle);
     hwsim::DevicePort port = hwsim::port_of(
-        pipeline->device_, [&pipeline = *pipeline](const auto& state) { pipeline.note(state); });
-    FEELER_TRY(pipeline->check_, CoprocessorCheck::with(std::move(port), setup, stock));
-    return pipeline;
+        state->device_, [&pipeline = *state](const auto& now) { pipeline.note(now); });
+    FEELER_TRY(state->check_, CoprocessorCheck::with(std::move(port), setup, stock));
+    return std::unique_ptr<DevicePipeline>(new DevicePipeline(std::move(state)));
 }
 
-void DevicePipeline::note(const hwsim::CoprocessorState& state) {
+Result<void> DevicePipeline::push(std::span<const core::Event> block,
+                                  const core::SimulatorState& before) {
+    return state_->push(block, before);
+}
+
+Result<void> DevicePipeline::finish() { return state_->finish(); }
+
+const std::vector<DeviceBlock>& DevicePipeline::blocks() const { return state_->blocks_; }
+
+DeviceTotals DevicePipeline::totals() { return state_->totals(); }
+
+void DevicePipeline::State::note(const hwsim::CoprocessorState& state) {
     const hwsim::Retired& retired = state.retired;
     if (retired.valid && retired.segment.kind == hwsim::SegmentKind::permit)
         finished_.push_back(
@@ -139,13 +217,13 @@ void DevicePipeline::note(const hwsim::CoprocessorState& state) {
     on_cycle_({blocks_.size(), newest}, state);
 }
 
-Result<void> DevicePipeline::push(std::span<const core::Event> block,
-                                  const core::SimulatorState& before) {
+Result<void> DevicePipeline::State::push(std::span<const core::Event> block,
+                                         const core::SimulatorState& before) {
     pending_.push_back({.events = {block.begin(), block.end()}, .before = before});
     return settle();
 }
 
-Result<void> DevicePipeline::finish() {
+Result<void> DevicePipeline::State::finish() {
     while (true) {
         if (auto settled = settle(); !settled) return settled;
         if (pending_.empty()) return {};
@@ -153,7 +231,7 @@ Result<void> DevicePipeline::finish() {
     }
 }
 
-Result<void> DevicePipeline::settle() {
+Result<void> DevicePipeline::State::settle() {
     while (true) {
         collect();
         if (device_.state.permits.stopped != hwsim::Stop::none) {
@@ -167,14 +245,14 @@ Result<void> DevicePipeline::settle() {
     }
 }
 
-Result<void> DevicePipeline::ask(Pending& pending) {
+Result<void> DevicePipeline::State::ask(Pending& pending) {
     pending.begin = pending.end = device_.state.cycle;
     FEELER_TRY(pending.pushed, check_->push(pending.events, pending.before));
     pending.is_pushed = true;
     return {};
 }
 
-void DevicePipeline::collect() {
+void DevicePipeline::State::collect() {
     size_t taken = 0;
     for (const Finished& one : finished_) {
         const auto owner = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
@@ -191,17 +269,17 @@ void DevicePipeline::collect() {
     while (!pending_.empty() && is_answered(pending_.front())) close(permitted(pending_.front()));
 }
 
-hwsim::DeviceReport DevicePipeline::permitted(const Pending& pending) {
+hwsim::DeviceReport DevicePipeline::State::permitted(const Pending& pending) {
     return {.permitted = last_of(pending.pushed)};
 }
 
-bool DevicePipeline::is_answered(const Pending& pending) const {
+bool DevicePipeline::State::is_answered(const Pending& pending) const {
     if (!pending.is_pushed) return false;
     const uint32_t permitted = device_.state.permits.permit_sequence;
     return static_cast<int32_t>(permitted - last_of(pending.pushed)) >= 0;
 }
 
-void DevicePipeline::close(const hwsim::DeviceReport& report) {
+void DevicePipeline::State::close(const hwsim::DeviceReport& report) {
     Pending& pending = pending_.front();
     if (pending.pushed.asked.empty() && !blocks_.empty())
         pending.block.after = blocks_.back().after;
@@ -214,7 +292,7 @@ void DevicePipeline::close(const hwsim::DeviceReport& report) {
     pending_.pop_front();
 }
 
-void DevicePipeline::take_stop() {
+void DevicePipeline::State::take_stop() {
     const hwsim::DeviceReport report = check_->report();
     const auto refused = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
         return p.is_pushed && is_of(p.pushed, report.stop_sequence);
@@ -237,7 +315,7 @@ void DevicePipeline::take_stop() {
     check_->recover();
 }
 
-DeviceTotals DevicePipeline::totals() {
+DeviceTotals DevicePipeline::State::totals() {
     DeviceTotals totals;
     const uint32_t high_word = device_.state.host.high_word; // the driver may be between two reads
     for (uint32_t i = 0; i < hwsim::counter_count; ++i) {

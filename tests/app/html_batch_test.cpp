@@ -194,10 +194,10 @@ TEST(HtmlBatch, ShowsNoMarginLargerThanItIs) {
                           "clearance 1.999 mm or more (minimum 2.000 mm)"));
     tightest.upper = 2.0024;
     EXPECT_THAT(html_batch_summary(batch),
-                HasSubstr("<td>-0.001 mm: clearance 1.999 to 2.003 mm, "));
+                HasSubstr("<td>-0.001 mm: clearance 1.999 to 2.003 mm (minimum 2.000 mm)"));
     tightest = {.lower = -0.0000011, .upper = 0.0};
     EXPECT_THAT(html_batch_summary(batch),
-                HasSubstr("<td>0.000 mm: clearance 0.000 mm, 0.000 mm "));
+                HasSubstr("<td>0.000 mm: clearance 0.000 mm (minimum 0.000 mm)"));
 }
 
 TEST(HtmlBatch, CountsSkippedFilesByTheirReason) {

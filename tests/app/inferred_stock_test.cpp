@@ -215,7 +215,7 @@ TEST(MeasuringProgram, HasNoStock) {
                                "FN18: SYSREAD Q12 = ID270 NR1 IDX3\nL IZ-5 R0 F200\n"
                                "L IX-2 R0 F200\nL Z-10 R0 FMAX M91\nEND PGM P MM\n",
                                "p.h");
-    EXPECT_THAT(run.assumed, HasSubstr("line 4 asks where the axes stand"));
+    EXPECT_THAT(run.assumed, HasSubstr("line 4 reads the axis positions"));
     EXPECT_FALSE(run.run.has_errors());
 }
 

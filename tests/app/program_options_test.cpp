@@ -141,7 +141,7 @@ TEST(IniFile, ShowsItsNumbersToPrograms) {
     // An axis A that is at 1 would be told.
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=1\n")) << traced.ran.out;
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=0\n")) << traced.ran.out;
-    EXPECT_TRUE(traced.warns("WRAPPED_ROTARY of A is not followed")) << traced.ran.err;
+    EXPECT_TRUE(traced.warns("WRAPPED_ROTARY of A is ignored")) << traced.ran.err;
     traced.run(program, {});
     EXPECT_EQ(traced.ran.status, 2);
 }

@@ -307,7 +307,7 @@ TEST(SavedSetup, KeepsWhatSomebodyWrote) {
     const auto after = app::rewritten_setup(before, edits);
     ASSERT_TRUE(after);
     EXPECT_THAT(*after, HasSubstr("[0, 0, -25], [240, 150, 0]"));
-    EXPECT_THAT(*after, HasSubstr("# What must not be touched."));
+    EXPECT_THAT(*after, HasSubstr("# Fixtures. `at` is the position of the mesh origin;"));
     EXPECT_THAT(*after, HasSubstr("# Drill: 70 + 70 = 140 mm."));
     EXPECT_THAT(*after, Not(HasSubstr("[0, 0, -20]")));
     EXPECT_EQ(*app::rewritten_setup(before, {}), before);

@@ -2,12 +2,13 @@
 // cycles, so that the tables are the same on every machine. With --speed the speed of the emulator
 // on this machine; with --volumes the comparison with the paper's spheres (one minute).
 
+#include "hwsim/coprocessor.h"
+
 #include <ctime>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "hwsim/coprocessor.h"
 #include "tests/bench/volume_table.h"
 
 namespace {

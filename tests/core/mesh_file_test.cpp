@@ -210,7 +210,7 @@ TEST(MeshFile, SaysWhenThereIsNoSuchFile) {
 TEST(MeshFile, RefusesAnUnknownExtension) {
     EXPECT_THAT(error_of("part.step", "ISO-10303-21;"),
                 HasSubstr("'.step' is not a supported mesh format"));
-    EXPECT_THAT(error_of("part", "solid"), HasSubstr("no mesh format"));
+    EXPECT_THAT(error_of("part", "solid"), HasSubstr("is not a supported mesh format"));
 }
 
 TEST(MeshFile, RefusesATruncatedStl) {

@@ -34,7 +34,8 @@ TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     EXPECT_EQ(checked.errors(), "missing-length-offset 5");
     EXPECT_EQ(checked.of_severity("warning"), "");
     const FindingLine told = checked.finding("missing-length-offset");
-    EXPECT_THAT(told.message, HasSubstr("95.000 mm lower than intended and collides with the stock"));
+    EXPECT_THAT(told.message,
+                HasSubstr("95.000 mm lower than intended and collides with the stock"));
     EXPECT_THAT(told.message, HasSubstr("from line 5 to line 17"));
     EXPECT_THAT(told.cure, HasSubstr("G43 H1"));
     EXPECT_EQ(checked.verdict, "collision");

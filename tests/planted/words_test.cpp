@@ -56,7 +56,8 @@ TEST(RapidOfACycle, PastAClampIsNamedAsARapid) {
                               "G0 Z60."}));
     const FindingLine told = checked.finding("rapid-near-clamp");
     EXPECT_EQ(told.line, 8);
-    EXPECT_THAT(told.message, HasSubstr("On a rapid of this cycle, the flutes pass clamp-1"));
+    EXPECT_THAT(told.message,
+                HasSubstr("On a rapid of this cycle, the flutes come within 1.200 mm of clamp-1"));
 }
 
 // Tool changes.
@@ -123,7 +124,7 @@ TEST(Witness, IsAtTheSameMomentHoweverMuchIsTold) {
         const std::string text = feeler(words).out;
         return text.substr(0, text.find(" line move")).substr(0, text.find(file));
     };
-    EXPECT_THAT(messages(""), HasSubstr("% of the way"));
+    EXPECT_THAT(messages(""), HasSubstr("% of the block"));
     EXPECT_EQ(messages(""), messages("--pairs"));
 }
 

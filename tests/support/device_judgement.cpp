@@ -4,6 +4,7 @@
 
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
+#include "app/coproc/device_check.h"
 
 namespace test_support {
 

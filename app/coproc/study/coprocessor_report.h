@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "app/coproc/device_check.h"
 #include "app/coproc/permit_timing.h"
 #include "app/coproc/study/coprocessor_run.h"
 

@@ -7,6 +7,7 @@
 #include "app/check/conclusion.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
+#include "app/coproc/device_judge.h"
 
 namespace app {
 namespace {

@@ -2,9 +2,13 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/coproc/device_judge.h"
+#include "app/coproc/device_answer.h"
 #include "app/coproc/permit_timing.h"
 #include "core/sim/run/permit_run.h"
+
+namespace hwsim {
+struct CoprocessorState;
+}
 
 namespace app {
 
