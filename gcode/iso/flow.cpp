@@ -65,6 +65,8 @@ private:
     core::Result<void> while_statement();
     core::Result<void> repeat_statement();
     core::Result<void> end_repeat_statement();
+    /// The end of the loop that `word`, break or continue, is in.
+    core::Result<const FlowMark*> end_of_loop(std::string_view word);
     core::Result<void> leave_loop();
     core::Result<void> continue_loop_early();
     core::Result<void> jump();
@@ -276,18 +278,21 @@ core::Result<void> Flowing::end_repeat_statement() {
     return {};
 }
 
-core::Result<void> Flowing::leave_loop() {
+core::Result<const FlowMark*> Flowing::end_of_loop(std::string_view word) {
     FEELER_TRY(const FlowMark* const end,
                partner({end_while, end_repeat, while_loop}, true, "endwhile"));
-    if (end->kind == end_repeat) return refuse_in_repeat("break");
+    if (end->kind == end_repeat) return refuse_in_repeat(word);
+    return end;
+}
+
+core::Result<void> Flowing::leave_loop() {
+    FEELER_TRY(const FlowMark* const end, end_of_loop("break"));
     go_behind(end->line);
     return {};
 }
 
 core::Result<void> Flowing::continue_loop_early() {
-    FEELER_TRY(const FlowMark* const end,
-               partner({end_while, end_repeat, while_loop}, true, "endwhile"));
-    if (end->kind == end_repeat) return refuse_in_repeat("continue");
+    FEELER_TRY(const FlowMark* const end, end_of_loop("continue"));
     set_line(end->line);
     return {};
 }

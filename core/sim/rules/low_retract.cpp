@@ -21,7 +21,7 @@ Setup with_every_pair(Setup setup) {
 
 /// Looks at every pair, whatever the report wants.
 struct Look {
-    const LinkRapid& link;
+    const LegAsRun& link;
     Setup setup = with_every_pair(link.setup);
     CheckMemory memory = {};
     Statistics statistics = {};
@@ -64,13 +64,13 @@ double flutes_to_stock(const std::vector<TrackedPair>& pairs) {
 }
 
 /// Whether the flutes pass over the face of the stock from above, no wall beside them.
-bool passes_over(const LinkRapid& link, const PairClearance& pair) {
+bool passes_over(const LegAsRun& link, const PairClearance& pair) {
     const Vec3 up = pair.on_tool - pair.on_body;
     return up.z > 0.7 * glm::length(up) && pair.on_body.z >= link.stock.outer_box.max.z - room;
 }
 
 /// What the rapid comes too near to, of the pairs on the way.
-const PairClearance* in_the_way(const LinkRapid& link, const std::vector<TrackedPair>& pairs) {
+const PairClearance* in_the_way(const LegAsRun& link, const std::vector<TrackedPair>& pairs) {
     const PairClearance* worst = deciding_pair(pairs);
     if (worst && worst->verdict != Verdict::clear) return worst;
     for (const TrackedPair& pair : pairs)
@@ -81,7 +81,7 @@ const PairClearance* in_the_way(const LinkRapid& link, const std::vector<Tracked
 }
 
 /// Whether anything on the way is too near, or the flutes pass the stock with little room.
-bool is_doubtful(const LinkRapid& link, const std::vector<TrackedPair>& known) {
+bool is_doubtful(const LegAsRun& link, const std::vector<TrackedPair>& known) {
     if (!are_clear(known)) return true;
     CheckMemory memory;
     Statistics statistics;
@@ -120,7 +120,7 @@ bool goes_across(const Leg& leg) {
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<TrackedPair>& known) {
+std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known) {
     if (!is_doubtful(link, known)) return std::nullopt;
     Look look{link};
     const std::vector<TrackedPair> pairs = look.along(0.0);

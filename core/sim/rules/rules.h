@@ -56,14 +56,14 @@ struct ToolReach {
 
 using ToolReaches = std::map<ToolNumber, ToolReach>;
 
-/// A leg that was cut, with what a check needs.
-struct CutLeg {
+/// A leg of the run, with what a rule needs to check it again with other tool positions.
+struct LegAsRun {
     const Setup& setup;
     const ToolAssembly& tool;
     BlockIndex block;
     const Leg& leg;
     const std::vector<bool>& fixtures_there;
-    const CutModel& stock; // after the leg
+    const CutModel& stock; // note_reach: after the leg; low_retract: before it
 };
 
 /// Notes whether holder and shank met the stock on a leg that the flutes cut, and how much higher
@@ -71,7 +71,7 @@ struct CutLeg {
 ///
 /// Cost: nothing for a leg on which they keep away; else, where they have to stand higher than on
 ///       any leg before, some ten checks of the leg.
-void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<TrackedPair>& pairs);
+void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<TrackedPair>& pairs);
 
 /// The findings `stick-out-short` and `over-engagement`, one of each for a tool, with the first
 /// block that they are about and what would do for all blocks. Severities are left open but for a
@@ -89,16 +89,6 @@ struct RunWatch {
     bool length_in_doubt = false;
 };
 
-/// A rapid between two features, as it ran, with what a second look needs.
-struct LinkRapid {
-    const Setup& setup;
-    const ToolAssembly& tool;
-    BlockIndex block;
-    const Leg& leg;
-    const std::vector<bool>& fixtures_there;
-    const CutModel& stock; // before the rapid
-};
-
 /// Whether a leg goes across far enough to be a way from one feature to another.
 bool goes_across(const Leg& leg);
 
@@ -107,7 +97,7 @@ bool goes_across(const Leg& leg);
 /// found on the leg. Its severity is left open.
 ///
 /// Cost: nothing where the rapid passes well clear; else some twenty checks of the leg.
-std::optional<Finding> low_retract(const LinkRapid& link, const std::vector<TrackedPair>& known);
+std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known);
 
 /// What is known about the pieces of a stock while it is cut. A plain value.
 struct PieceWatch {

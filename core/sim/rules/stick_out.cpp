@@ -34,7 +34,7 @@ ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
 
 /// Whether the parts from this one up keep their allowances on the leg, against the stock as it was
 /// left.
-bool keeps_clear(const CutLeg& cut, PartKind from, double by) {
+bool keeps_clear(const LegAsRun& cut, PartKind from, double by) {
     const ToolAssembly longer = raised(cut.tool, from, by);
     CutModel stock = cut.stock;
     CheckMemory memory;
@@ -52,7 +52,7 @@ bool keeps_clear(const CutLeg& cut, PartKind from, double by) {
 
 /// The least height, to within `step`, at or above `known` that keeps the leg clear; `most` if none
 /// does.
-double needed(const CutLeg& cut, PartKind from, double known) {
+double needed(const LegAsRun& cut, PartKind from, double known) {
     if (keeps_clear(cut, from, known)) return known;
     double low = known, high = std::max(1.0, 2.0 * known);
     while (high < longest_stick_out && !keeps_clear(cut, from, high)) {
@@ -161,7 +161,7 @@ bool goes_sideways(const Leg& leg) {
 
 } // namespace
 
-void note_reach(ToolReaches& reaches, const CutLeg& cut, const std::vector<TrackedPair>& pairs) {
+void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<TrackedPair>& pairs) {
     constexpr double touch = 0.02; // mm
     for (const TrackedPair& pair : pairs) {
         const bool is_shank = pair.pair.part == PartKind::shank;
