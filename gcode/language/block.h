@@ -11,14 +11,14 @@
 
 namespace gcode {
 
-/// What a keyword of native Siemens does.
+/// Effect of a Siemens keyword.
 enum class SiemensAction : uint8_t {
     note,    // understood; no effect on positions
-    warning, // likewise, but a person should know
+    warning, // understood, but reported; no effect on positions
     refusal,
     // words with a value: CR=5
     address,
-    noted_address,   // whose value has no effect on positions
+    noted_address,   // the value has no effect on positions
     refused_address, // not supported
     // motions and modes
     arc_by_point,  // CIP
@@ -45,11 +45,11 @@ enum class SiemensAction : uint8_t {
     hole_circle // HOLES2
 };
 
-/// A row of the one table of keywords.
+/// A row of the table of keywords.
 struct SiemensKeyword {
     std::string_view name;
     SiemensAction action;
-    std::string_view text{}; // of a warning or refusal; of an address its letter
+    std::string_view text{}; // of a warning or refusal; the letter of an address
 
     constexpr bool operator<(const SiemensKeyword& other) const { return name < other.name; }
 };
@@ -59,13 +59,13 @@ struct SiemensKeywordUse {
     core::SourceSpan span;
 };
 
-/// A value in brackets or after a keyword: an expression, a text or nothing.
+/// A value in brackets or after a keyword: an expression, a string or nothing.
 struct SiemensArgument {
     enum class Kind : uint8_t { nothing, value, text };
 
     Kind kind = Kind::nothing;
     Expression expression{};
-    double plain = 0.0;      // the value when it is a plain number
+    double plain = 0.0;      // the value, if it is a plain number
     std::string_view text{}; // between the quotation marks
     core::SourceSpan span{};
 };
@@ -75,7 +75,7 @@ enum class JumpWay : uint8_t { forward, backward, either, quietly, to_start };
 
 /// `GOTOF END`, `IF R1 > 5 GOTOB N100`.
 struct SiemensJump {
-    SiemensArgument condition; // nothing: always
+    SiemensArgument condition; // nothing: unconditional
     JumpWay way = JumpWay::either;
     std::string target; // in capitals
     core::SourceSpan span{};
@@ -92,15 +92,15 @@ struct SiemensDeclaration {
     core::SourceSpan span{};
 };
 
-/// What a block of native Siemens says beside its words and assignments.
+/// What a Siemens block contains besides words and assignments.
 struct SiemensBlock {
     std::string label{}; // `NAME:`, in capitals
     std::vector<SiemensKeywordUse> keywords{};
     std::vector<SiemensJump> jumps{};
     std::vector<SiemensDeclaration> declarations{}; // of DEF and PROC
-    std::string name{};                             // of the program that is called or begins
+    std::string name{};                             // of the program that is called or defined
     core::SourceSpan name_span{};
-    std::vector<SiemensArgument> arguments{}; // of a call, a cycle, MSG; of UNTIL and the like one
+    std::vector<SiemensArgument> arguments{}; // of a call, a cycle, MSG; UNTIL and similar have one
     SiemensArgument repeats{};                // P of a call
     SiemensArgument tool_name{};              // T="..."
     bool is_modal_call = false;               // MCALL
@@ -109,7 +109,7 @@ struct SiemensBlock {
     void clear();
 };
 
-/// How an axis word counts: as the distance mode says, or by itself, as `IX5` does.
+/// How an axis word is measured: by the modal distance mode, or by its own prefix, as in `IX5`.
 enum class Addressing : uint8_t { modal, absolute, incremental };
 
 /// A letter and its value as written, in the units of the program.
@@ -118,9 +118,9 @@ struct Word {
         '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and `,C`
     double value = 0.0;
     core::SourceSpan span{};
-    bool has_point = false; // X5. rather than X5, or a computed value
+    bool has_point = false; // X5. rather than X5; also set for computed values
     Addressing addressing = Addressing::modal;
-    Expression expression{}; // if present, gives the value
+    Expression expression{}; // if present, overrides the value
 
     bool operator==(const Word& other) const {
         return letter == other.letter && value == other.value && has_point == other.has_point
@@ -139,11 +139,11 @@ struct Assignment {
     uint32_t name = 0; // of a named one: index into the pool
     bool is_named = false;
     Expression value;
-    double plain = 0.0; // the value when it is a plain number
+    double plain = 0.0; // the value, if it is a plain number
     core::SourceSpan span{};
 };
 
-/// What a line does to the order in which blocks are run.
+/// Effect of a line on the order of execution.
 enum class FlowKind : uint8_t {
     none,
     // O words
@@ -198,16 +198,16 @@ constexpr bool is_siemens_statement(FlowKind kind) {
 struct Flow {
     FlowKind kind = FlowKind::none;
     core::SourceSpan span{};
-    uint32_t label_name = 0; // index into the pool's names; a number as its digits
+    uint32_t label_name = 0; // index into the pool's names; a number is stored as its digits
     bool has_label = false;
     Expression label;             // o#1 call, o[...] call
     Expression condition;         // of if, while, repeat; the target of GOTO; the value of return
-    double plain_condition = 0.0; // when it is a plain number
+    double plain_condition = 0.0; // the condition, if it is a plain number
     bool has_condition = false;
     std::vector<Expression> arguments{};
 };
 
-/// What a line does that says so with a keyword rather than with a G code.
+/// The action of a line that is given by a keyword rather than a G code.
 enum class CommandKind : uint8_t {
     none,
     straight,         // L
@@ -226,20 +226,20 @@ enum class CommandKind : uint8_t {
     cycle_call,       // CYCL CALL, CYCL CALL POS
     read_system,      // FN 18
     program_error,    // FN 14
-    note,             // what is read and has no effect here
-    modes,            // M words alone
+    note,             // read, but has no effect here
+    modes,            // a line with M words only
     siemens,          // keywords, cycles, MCALL
 };
 
-/// A statement that begins with a keyword. Its values are words of the block: a radius is R, polar
-/// places are P and H, the rest as the kind says.
+/// A statement that begins with a keyword. Its values are stored as words of the block: a radius as
+/// R, polar coordinates as P and H, others depending on the kind.
 struct Command {
     CommandKind kind = CommandKind::none;
     core::SourceSpan span{};
     int number = 0, part = 0;     // CYCL DEF 7.1: 7 and 1
     int turn = 0;                 // DR+: 1, DR-: -1
     bool rapid = false;           // FMAX
-    bool calls_cycle = false;     // M99, or a call of its own
+    bool calls_cycle = false;     // M99, or CYCL CALL
     bool calls_from_here = false; // M89: after every motion
 };
 
@@ -253,15 +253,15 @@ struct Block {
     Flow flow{};
     Command command{};
     ExpressionPool pool{};
-    SiemensBlock siemens{};             // of that language alone
-    std::optional<int> block_delete{};  // `/` is 1, `/1` to `/9` their number
+    SiemensBlock siemens{};             // Siemens only
+    std::optional<int> block_delete{};  // 1 for `/`, 1 to 9 for `/1` to `/9`
     bool tape_mark = false;             // a line that begins with %
     bool is_program_name = false;       // a line that begins with <NAME>
-    std::optional<size_t> kept_words{}; // before a `/` within the block
+    std::optional<size_t> kept_words{}; // number of words before a `/` within the block
 
     bool has_message = false; // a comment that the control acts on
 
-    /// Whether the line says anything that is run.
+    /// Whether the line contains nothing to execute.
     bool is_empty() const {
         return words.empty() && assignments.empty() && flow.kind == FlowKind::none
                && command.kind == CommandKind::none && !has_message;

@@ -16,7 +16,7 @@
 namespace gcode {
 
 /// Canonical commands: the meaning of a block with modes and units resolved. Lengths in mm, feed in
-/// mm/min, ends in program coordinates of the offsets that are active at the command.
+/// mm/min; end points in program coordinates of the offsets active at the command.
 struct StraightTraverse {
     Position end;
 };
@@ -31,18 +31,18 @@ struct ArcFeed {
     int turns;        // as LinuxCNC: +1 up to one turn counter-clockwise, -2 up to two clockwise
     double feed;
 };
-/// A probing move: towards contact, or a feed to its end without contact.
+/// A probing move. It stops at contact, or goes to its end if there is none.
 struct StraightProbe {
     Position end;
     double feed;
-    bool towards;      // until contact is made, else until it is lost
-    bool must_succeed; // an error if it never is
+    bool towards;      // until contact is made; otherwise until it is lost
+    bool must_succeed; // missing contact is an error
 };
 /// A feed synchronised with the spindle.
 struct ThreadFeed {
     Position end;
-    double pitch;    // mm a revolution
-    bool back_again; // G33.1: reverses at the end and returns to where it came from
+    double pitch;    // mm per revolution
+    bool back_again; // G33.1: reverses at the end and returns to its start
 };
 struct Dwell {
     double seconds;
@@ -67,9 +67,9 @@ struct Coolant {
 struct SelectPlane {
     Plane plane;
 };
-/// A work offset, G52 or G92 changed, or another work offset became active.
+/// A work offset, G52 or G92 changed, or another work offset was activated.
 struct SetOffset {
-    Offsets offsets; // all of them, from here on
+    Offsets offsets; // all active offsets after the change
 };
 struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
@@ -77,9 +77,9 @@ struct UseToolLengthOffset {
     bool follows_tip = false;                 // G43.4, G43.5
 };
 struct UseSpindleMode {
-    bool surface_speed;   // G96, else G97
+    bool surface_speed;   // G96; false: G97
     double speed;         // m/min, or rev/min
-    double fastest_speed; // rev/min, 0 without a limit
+    double fastest_speed; // rev/min; 0: no limit
 };
 struct SetPathMode {
     PathMode mode;
@@ -94,12 +94,12 @@ struct SetOutput {
     int number;
     double value;
     bool is_analog;
-    bool with_motion; // when the next motion begins, else at once
+    bool with_motion; // with the next motion; otherwise immediately
 };
 struct WaitForInput {
     int number;
     bool is_analog;
-    double seconds; // 0 waits for nothing
+    double seconds; // 0: does not wait
 };
 /// A message of the program to the operator.
 struct Message {
@@ -121,7 +121,7 @@ bool is_motion(const CanonicalCommand& command);
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);
 
-/// G54 to G59.3, P1 and on, or G500 without an offset.
+/// G54 to G59.3, then P1 and up; G500 for no offset.
 std::string name_of_offset(size_t index);
 
 /// XY, ZX, YZ, UV, WU or VW.
@@ -142,16 +142,16 @@ struct Warning {
 struct BlockCommands {
     core::BlockIndex block{};
     uint32_t line = 0;
-    std::string_view text{};       // the line, as long as the library stays where it is; of a
-                                   // program that is read in windows, until the next block
-    std::string_view file{};       // of a subprogram's file; empty for the main program
-    std::vector<uint32_t> calls{}; // lines that called it, the outermost first
+    std::string_view text{}; // the line. Valid as long as the library is not moved; in a program
+                             // read in windows, until the next block
+    std::string_view file{}; // file of a subprogram; empty for the main program
+    std::vector<uint32_t> calls{}; // lines of the calls that led here, outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
     bool goes_home = false;        // G28 or G30
     std::vector<CanonicalCommand> commands{};
-    std::vector<uint32_t> columns{}; // of the words that the commands come from
+    std::vector<uint32_t> columns{}; // of the words that produced the commands
     std::vector<Warning> warnings{};
-    std::shared_ptr<const std::string> own_text{}; // what `text` refers to where windows moved on
+    std::shared_ptr<const std::string> own_text{}; // owns `text` when the windows have moved on
 };
 
 } // namespace gcode

@@ -49,8 +49,7 @@ constexpr std::string_view no_path_time =
 
 constexpr std::string_view no_five_axes = "moves of rotary axes are not supported yet";
 
-constexpr std::string_view no_machine_point =
-    "the datum of the machine builder is not known here: use M91";
+constexpr std::string_view no_machine_point = "the machine builder's datum is unknown: use M91";
 
 constexpr std::string_view no_turn_feed =
     "feed per revolution is not supported yet: program F in mm/min";
@@ -366,8 +365,8 @@ constexpr bool before(const Code& a, const Code& b) {
 }
 static_assert(std::is_sorted(std::begin(codes), std::end(codes), before));
 
-/// For each letter, where the first row of a code stands in the table by tenths, counted from 1; 0
-/// for none.
+/// For each code in tenths, the index of its first row in the table, counted from 1; 0: unknown
+/// code.
 struct Positions {
     static constexpr int most = 10000;
     std::array<uint16_t, most> g{}, m{};
@@ -392,7 +391,7 @@ const Code* find_code(char letter, double value, DialectId id) {
     const auto& by_tenths = letter == 'G' ? positions.g : positions.m;
     const uint16_t place = by_tenths[static_cast<size_t>(rounded)];
     if (place == 0) return nullptr;
-    // A code that means something else on another control has a row for each, side by side.
+    // A code that has different meanings on different controls has adjacent rows, one for each.
     const Code* found = &codes[place - 1];
     for (; found != std::end(codes) && found->letter == letter && found->tenths <= rounded; ++found)
         if ((found->dialects & bit(id)) && rounded <= found->last_tenths()) return found;

@@ -7,9 +7,9 @@
 
 namespace gcode {
 
-/// Codes of one group replace each other; a block may have one of each group.
+/// Codes of one group replace each other; a block may contain one code of each group.
 enum class ModalGroup : uint8_t {
-    action, // does something once: G4, G10, G28, G52, G53, G92
+    action, // one-shot codes: G4, G10, G28, G52, G53, G92
     motion,
     cycle,
     plane,
@@ -48,10 +48,10 @@ struct Code {
     char letter;
     int tenths; // 593 for G59.3
     ModalGroup group;
-    std::string_view words;   // that it uses besides F, S and T; "XYZ" means all axes
-    DialectSet dialects;      // that know it
-    std::string_view refusal; // why it is not supported; empty if it is
-    int last = 0;             // of several codes in a row that are one, the last, in tenths
+    std::string_view words;   // used besides F, S and T; "XYZ" means all axes
+    DialectSet dialects;      // that have this code
+    std::string_view refusal; // why it is not supported; empty if it is supported
+    int last = 0;             // for a range of codes with one row, the last code, in tenths
 
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }
     MotionCode motion() const { return static_cast<MotionCode>(tenths); }
@@ -62,7 +62,7 @@ struct Code {
 /// The number of a code in tenths; tenths(59, 3) is G59.3.
 constexpr int tenths(int whole, int tenth = 0) { return whole * 10 + tenth; }
 
-/// The code a word such as G59.3 or M6 names in a dialect, or null when the dialect has none.
+/// The code of a word such as G59.3 or M6 in a dialect; null when the dialect has no such code.
 const Code* find_code(char letter, double value, DialectId dialect);
 
 } // namespace gcode

@@ -14,14 +14,14 @@ constexpr ArcTolerance linuxcnc_arc = {.absolute_mm = 2 * 0.01 * std::numbers::s
                                        .limit = 100.0,
                                        .warned_mm = 0.0};
 
-// Fanuc leaves the tolerance to a parameter (3410); posts round to a micron.
+// Fanuc: the tolerance is a parameter (3410); post-processors round to a micron.
 constexpr ArcTolerance fanuc_arc = {.absolute_mm = 0.005,
                                     .absolute_inch = 0.0005,
                                     .relative = 0.0,
                                     .limit = 1.0,
                                     .warned_mm = 0.05};
 
-// Grbl: gcode.c refuses above 0.5 mm, or above 0.005 mm and a thousandth of the radius.
+// Grbl, gcode.c: an error above 0.5 mm, or above both 0.005 mm and a thousandth of the radius.
 constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
                                    .absolute_inch = 0.005 / 25.4,
                                    .relative = 0.001,
@@ -107,8 +107,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .offset_writes_miss_axis_offset = true,
                                       .surface_speed_needs_s = true};
 
-// Fanuc 30i user's manual B-63944EN, "Custom macro"; angles as parameter 6004 has them when it is
-// 0.
+// Fanuc 30i user's manual B-63944EN, "Custom macro"; angles as with parameter 6004 = 0.
 constexpr Arithmetic fanuc_arithmetic = {.bitwise_logic = true,
                                          .fix_is_to_zero = true,
                                          .angles_have_no_sign = true,
@@ -236,7 +235,7 @@ constexpr Dialect grbl_dialect = [] {
     return entry;
 }();
 
-// The input tolerance of the iTNC's manual for the end of an arc around CC is 0.016 mm.
+// iTNC manual: the input tolerance for the end point of an arc around CC is 0.016 mm.
 constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
                                          .absolute_inch = 0.016 / 25.4,
                                          .relative = 0.0,
@@ -266,7 +265,7 @@ constexpr Dialect heidenhain = [] {
     return entry;
 }();
 
-// SINUMERIK 840D, MD21000 and MD21010 as delivered: 0.01 mm, or a thousandth of the radius.
+// SINUMERIK 840D, default MD21000 and MD21010: 0.01 mm, or a thousandth of the radius.
 constexpr ArcTolerance siemens_arc = {.absolute_mm = 0.01,
                                       .absolute_inch = 0.01 / 25.4,
                                       .relative = 0.001,
@@ -307,7 +306,7 @@ constexpr Dialect siemens_dialect = [] {
     return entry;
 }();
 
-// ISO dialect M after G291: Fanuc's language on the same control.
+// ISO dialect M after G291: the language of Fanuc on a Siemens control.
 constexpr Dialect siemens_iso = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::siemens_iso;

@@ -16,13 +16,13 @@ using core::ErrorCode;
 
 constexpr double largest_whole = 9007199254740992.0; // 2^53
 
-/// The remainder with the sign of the divisor's size: never negative (RS274/NGC 3.3.2.3).
+/// Remainder that is never negative, whatever the sign of the divisor (RS274/NGC 3.3.2.3).
 double modulo(double a, double b) {
     const double rest = std::fmod(a, b);
     return rest < 0.0 ? rest + std::abs(b) : rest;
 }
 
-/// 0x37 as 37 when `base` is 16, and back when it is 10.
+/// Reads the digits of a value in base `from` as digits in base `to`: 0x37 from 16 to 10 is 37.
 double recode(double value, int from, int to) {
     auto rest = static_cast<int64_t>(value);
     double result = 0.0, weight = 1.0;
@@ -31,7 +31,7 @@ double recode(double value, int from, int to) {
     return result;
 }
 
-/// Sines and the like of whole right angles are exact, as a control's tables have them.
+/// Sines and cosines of multiples of 90 degrees are exact, as in the tables of controls.
 double sine_of_degrees(double angle) {
     const double turned = std::remainder(angle, 360.0);
     if (turned == 0.0 || std::abs(turned) == 180.0) return 0.0;
@@ -46,7 +46,7 @@ double cosine_of_degrees(double angle) {
     return std::cos(angle / core::degrees_per_radian);
 }
 
-/// Something that cannot be computed; empty when it can.
+/// Why an operation cannot be computed; empty if it can.
 std::string_view objection_to(Operation operation, double a, double b) {
     switch (operation) {
     case Operation::square_root:
@@ -206,7 +206,7 @@ Operation with_amounts(Operation operation) {
     return operation == Operation::fup ? Operation::away_from_zero : operation;
 }
 
-/// What the control does where the program has this operation.
+/// The operation as this control defines it.
 Operation done_for(Operation operation, const Arithmetic& arithmetic) {
     if (arithmetic.bitwise_logic) operation = with_bits(operation);
     return arithmetic.fix_is_to_zero ? with_amounts(operation) : operation;
@@ -218,7 +218,7 @@ bool is_angle_of_turn(Operation operation) {
 
 constexpr size_t deepest = 64;
 
-/// The values of an expression while it is worked out.
+/// The value stack for evaluating an expression.
 class Stack {
 public:
     Stack(const ExpressionPool& pool, uint32_t line, const ParameterReader& parameters,
@@ -271,7 +271,7 @@ private:
         return push(value, where);
     }
 
-    /// Fanuc: a vacant variable equals another vacant one only, not 0.
+    /// Fanuc: a vacant variable equals only another vacant one, not 0.
     bool is_comparison_with_vacant(Operation operation, Value left, Value right) {
         if (operation != Operation::equal && operation != Operation::not_equal) return false;
         if (left && right) return false;

@@ -10,19 +10,19 @@
 
 namespace gcode {
 
-/// The operators, functions and brackets of a family of controls.
+/// The expression syntax of a family of controls: operators, functions and brackets.
 enum class ExpressionSyntax : uint8_t { rs274, fanuc, siemens, klartext };
 
-/// A value of an expression. Empty is Fanuc's vacant variable; it counts as 0 in arithmetic.
+/// A value of an expression. Empty is Fanuc's vacant variable, which counts as 0 in arithmetic.
 using Value = std::optional<double>;
 
-/// What one step of an expression does with the values on the stack.
+/// Effect of one step of an expression on the value stack.
 enum class Operation : uint8_t {
     number,   // pushes it
-    numbered, // replaces a number by the parameter of that number
+    numbered, // replaces a number by the value of the parameter with that number
     named,    // pushes a named parameter
-    exists,   // 1 when the named parameter is there
-    // of one value
+    exists,   // 1 if the named parameter exists
+    // operations on one value
     negate,
     absolute,
     arc_cosine,
@@ -45,11 +45,11 @@ enum class Operation : uint8_t {
     truncate, // the digits before the point
     square,
     full_turn,          // an angle in degrees, from 0 to 360
-    away_from_zero,     // the whole number that is not less in amount
+    away_from_zero,     // rounds away from zero
     arc_tangent_of_one, // from -90 to 90
-    // of two
+    // operations on two values
     arc_tangent,
-    hypotenuse, // the root of the sum of squares
+    hypotenuse, // square root of the sum of squares
     power,
     multiply,
     divide,
@@ -81,14 +81,14 @@ struct Instruction {
     uint32_t name = 0; // index into ExpressionPool::names
 };
 
-/// A stretch of the pool's instructions; nothing when the word has a plain number.
+/// A range of the pool's instructions; empty when the word has a plain number.
 struct Expression {
     uint32_t first = 0, count = 0;
 
     explicit operator bool() const { return count > 0; }
 };
 
-/// The instructions and names of all expressions of a line.
+/// The instructions and names of all expressions in a line.
 struct ExpressionPool {
     std::vector<Instruction> instructions;
     std::vector<std::string> names; // lower case, without blanks
@@ -99,33 +99,32 @@ struct ExpressionPool {
     }
 };
 
-/// The source of parameters for expressions.
+/// Gives expressions the values of parameters.
 class ParameterReader {
 public:
     virtual ~ParameterReader() = default;
 
-    /// Errors: invalid_value when there is no such parameter.
+    /// Errors: invalid_value when the parameter does not exist.
     virtual core::Result<Value> numbered(double number, core::SourceSpan where) const = 0;
     virtual core::Result<Value> named(std::string_view name, core::SourceSpan where) const = 0;
     virtual bool exists(std::string_view name) const = 0;
 };
 
-/// How operators behave where controls differ.
+/// Differences between controls in arithmetic.
 struct Arithmetic {
-    double equality = 0.0;            // EQ holds up to this difference
-    bool bitwise_logic = false;       // AND, OR and XOR work on bits, else on truth
+    double equality = 0.0;            // EQ is true up to this difference
+    bool bitwise_logic = false;       // AND, OR and XOR are bitwise; otherwise logical
     bool fix_is_to_zero = false;      // FIX[-1.2] is -1 and FUP[-1.2] is -2, else -2 and -1
     bool angles_have_no_sign = false; // ASIN and ATAN[y]/[x] are from 0 to 360 degrees
     bool rounds_lengths_to_steps =
-        false;                 // ROUND in an X word rounds to the smallest step, else to 1
-    double steps_in_one = 1.0; // ROUND is to a whole number of these
+        false;                 // ROUND in an X word rounds to the least increment; otherwise to 1
+    double steps_in_one = 1.0; // ROUND rounds to 1 divided by this
 };
 
 /// Evaluates an expression.
-///
-/// Units:  angles in degrees, lengths as the program has them.
-/// Errors: invalid_value with the column at fault: a division by zero, a root of a negative number,
-///         a missing parameter, a result that is not a number.
+/// Units:  angles in degrees, lengths in the units of the program.
+/// Errors: invalid_value with the column: a division by zero, the root of a negative number, a
+///         missing parameter, a result that is not finite.
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
                              const ParameterReader& parameters, const Arithmetic& arithmetic);
 

@@ -21,7 +21,7 @@ core::Result<void> ExpressionReader::expect(char wanted) {
                       lexer_.span(lexer_.at, lexer_.at + 1));
 }
 
-/// The operator that comes next, read, if it binds at least as tightly as asked for.
+/// Reads the next operator if its rank is at least `lowest_rank`; null otherwise.
 const Operator* ExpressionReader::next_operator(int lowest_rank) {
     for (const Operator& candidate : operators_of(syntax_)) {
         Lexer ahead = lexer_;
@@ -40,7 +40,7 @@ const Operator* ExpressionReader::next_operator(int lowest_rank) {
     return nullptr;
 }
 
-/// Operators of one rank are taken from left to right, powers as well.
+/// Operators of equal rank associate to the left, including powers.
 core::Result<void> ExpressionReader::expression(int lowest_rank) {
     if (auto done = value(); !done) return done;
     while (true) {
@@ -303,7 +303,7 @@ namespace {
 
 using enum Operation;
 
-// Of two that begin alike, the longer one comes first.
+// Of two with the same beginning, the longer one comes first.
 constexpr Operator rs274_operators[] = {{"**", power, 6},
                                         {"*", multiply, 5},
                                         {"/", divide, 5},
@@ -366,7 +366,7 @@ constexpr Function unary_functions[] = {{"ABS", absolute},
                                         {"TRUNC", fix},
                                         {"NOT", truth_not}};
 
-// Of two that begin alike, the longer one comes first. The angle of ATAN is that of y over 1.
+// Of two with the same beginning, the longer one comes first. ATAN is the arc tangent of y over 1.
 constexpr Function klartext_functions[] = {
     {"SQRT", square_root}, {"SQ", square},       {"SIN", sine},
     {"SGN", sign},         {"COS", cosine},      {"TAN", tangent},

@@ -8,31 +8,31 @@
 
 namespace gcode {
 
-/// Reads what may stand for a number: a number, `#5`, `#<name>`, `[...]`, a function of brackets,
-/// each with a sign before it. `number` is set, and the result empty, for a plain number.
+/// Reads a value: a number, `#5`, `#<name>`, `[...]` or a function of brackets, each with an
+/// optional sign. For a plain number, sets `number` and returns an empty expression.
 ///
-/// Effect: the instructions are added to the pool.
-/// Errors: syntax with the column at fault.
+/// Effect: adds the instructions to the pool.
+/// Errors: syntax with the column of the mistake.
 core::Result<Expression> parse_value(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
                                      Number& number);
 
-/// Reads a value, or sums and products of values without brackets around them, as Fanuc and Siemens
-/// allow after `=`.
+/// Reads a value, or sums and products of values without brackets, as Fanuc and Siemens allow after
+/// `=`.
 ///
-/// Errors: syntax with the column at fault.
+/// Errors: syntax with the column of the mistake.
 core::Result<Expression> parse_sum(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool,
                                    Number& number);
 
 /// Reads `[...]`.
 ///
-/// Errors: syntax with the column at fault.
+/// Errors: syntax with the column of the mistake.
 core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
                                          ExpressionPool& pool);
 
-/// The numbers under which Q0 and QR0 are stored; Q1 to Q1999 keep their own numbers.
+/// The numbers under which Q0 and QR0 are stored; Q1 to Q1999 keep their numbers.
 constexpr int q_zero = 2000, first_kept_q = 2001;
 
-/// Reads `Q5` or `QR5` and gives the number under which it is stored.
+/// Reads `Q5` or `QR5` and returns the number under which it is stored.
 ///
 /// Errors: syntax without a number; unsupported for QL and QS; invalid_value when there is no such
 ///         parameter.
@@ -40,14 +40,14 @@ core::Result<int> parse_q_parameter(Lexer& lexer);
 
 /// Reads the name of a parameter between `<` and `>`: lower case, without blanks.
 ///
-/// Errors: syntax when it has no end or no letters.
+/// Errors: syntax when the closing `>` or the name is missing.
 core::Result<std::string> parse_name(Lexer& lexer);
 
 /// An operator between two values.
 struct Operator {
     std::string_view spelling;
     Operation operation;
-    int rank; // what binds tighter has the higher one
+    int rank; // higher binds tighter
 };
 
 /// A function of one value.
@@ -56,10 +56,11 @@ struct Function {
     Operation operation;
 };
 
-/// The operators of a family of controls; of two that begin alike, the longer one comes first.
+/// The operators of a family of controls; of two with the same beginning, the longer one comes
+/// first.
 std::span<const Operator> operators_of(ExpressionSyntax syntax);
 
-/// The functions of Klartext, or of all others.
+/// The functions of Klartext, or those of the other controls.
 std::span<const Function> functions_of(ExpressionSyntax syntax);
 
 } // namespace gcode

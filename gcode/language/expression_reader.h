@@ -4,7 +4,7 @@
 
 namespace gcode {
 
-/// Reads the expressions of all controls into postfix steps.
+/// Parses expressions of all controls into postfix steps.
 class ExpressionReader {
 public:
     ExpressionReader(Lexer& lexer, ExpressionSyntax syntax, ExpressionPool& pool)
@@ -51,7 +51,7 @@ private:
     Lexer& lexer_;
     const ExpressionSyntax syntax_;
     ExpressionPool& pool_;
-    static constexpr int deepest = 48; // brackets in brackets, each a few calls of functions
+    static constexpr int deepest = 48; // nested brackets; each level takes a few calls of functions
     int depth_ = 0;
 };
 

@@ -15,9 +15,9 @@ struct FlowMark {
     FlowKind kind = FlowKind::none;
     std::string name;
     uint32_t line = 0;
-    uint32_t scope = 0;          // line of the `sub` around it; 0 outside
+    uint32_t scope = 0;          // line of the enclosing `sub`; 0 outside
     bool closes_do_loop = false; // a `while` that ends a `do`
-    uint32_t partner = 0;        // Siemens: line of the statement it belongs with; 0 when missing
+    uint32_t partner = 0;        // Siemens: line of the matching statement; 0 if missing
 };
 
 /// A block number.
@@ -26,38 +26,38 @@ struct NumberedLine {
     uint32_t line = 0;
 };
 
-/// Where a program's flow statements and block numbers are. Memory grows with these, not with the
-/// lines.
+/// The positions of a program's flow statements and block numbers. Memory grows with their number,
+/// not with the number of lines.
 struct FlowIndex {
-    std::vector<FlowMark> marks;       // by line
-    std::vector<NumberedLine> numbers; // by line
+    std::vector<FlowMark> marks;       // sorted by line
+    std::vector<NumberedLine> numbers; // sorted by line
 
-    /// The mark of a line; null when it has none.
+    /// The mark of a line; null if it has none.
     const FlowMark* at(uint32_t line) const;
 
-    /// The next mark after a line, or the last one before it, of this scope and name that is one
-    /// of these kinds; null when there is none.
+    /// The next mark after a line, or the last one before it, that has this scope, this name and
+    /// one of these kinds; null if there is none.
     const FlowMark* next(uint32_t line, uint32_t scope, std::string_view name,
                          std::initializer_list<FlowKind> kinds) const;
     const FlowMark* previous(uint32_t line, uint32_t scope, std::string_view name,
                              std::initializer_list<FlowKind> kinds) const;
 
-    /// The first mark of a kind and name in the program.
+    /// The first mark in the program with this kind and name.
     const FlowMark* first(FlowKind kind, std::string_view name) const;
 
-    /// The line of the `sub` around a line; 0 outside.
+    /// The line of the `sub` that encloses a line; 0 outside.
     uint32_t scope_of(uint32_t line) const;
 
-    /// The line with a block number: the first one from a line up to another.
+    /// The first line with a block number in a range of lines.
     std::optional<uint32_t> line_of_number(double number, uint32_t from, uint32_t up_to) const;
 };
 
 struct Lexer;
 
-/// The block number a line begins with, which is read with what switches the block off.
+/// Reads the block number at the start of a line, and any block delete before it.
 std::optional<double> take_block_number(Lexer& lexer);
 
-/// The name of a label that is written as a number: 5, or 5.5.
+/// The name of a numeric label: 5, or 5.5.
 std::string label_of(double number);
 
 } // namespace gcode

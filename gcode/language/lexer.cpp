@@ -11,7 +11,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// The characters of a number without its blanks, and where it ends.
+/// The characters of a number without blanks, and the position after it.
 struct Digits {
     std::array<char, 64> text;
     size_t count = 0;
@@ -43,7 +43,7 @@ Digits collect_digits(std::string_view line, size_t begin) {
     return found;
 }
 
-/// Klartext and Siemens: blanks are only allowed after the sign.
+/// Klartext and Siemens allow blanks only after the sign.
 Digits collect_digits_without_blanks(std::string_view line, size_t begin, bool comma) {
     Digits found;
     size_t at = begin;
@@ -65,7 +65,7 @@ Digits collect_digits_without_blanks(std::string_view line, size_t begin, bool c
     return found;
 }
 
-/// Siemens: `EX` and a whole number after a number are a power of ten.
+/// Siemens: `EX` and a whole number after a number are an exponent of ten.
 bool take_exponent(std::string_view line, size_t& at, Number& number) {
     if (at + 2 >= line.size() || upper(line[at]) != 'E' || upper(line[at + 1]) != 'X') return true;
     size_t next = at + 2;

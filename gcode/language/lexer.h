@@ -18,7 +18,7 @@ struct Number {
 };
 
 constexpr bool is_blank(char c) {
-    // Control characters that reach a line are the harmless ones of old tapes.
+    // Only harmless control characters, left over from tapes, reach this point.
     constexpr uint64_t blanks = uint64_t{1} << ' ' | uint64_t{1} << '\t' | uint64_t{1} << '\v'
                                 | uint64_t{1} << '\f' | uint64_t{1} << 0x1A;
     return static_cast<unsigned char>(c) <= ' ' && (blanks >> c & 1);
@@ -31,33 +31,33 @@ constexpr bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c ==
 
 /// A read position in a line. A plain value: copy it to look ahead.
 ///
-/// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, also inside numbers and
+/// Source: NISTIR 6556 (RS274/NGC v3), 3.3; blanks are allowed anywhere, even inside numbers and
 ///         names.
 struct Lexer {
     std::string_view line;
     uint32_t line_number = 1;
     size_t at = 0;
     bool blanks_end_numbers = false; // Klartext and Siemens
-    bool comma_is_point = false;     // Klartext: a comma may be the point as well
+    bool comma_is_point = false;     // Klartext: a comma may be the decimal point
     bool has_exponents = false;      // Siemens: 1.5EX-3
 
-    /// The next character that is not blank, not consumed; NUL at the end.
+    /// The next character that is not blank, without consuming it; NUL at the end.
     char peek() {
         while (at < line.size() && is_blank(line[at])) ++at;
         return at < line.size() ? line[at] : '\0';
     }
 
-    /// Consumes the next character if it is this one.
+    /// Consumes the next character if it is `wanted`.
     bool accept(char wanted) {
         if (peek() != wanted) return false;
         ++at;
         return true;
     }
 
-    /// Consumes these letters or signs if they come next, in any case.
+    /// Consumes these characters if they come next, ignoring case.
     bool accept_word(std::string_view wanted);
 
-    /// The following letters in upper case without blanks, not consumed.
+    /// The next letters in upper case without blanks, without consuming them.
     std::string letters();
 
     /// The text from a position up to the current one.
@@ -69,7 +69,7 @@ struct Lexer {
         return std::string(line.substr(begin, at - begin));
     }
 
-    /// Whether a number begins here: a sign, a digit or a point.
+    /// Whether a number begins here: with a sign, a digit or a point.
     bool is_at_number();
 
     /// Reads a number.
@@ -78,26 +78,26 @@ struct Lexer {
     core::Result<Number> number();
     tl::unexpected<core::Error> bad_exponent(size_t begin) const;
 
-    /// The comment in brackets that begins here, which ends at the bracket that matches.
+    /// Reads the comment in brackets that begins here and ends at the matching bracket.
     ///
-    /// Errors: syntax when it has no end on the line.
+    /// Errors: syntax when it is not closed on the line.
     core::Result<Comment> bracket_comment();
 
-    /// The rest of the line after the current character.
+    /// Reads the rest of the line after the current character as a comment.
     Comment line_comment();
 
-    /// The error for a character without a meaning, with a guess of what was intended.
+    /// The error for an unexpected character, with a guess of the intention.
     tl::unexpected<core::Error> unexpected_character();
 };
 
 inline constexpr std::array powers_of_ten = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                              1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
-/// Reads a number of at most 15 digits without blanks inside, as nearly all are; false when another
-/// kind stands there, and nothing has changed then.
+/// Reads a number of at most 15 digits without blanks inside, as nearly all are. Returns false, and
+/// changes nothing, for any other kind.
 ///
-/// The digits make a whole number below 2^53, and the power of ten is below 10^16: both are exact,
-/// so their quotient is rounded once, as the general way rounds it.
+/// The digits form a whole number below 2^53, and the power of ten is below 10^16: both are exact,
+/// so their quotient is rounded once, as in the general reader.
 inline bool read_short_number(std::string_view line, size_t& at, Number& number) {
     const char* next = line.data() + at;
     const char* const end = line.data() + line.size();
@@ -120,7 +120,7 @@ inline bool read_short_number(std::string_view line, size_t& at, Number& number)
     if (count == 0 || count > 15) return false;
     const char* behind = next;
     while (behind < end && is_blank(*behind)) ++behind;
-    // Blanks may stand inside of a number.
+    // A number may contain blanks: leave these to the general reader.
     if (behind < end && (*behind == '.' || (behind > next && is_digit(*behind)))) return false;
     const double size = static_cast<double>(digits) / powers_of_ten[behind_point];
     number = {negative ? -size : size, point};

@@ -9,13 +9,13 @@
 namespace gcode {
 namespace {
 
-/// A linear map of X, Y and Z. Results that depend on an unknown axis are unknown.
+/// Applies a linear map to X, Y and Z. Results that depend on an unknown axis are unknown.
 void map(const core::Mat3& linear, Position& position) {
     const Position before = position;
     for (int row = 0; row < 3; ++row) {
         std::optional<double> sum = 0.0;
         for (int column = 0; column < 3; ++column) {
-            const double factor = linear[column][row]; // by columns
+            const double factor = linear[column][row]; // column-major
             if (factor == 0.0) continue;
             const std::optional<double>& value = before[static_cast<size_t>(column)];
             if (sum && value)
@@ -54,8 +54,8 @@ AxisValues shift_of(const ProgramFrame& frame) {
     return {frame.shift.x, frame.shift.y, frame.shift.z};
 }
 
-/// The machine with its rotary axes as the work offset has them: as the work lies in its
-/// coordinates.
+/// Machine from table coordinates, with the rotary axes at the values stored in the work offset,
+/// for which its X, Y and Z are valid.
 core::Transform machine_from_table(const Offsets& offsets) {
     AxisValues rotary{};
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -63,7 +63,7 @@ core::Transform machine_from_table(const Offsets& offsets) {
     return core::machine_from_link(*offsets.machine, offsets.machine->table, rotary);
 }
 
-/// The values of a position as far as the machine has axes; empty if one of them is unknown.
+/// The values of all axes that the machine has; empty if one of them is unknown.
 std::optional<AxisValues> known_values(const Offsets& offsets, const Position& position) {
     AxisValues values{};
     for (size_t axis = 0; axis < axis_count; ++axis) {
@@ -77,7 +77,7 @@ void forget_linear(Position& position) {
     for (size_t axis = 0; axis < 3; ++axis) position[axis].reset();
 }
 
-/// From places of the tip in the coordinates of the work to the axes that bring it there.
+/// Replaces the tip position in work coordinates by the linear axis values that reach it.
 void reach_from_work(const Offsets& offsets, Position& place) {
     const auto values = known_values(offsets, place);
     std::optional<AxisValues> reached;
@@ -89,7 +89,7 @@ void reach_from_work(const Offsets& offsets, Position& place) {
     for (size_t axis = 0; axis < 3; ++axis) place[axis] = (*reached)[axis];
 }
 
-/// The other way.
+/// The inverse: replaces linear axis values by the tip position in work coordinates.
 void place_in_work(const Offsets& offsets, Position& place) {
     const auto values = known_values(offsets, place);
     if (!values) return forget_linear(place);
@@ -99,7 +99,7 @@ void place_in_work(const Offsets& offsets, Position& place) {
         place[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
 }
 
-/// What a tool adds beside its length, where that counts along the tool.
+/// The tool offset without its length, which counts along the tool.
 AxisValues without_length(AxisValues tool) {
     tool[2] = 0.0;
     return tool;
@@ -188,7 +188,7 @@ Direction direction_of(double degrees) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-/// Lets a map that keeps one place follow what is there already.
+/// Appends a linear map with fixed point `kept` to a frame.
 void add_about(ProgramFrame& frame, const core::Mat3& linear, const core::Vec3& kept) {
     frame.linear = linear * frame.linear;
     frame.shift = linear * (frame.shift - kept) + kept;

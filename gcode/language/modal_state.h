@@ -21,18 +21,18 @@ using core::AxisValues;
 using core::is_rotary;
 using core::is_secondary;
 
-/// mm and degrees, axis by axis; empty if unknown.
+/// Axis values in mm and degrees; empty where unknown.
 using Position = core::AxisPosition;
 
 constexpr Position zero_position = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
-/// G54 to G59, G59.1 to G59.3, then the numbered ones from G54.1 P1.
+/// G54 to G59, G59.1 to G59.3; the numbered ones from G54.1 P1 follow.
 constexpr size_t plain_offset_count = 9;
 constexpr size_t extended_offset_count = 300;
 constexpr size_t work_offset_count = plain_offset_count + extended_offset_count;
 constexpr size_t no_work_offset = work_offset_count; // Siemens: G500
 
-/// The origin of a work offset in machine coordinates, and how far it is turned about Z.
+/// The origin of a work offset in machine coordinates, and its rotation about Z.
 struct WorkOffset {
     AxisValues origin{};
     double rotation_deg = 0.0;
@@ -40,12 +40,12 @@ struct WorkOffset {
     bool operator==(const WorkOffset&) const = default;
 };
 
-/// The coordinate transforms of a program: scaling, mirror images, rotations, tilted
-/// planes. Maps the coordinates of the program to those of the work offset.
+/// The coordinate transforms of a program: scaling, mirror images, rotations, tilted planes. Maps
+/// program coordinates to those of the work offset.
 struct ProgramFrame {
     core::Mat3 linear = core::Mat3(1.0);
     core::Vec3 shift = core::Vec3(0.0);
-    bool tilts_tool = false; // the tool axis leaves Z
+    bool tilts_tool = false; // the tool axis is no longer along Z
 
     bool operator==(const ProgramFrame&) const = default;
 };
@@ -59,40 +59,40 @@ struct Offsets {
     Position axis = zero_position; // G92; empty if set at an unknown position
     AxisValues tool{};             // length along Z, and along the other axes
     ProgramFrame frame;
-    bool has_frame = false;    // whether `frame` is more than the identity
+    bool has_frame = false;    // `frame` is not the identity
     bool tilted_plane = false; // G68.2
     bool follows_tip = false;  // G43.4, G43.5: the tip moves straight relative to the work
-    const core::Machine* machine = nullptr; // where the rotary axes are known; outlives all states
+    const core::Machine* machine = nullptr; // set if its rotary axes are known; outlives all states
 
     bool operator==(const Offsets&) const = default;
 };
 
-/// Whether coordinates are those of the work as it is turned by the rotary axes, and the tool's
-/// length counts along the tool.
+/// Whether coordinates turn with the work on the rotary axes, and the tool length counts along the
+/// tool.
 inline bool is_fixed_to_work(const Offsets& offsets) {
     return offsets.machine && (offsets.follows_tip || offsets.tilted_plane);
 }
 
-/// Whether a coordinate of the machine depends on more than one of the program.
+/// Whether one machine coordinate depends on several program coordinates.
 inline bool mixes_axes(const Offsets& offsets) {
     return offsets.has_frame || offsets.work.rotation_deg != 0.0 || is_fixed_to_work(offsets);
 }
 
-/// The position of the tip in the frame of the table's link, given coordinates of work offsets, mm.
+/// The tip position in the frame of the table's link, from coordinates of the work offset, mm.
 core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work);
 
-/// What to add to program coordinates to reach machine coordinates of the gauge line, where nothing
-/// is turned.
+/// Difference between machine coordinates of the gauge line and program coordinates. Only valid
+/// without rotations and frames.
 Position machine_minus_program(const Offsets& offsets);
 
 Position machine_from_program(const Offsets& offsets, const Position& program);
 Position program_from_machine(const Offsets& offsets, const Position& machine);
 
-/// The offsets that G28, G30 and G53 count: what a tool is offset by along rotary axes does not
-/// shift where these go.
+/// The offsets that apply to G28, G30 and G53: tool offsets along rotary axes do not shift their
+/// targets.
 Offsets without_rotary_tool(Offsets offsets);
 
-/// G51: every coordinate is stretched from a centre.
+/// G51: coordinates are scaled about a centre.
 struct Scaling {
     core::Vec3 factors = core::Vec3(1.0);
     core::Vec3 centre = core::Vec3(0.0);
@@ -100,7 +100,7 @@ struct Scaling {
     bool operator==(const Scaling&) const = default;
 };
 
-/// G51.1: coordinates are mirrored at a point, axis by axis.
+/// G51.1: coordinates are mirrored about a point, axis by axis.
 struct MirrorImage {
     std::array<bool, 3> axes{};
     core::Vec3 place = core::Vec3(0.0);
@@ -108,25 +108,25 @@ struct MirrorImage {
     bool operator==(const MirrorImage&) const = default;
 };
 
-/// G68: a rotation in a plane, named by the axis it is about.
+/// G68: a rotation in the plane with this normal axis.
 struct PlaneRotation {
     int normal = 2;
-    core::Vec3 centre = core::Vec3(0.0); // scaled and reflected already
+    core::Vec3 centre = core::Vec3(0.0); // already scaled and mirrored
     double degrees = 0.0;
-    bool is_reversed = false; // one axis of the plane was reflected before
+    bool is_reversed = false; // an odd number of axes of the plane is mirrored
 
     bool operator==(const PlaneRotation&) const = default;
 };
 
 /// G68.2: the coordinate system of a tilted plane, in work coordinates.
 struct TiltedPlane {
-    core::Mat3 axes = core::Mat3(1.0); // its directions as columns
+    core::Mat3 axes = core::Mat3(1.0); // its axis directions as columns
     core::Vec3 origin = core::Vec3(0.0);
 
     bool operator==(const TiltedPlane&) const = default;
 };
 
-/// G16: positions in the plane are a radius and an angle.
+/// G16: positions in the plane are given by radius and angle.
 struct PolarPositions {
     std::array<double, 2> origin{};
     std::optional<double> radius, angle_deg; // empty until programmed
@@ -140,25 +140,26 @@ struct ProgramTransforms {
     MirrorImage mirror;
     std::optional<PlaneRotation> rotation;
     std::optional<TiltedPlane> tilt;
-    bool follows_vectors = false; // G43.5: moves give the tool direction
+    bool follows_vectors = false; // G43.5: moves specify the tool direction
     std::optional<PolarPositions> polar;
-    std::optional<Position> before_rotation; // program coordinates of the position at G68
+    std::optional<Position>
+        before_rotation; // program coordinates of the position at G68, before it took effect
 
     bool operator==(const ProgramTransforms&) const = default;
 };
 
-/// The rotation about a principal axis, 0 X to 2 Z; exact at multiples of 90 degrees.
+/// The rotation about an axis, 0 for X to 2 for Z; exact at multiples of 90 degrees.
 core::Mat3 turned_about(int axis, double degrees);
 
-/// All transforms as one map from program to work coordinates: first the mirror image, then the
-/// scaling, the rotation, the tilted plane.
+/// All transforms as one map from program to work coordinates: first the mirror image, then
+/// scaling, rotation and tilted plane.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, 6, "Scaling and coordinate system rotation" and
 ///         "Programmable mirror image": the order, and that a mirror image of one axis of the plane
 ///         reverses the angle of G68.
 ProgramFrame frame_of(const ProgramTransforms& transforms);
 
-/// A position after mirror image and scaling.
+/// A position after mirror image and scaling, without rotation and tilt.
 core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place);
 
 enum class LengthUnit : uint8_t { inch, mm };                         // G20, G21
@@ -169,8 +170,8 @@ enum class Plane : uint8_t { xy, zx, yz, uv, wu, vw };                // G17 G18
 enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G61.1, G64
 enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
 
-/// The motion that a block without a motion code continues. The value is the code in tenths, which
-/// tenths_of gives; codes without a name here, such as those of probing, have theirs as well.
+/// The modal motion code. The value is the code in tenths, as tenths_of returns it; codes without
+/// an enumerator, such as those of probing, are represented by their value too.
 enum class MotionCode : int {
     rapid = 0,                 // G0
     straight = 10,             // G1
@@ -194,7 +195,7 @@ constexpr bool is_arc(std::optional<MotionCode> motion) {
     return motion == MotionCode::arc_clockwise || motion == MotionCode::arc_counterclockwise;
 }
 
-/// The only place where program units become mm.
+/// All conversions from program units to mm happen here.
 constexpr double to_mm(double programmed, LengthUnit unit) {
     return unit == LengthUnit::inch ? programmed * 25.4 : programmed;
 }
@@ -202,7 +203,7 @@ constexpr double from_mm(double length, LengthUnit unit) {
     return unit == LengthUnit::inch ? length / 25.4 : length;
 }
 
-/// The axes of a plane, as indices: the first two turn about the third.
+/// The axes of a plane, as indices; positive rotation is from the first to the second.
 struct PlaneAxes {
     size_t first, second, normal;
 };
@@ -212,29 +213,30 @@ constexpr PlaneAxes axes_of(Plane plane) {
     return axes[static_cast<size_t>(plane)];
 }
 
-/// The modal words of a canned cycle; lengths as programmed, in mm.
+/// The modal words of a canned cycle; lengths in mm.
 struct CannedCycle {
-    int code = 0;                        // tenths: 810 for G81
-    std::optional<double> bottom, r;     // Z and R in the XY plane
-    std::optional<double> dwell;         // s
-    std::optional<double> peck;          // Q
-    std::array<double, 3> shift{};       // I, J, K of G76 and G87
-    std::optional<double> initial_level; // where the axis was before the first of the cycles
-    bool r_is_way = false;               // R was programmed with G91: relative to there
-    bool bottom_is_way = false;          // Z was programmed with G91: relative to R
+    int code = 0;                    // tenths: 810 for G81
+    std::optional<double> bottom, r; // Z and R in the XY plane
+    std::optional<double> dwell;     // s
+    std::optional<double> peck;      // Q
+    std::array<double, 3> shift{};   // I, J, K of G76 and G87
+    std::optional<double>
+        initial_level;          // position along the axis before the first of a series of cycles
+    bool r_is_way = false;      // R was programmed with G91: it is relative to the initial level
+    bool bottom_is_way = false; // Z was programmed with G91: it is relative to R
 
     bool operator==(const CannedCycle&) const = default;
 };
 
-/// The modal state between two blocks. A plain value: copy it to go back in time.
+/// The modal state between two blocks. A plain value: copy it to step back.
 ///
-/// Lengths are stored in mm whatever G20/G21 says. What the program has not yet defined is empty,
+/// Lengths are stored in mm, regardless of G20/G21. What the program has not defined yet is empty,
 /// never zero.
 struct ModalState {
     LengthUnit unit = LengthUnit::mm;
     bool unit_said = false;
     std::optional<MotionCode> motion;
-    std::optional<CannedCycle> cycle; // if present, uses the axis words
+    std::optional<CannedCycle> cycle; // if present, takes the axis words
     Plane plane = Plane::xy;
     DistanceMode distance = DistanceMode::absolute;
     DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
@@ -243,7 +245,7 @@ struct ModalState {
     PathMode path = PathMode::continuous;
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
     Side compensation = Side::none;
-    double compensation_radius = 0.0; // mm; below zero it is on the other side
+    double compensation_radius = 0.0; // mm; negative for the other side
     int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 for a mill
     bool leaves_contour = false;      // no straight move since G40
     bool diameter_mode = false;       // G7: X words are diameters
@@ -254,25 +256,25 @@ struct ModalState {
     Position position;                       // tool tip, program coordinates
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // saved by G92.2 for G92.3
-    bool axis_offset_on = false;             // G92 or G52 holds, be it zero
+    bool axis_offset_on = false;             // G92 or G52 is active, even if zero
 
-    std::optional<double> feed; // mm/min, mm/rev or 1/min, as feed_mode says
+    std::optional<double> feed; // mm/min, mm/rev or 1/min, depending on feed_mode
     double speed = 0.0;         // rev/min, or m/min under G96
     core::SpindleDirection spindle = core::SpindleDirection::stopped;
     bool mist = false, flood = false;
 
     std::optional<core::ToolNumber> selected_tool; // T
-    std::optional<core::ToolNumber> tool;          // in the spindle since M6; T0 is an empty one
+    std::optional<core::ToolNumber> tool; // in the spindle since M6; T0 is an empty spindle
     std::optional<core::OffsetNumber> length_number;
-    int radius_number = 0;    // the last D, if it is modal
-    double length_sign = 0.0; // +1 since G43, -1 since G44, 0 while no table length is on
+    int radius_number = 0;    // the last D, on controls where it is modal
+    double length_sign = 0.0; // +1 after G43, -1 after G44, 0 without a length from the table
     Offsets offsets;
     std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates
-    ProgramTransforms transforms;     // `offsets.frame` is made of them
+    ProgramTransforms transforms;     // `offsets.frame` is derived from them
     // Siemens: direction at the end of the last move in the plane; 0, 0 if unknown.
     std::array<double, 2> direction{};
 
-    /// Whether the active length offset belongs to the tool in the spindle.
+    /// Whether the active length offset has the number of the tool in the spindle.
     bool length_is_tools() const {
         return length_sign != 0.0 && tool && length_number
                && core::value_of(*length_number) == core::value_of(*tool);
@@ -282,7 +284,7 @@ struct ModalState {
     bool operator==(const ModalState&) const = default;
 };
 
-// It is copied at every block.
+// Copied at every block.
 static_assert(std::is_trivially_copyable_v<ModalState>);
 
 } // namespace gcode

@@ -11,38 +11,38 @@
 
 namespace gcode {
 
-/// #1 to #33, index 0 unused. LinuxCNC has the first 30, initially 0.
+/// #1 to #33; index 0 is not used. LinuxCNC has 30, which start at 0.
 using LocalParameters = std::array<Value, 34>;
 
 using NamedValues = std::map<std::string, double, std::less<>>;
 
-/// The highest number a numbered parameter may have.
+/// The highest number of a numbered parameter.
 constexpr int highest_parameter = 20000;
 
-/// The most named parameters a program may make on one level.
+/// The maximum number of named parameters on one call level.
 constexpr size_t most_named_parameters = 100000;
 
-/// Parameters that all levels of calls see.
+/// The parameters that all call levels share.
 class Parameters {
 public:
-    /// Empty when it was never set.
+    /// The value of a numbered parameter; empty if it was never set.
     Value numbered(int number) const {
         const auto at = static_cast<size_t>(number);
         return at < numbered_.size() ? numbered_[at] : Value{};
     }
     void set_numbered(int number, Value value);
 
-    /// How many numbered ones there is room for.
+    /// Number of the numbered parameters for which memory is allocated.
     size_t numbered_count() const { return numbered_.size(); }
 
-    /// `#<_name>`
+    /// Global named parameters: `#<_name>`.
     const NamedValues& named() const { return named_; }
-    void set_named(std::string_view name, Value value); // an empty value takes it away
+    void set_named(std::string_view name, Value value); // an empty value removes it
 
-    /// Follows from the values, in no time.
+    /// Hash of all values; kept up to date, so it costs nothing.
     uint64_t digest() const { return digest_; }
 
-    /// One that was never set equals one that was set and taken away again.
+    /// A parameter that was never set equals one that was set and removed again.
     bool operator==(const Parameters& other) const;
 
 private:

@@ -22,25 +22,26 @@ struct LengthOffset {
     bool operator==(const LengthOffset&) const = default;
 };
 
-/// The tables of the control that programs read and write.
+/// The tables of the control that programs can read and write.
 struct Tables {
-    std::vector<WorkOffset> work{plain_offset_count}; // grows when a higher one is written
-    AxisValues external{}; // Fanuc's work offset that is added to all others
+    std::vector<WorkOffset> work{plain_offset_count}; // grows when a higher number is written
+    AxisValues external{}; // Fanuc's external offset, added to all others
     std::map<core::OffsetNumber, LengthOffset> lengths;
-    std::map<core::ToolNumber, double> tool_lengths, tool_diameters; // for numbers without one
+    std::map<core::ToolNumber, double> tool_lengths, tool_diameters; // for numbers without an entry
 
     bool operator==(const Tables&) const = default;
 };
 
-/// The work offset of an index; zero if it was never written.
+/// The work offset with an index; zero if it was never written.
 WorkOffset work_offset(const Tables& tables, size_t index);
 WorkOffset& writable_work_offset(Tables& tables, size_t index);
 
-/// The length under a number: the table's entry, else that of the tool of that number; empty when
-/// there is neither.
+/// The length for an H number: from the table, else of the tool with that number; empty if neither
+/// exists.
 std::optional<double> length_under(const Tables& tables, int number);
 
-/// The diameter under a number; likewise.
+/// The diameter for a D number: from the table, else of the tool with that number; empty if neither
+/// exists.
 std::optional<double> diameter_under(const Tables& tables, int number);
 
 } // namespace gcode

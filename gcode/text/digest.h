@@ -7,7 +7,7 @@
 
 namespace gcode {
 
-/// Spreads the bits of a number over all others (the finaliser of SplitMix64).
+/// Mixes the bits of a number so that each affects all others (the finaliser of SplitMix64).
 constexpr uint64_t spread(uint64_t bits) {
     bits ^= bits >> 30;
     bits *= 0xBF58476D1CE4E5B9ULL;
@@ -16,7 +16,7 @@ constexpr uint64_t spread(uint64_t bits) {
     return bits ^ (bits >> 31);
 }
 
-/// A number that follows from a row of values and differs, but for chance, for any other row.
+/// Hash of a sequence of values. Different sequences have different hashes, except by coincidence.
 class Digest {
 public:
     void add(uint64_t bits) { value_ = spread(value_ + 0x9E3779B97F4A7C15ULL + bits); }

@@ -40,7 +40,7 @@ std::optional<uint32_t> block_number(std::string_view line, bool has_letter) {
 }
 
 size_t count_stray_controls(std::string_view text) {
-    // Nearly all control characters are line ends or tabs, which plain counts show.
+    // Nearly all control characters are line ends or tabs; cheap counts rule out any others.
     size_t low = 0, common = 0;
     for (const char c : text) low += static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
     for (const char c : text) common += c == '\n' || c == '\r' || c == '\t';

@@ -4,7 +4,7 @@
 
 namespace gcode {
 
-/// A value that its copies share until one of them is written to.
+/// A copy-on-write value: copies share it until one of them is written to.
 template <typename T>
 class Shared {
 public:
@@ -14,14 +14,14 @@ public:
     Shared(Shared&&) = default;
     Shared& operator=(Shared&&) = default;
     Shared& operator=(const Shared& other) {
-        if (value_ != other.value_) value_ = other.value_; // spares counting where nothing changes
+        if (value_ != other.value_) value_ = other.value_; // avoids the cost of counting references
         return *this;
     }
 
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
-    /// The value for writing; copied first if it is shared.
+    /// The value for writing; it is copied first if it is shared.
     T& write() {
         if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
         return *value_;

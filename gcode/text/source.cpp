@@ -21,11 +21,11 @@ namespace {
 
 using core::ErrorCode;
 
-/// Enough for a loop across the border of two stretches that calls subprograms elsewhere.
+/// Enough for a loop across the border of two chunks that calls subprograms elsewhere.
 constexpr size_t window_count = 4;
 
-/// How much of a text are whole lines: up to behind its last line end. A CR at the very end may be
-/// half of one.
+/// Length of the complete lines of a text: up to and including its last line end. A CR at the very
+/// end may be the first half of CR LF.
 size_t whole_lines(std::string_view text) {
     if (text.ends_with('\r')) text.remove_suffix(1);
     const size_t last = text.find_last_of("\r\n");
@@ -68,7 +68,7 @@ core::Result<std::optional<std::string_view>> LineWindows::line(size_t number) {
     return windows_[current_].line(number);
 }
 
-/// Makes the window with a line the current one, as far as there is such a line.
+/// Makes the window that contains a line the current one, if the line exists.
 core::Result<void> LineWindows::go_to(uint64_t number) {
     if (end_ && number >= end_->first_line) return {};
     for (size_t i = 0; i < windows_.size(); ++i) {
@@ -87,7 +87,7 @@ core::Result<void> LineWindows::go_to(uint64_t number) {
     }
 }
 
-/// Reads whole lines from an offset on; true when they reach to the end of the file.
+/// Reads complete lines from an offset on. Returns whether the end of the file was reached.
 core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text) const {
     text.clear();
     while (true) {
@@ -112,7 +112,7 @@ core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text)
     }
 }
 
-/// Whether a stretch can be part of an NC program.
+/// Checks that a chunk can belong to an NC program.
 core::Result<void> LineWindows::check(const Window& window) const {
     const std::string_view text = window.text;
     for (size_t i = 0; i < window.starts.size(); ++i) {
@@ -139,7 +139,7 @@ core::Result<void> LineWindows::check(const Window& window) const {
     return {};
 }
 
-/// Remembers where a stretch ends, or sees whether that is where it ended before.
+/// Stores where a chunk ends, or checks that it still ends at the stored position.
 core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, bool is_last) {
     const Mark behind{offset, window.first_line + window.starts.size()};
     if (behind.first_line > std::numeric_limits<uint32_t>::max())
@@ -163,7 +163,7 @@ core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, 
     return tl::unexpected(refusal(ErrorCode::io, "changed while it was being read"));
 }
 
-/// Reads a stretch into the window that was not used for longest.
+/// Reads a chunk into the least recently used window.
 core::Result<void> LineWindows::load(size_t stretch) {
     Window& window =
         *std::min_element(windows_.begin(), windows_.end(),
@@ -197,7 +197,7 @@ using core::Error;
 constexpr size_t chunk_size = 65536;
 constexpr size_t longest_program = size_t(1) << 30;
 
-/// Collects a text piece by piece, and stops as soon as it cannot be an NC program.
+/// Collects a text piece by piece. Fails as soon as the text cannot be an NC program.
 class Collector {
 public:
     explicit Collector(std::string file) { program_.file = std::move(file); }
@@ -208,7 +208,7 @@ public:
         return std::nullopt;
     }
 
-    /// Of the whole file, byte for byte.
+    /// The bytes of the whole file.
     std::string_view text() const { return program_.text; }
 
     core::Result<Program> finish() &&;
@@ -226,13 +226,13 @@ private:
     }
 
     Program program_;
-    size_t line_length_ = 0; // of the line at the end, so far
+    size_t line_length_ = 0; // of the last line, so far
     size_t controls_ = 0;
 };
 
 std::optional<Error> Collector::add_piece(std::string_view piece) {
-    // A line that is too long is longer than a piece, so that its end need not be looked for inside
-    // of one.
+    // A line that is too long spans at least one whole piece, so it is enough to look at the first
+    // line end of each piece.
     static_assert(chunk_size <= longest_line);
     if (program_.text.size() + piece.size() > longest_program)
         return refusal("is longer than 1 GiB; split it into several programs", 0);
@@ -262,7 +262,8 @@ void Collector::strip_byte_order_mark() {
 
 core::Result<Program> Collector::finish() && {
     strip_byte_order_mark();
-    // A stray control character is a damaged line, which the lexer names; many are another format.
+    // A few stray control characters are damaged lines, which the lexer reports; many mean another
+    // format.
     if (looks_binary(controls_, program_.text.size()))
         return tl::unexpected(refusal("is a binary file, not an NC program", 0));
     if (!has_a_block(program_.text))
@@ -301,7 +302,7 @@ core::Result<std::optional<std::string_view>> Program::find_line(size_t number) 
 
 namespace {
 
-/// All of a file, as far as it can be an NC program.
+/// Reads a file completely, unless it cannot be an NC program.
 core::Result<Collector> collected(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
@@ -340,7 +341,7 @@ core::Result<Program> read_program(const std::string& path) {
 
 core::Result<Program> open_program(const std::string& path, size_t window) {
     std::error_code failure;
-    // What cannot be read twice, as a pipe, is held whole.
+    // A source that cannot be read twice, such as a pipe, is held in memory.
     const bool is_file = std::filesystem::is_regular_file(path, failure);
     if (!is_file || std::filesystem::file_size(path, failure) <= 4 * window || failure)
         return read_program(path);
