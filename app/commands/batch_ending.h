@@ -12,7 +12,8 @@ namespace app {
 
 struct Shard;
 
-/// Prints lines for a person: to standard output unless a report goes there.
+/// Prints text meant for people: to standard output, or to standard error if a report goes to
+/// standard output.
 struct BatchTalk {
     std::FILE* stream = stdout;
     BatchStyle style;
@@ -20,12 +21,12 @@ struct BatchTalk {
     void say(const std::string& text) const;
 };
 
-/// Coloured on a terminal, unless NO_COLOR is set.
+/// Chooses the stream for `targets`, and colour if it is a terminal and NO_COLOR is not set.
 BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets);
 
-/// Writes the reports of a batch, each completely or not at all; `shard`, which may be null, is the
-/// report of format "shard". Never overwrites a file that was read. Prints errors to standard error
-/// and returns the exit status.
+/// Writes the reports of a batch, each completely or not at all. `shard` (may be null) is the
+/// content of reports of format "shard". Never overwrites a file that was read. Prints errors to
+/// standard error and returns the exit status.
 ExitCode end_batch(const BatchResult& batch, const Shard* shard,
                    const std::vector<ReportTarget>& targets, const BatchTalk& talk,
                    const ReadFiles& read);

@@ -37,16 +37,16 @@
 
 namespace app {
 
-/// Runs a check, and again whenever something on disk that it looked at changes, until Ctrl-C.
-/// `pass` is told where to note the looks that are taken on other threads than its own; `outputs`
-/// are the reports and results that it writes anew, or that are taken away. Returns what the last
-/// pass did.
+/// Runs a check, then repeats it whenever a file or folder that it accessed changes, until Ctrl-C.
+/// `pass` passes file accesses made on other threads to the WatchedFiles; those of its own thread
+/// are observed. `outputs`: paths of the reports and results; those that a pass cannot rewrite are
+/// deleted. Returns the result of the last pass.
 ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass);
 
 namespace {
 
-/// What reports contain, and the files that they must not replace.
+/// The content of the reports, and the files that they must not replace.
 struct Checked {
     ProgramReport report;
     const ReadFiles& read;
@@ -54,11 +54,11 @@ struct Checked {
 
 std::string report_text(const ReportTarget& target, const Checked& checked) {
     ProgramReport report = checked.report;
-    if (!target.path.empty()) report.told.clear(); // a file lists all of them
+    if (!target.path.empty()) report.told.clear(); // a file lists all assumptions
     return report_format(target.format).of_program(report);
 }
 
-/// Whether what is to be written can be, as far as that is known beforehand.
+/// Checks before the run, as far as possible, that the output files can be written.
 core::Result<void> check_files(const CheckOptions& options,
                                const std::vector<ReportTarget>& targets, const ReadFiles& read) {
     if (auto safe = read.check(paths_of(targets)); !safe) return safe;
@@ -73,7 +73,7 @@ core::Result<void> check_files(const CheckOptions& options,
     return check_output(options.stock, {options.comparison});
 }
 
-/// Writes what was asked for beside the report.
+/// Writes the files requested in addition to the reports: remaining stock and comparison.
 core::Result<void> save_results(const CheckOptions& options, CheckRun& run, const ReadFiles& read) {
     for (const std::string& name : {options.stock, options.comparison})
         if (!name.empty() && run.stopped)
@@ -96,7 +96,7 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run, cons
     return write_output(options.comparison, bytes, read);
 }
 
-/// Before much memory is taken it is said how much.
+/// Prints the memory that the check needs if it is large.
 bool say_memory(double bytes) {
     constexpr double much = 1e9;
     if (bytes >= much)
@@ -104,8 +104,8 @@ bool say_memory(double bytes) {
     return true;
 }
 
-/// Whether a report must not replace a file because the run did not come to its end: it would look
-/// like a report of the whole program.
+/// Whether a report must not replace a file because the run was incomplete: it would look like a
+/// report of the whole program.
 bool is_kept_back(const CheckOptions& options, const ReportTarget& target, const CheckRun& run) {
     if (!run.stopped || target.path.empty()) return false;
     const UnfinishedReport unfinished = report_format(target.format).unfinished;
@@ -113,8 +113,8 @@ bool is_kept_back(const CheckOptions& options, const ReportTarget& target, const
            || (unfinished == UnfinishedReport::when_watching && !options.watch);
 }
 
-/// Writes the reports; false if one could not be. In place of those that are kept back there is a
-/// text on standard output.
+/// Writes the reports; false if one could not be written. If some are withheld, prints a text
+/// report to standard output instead.
 bool write_reports(const CheckOptions& options, const Checked& checked,
                    const std::vector<ReportTarget>& targets) {
     std::vector<ReportTarget> written;
@@ -132,7 +132,7 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
     return all;
 }
 
-/// Writes that a check could not begin into the reports that can say so.
+/// Prints the error, and writes the report formats that can record a check that could not start.
 ExitCode fail(const CheckJob& job, const core::Error& error,
               const std::vector<ReportTarget>& targets, const ReadFiles& read) {
     print_error(error);
@@ -157,19 +157,19 @@ core::Result<CheckJob> one_job(const CheckOptions& options) {
     return job;
 }
 
-/// No project is asked about a program that is named itself. Where its set-up is inferred, and
-/// there is a project that may know better, that is said.
+/// Project files do not apply to a program named on the command line. If its set-up is inferred
+/// although a project file covers it, prints a note.
 void say_project(const CheckJob& job) {
     std::error_code ignored;
     if (!job.setup.empty() || !std::filesystem::is_regular_file(job.program, ignored)) return;
     const std::string project = ProjectOwners().of(place_of(job.program).parent_path(), "/");
     if (!project.empty())
-        print_note(fmt::format("feeler: {} is not asked about a program that is named itself: "
-                               "check its folder to go by it\n",
+        print_note(fmt::format("feeler: {} does not apply to a program that is named directly: "
+                               "to use it, check the folder\n",
                                project));
 }
 
-/// `told`: the assumptions that are on the screen; those of this check come in their place.
+/// `told`: the assumptions already shown on the terminal; replaced by those of this check.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& told) {
     ReadFiles read;
@@ -214,7 +214,7 @@ core::Result<void> check_share(const CheckOptions& options) {
     const bool is_written = std::count(options.formats.begin(), options.formats.end(), "shard") > 0;
     if (options.share || !is_written) return {};
     return core::fail(core::ErrorCode::invalid_value,
-                      "--format shard needs --shard I/N: the share that this computer checks");
+                      "--format shard needs --shard I/N: the shard that this computer checks");
 }
 
 bool is_batch(const CheckOptions& options) {
@@ -225,7 +225,7 @@ ExitCode check(const CheckOptions& options) {
     const auto targets = targets_of(options.formats, options.outputs);
     if (!targets) return failed(targets.error());
     if (auto fits = check_share(options); !fits) return failed(fits.error());
-    BatchPass many; // once there is a batch: what was no folder may become one
+    BatchPass many; // set once needed: while watching, a path may become a folder
     const auto prepare = [&](bool is_many) -> core::Result<void> {
         if (!is_many || many) return {};
         FEELER_TRY(many, batch_pass(options, *targets));
@@ -280,7 +280,7 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
     command
         .add_option_function<std::string>(
             "--shard", [&options](const std::string& name) { options.share = *share_named(name); },
-            "Several computers: check share I of N only, for --format shard and feeler merge")
+            "Several computers: check only shard I of N; use --format shard and feeler merge")
         ->check(CLI::Validator(
             [](const std::string& name) {
                 const auto share = share_named(name);
@@ -289,11 +289,11 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
             "I/N"));
     command
         .add_option("-j,--jobs", options.jobs,
-                    "Many programs: how many run at the same time; default one per core")
+                    "Many programs: number that run in parallel; default one per core")
         ->check(number_range(1.0, 1024.0));
     command
         .add_option("--memory", options.memory,
-                    "Many programs: memory for all programs that run at the same time, MB; "
+                    "Many programs: total memory of the programs that run in parallel, MB; "
                     "default half of the computer's")
         ->check(number_range(1.0, 1e9));
 }
@@ -332,7 +332,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
         ->default_str(name_of(Engine::exact));
     command
         .add_flag("--verdict-only", options->verdict_only,
-                  "Faster: no exact clearance for blocks that are clear by a bound alone")
+                  "Faster: no exact clearance for blocks that a bound proves clear")
         ->excludes(pairs);
     command.callback([options, &exit_code] { exit_code = check(*options); });
 }
@@ -348,7 +348,7 @@ void wait(Clock::duration duration) {
         std::this_thread::sleep_for(std::min<Clock::duration>(50ms, end - Clock::now()));
 }
 
-/// What has changed, once it is to be checked; empty after Ctrl-C.
+/// Waits for changes that have settled. Returns the changed paths; empty after Ctrl-C.
 std::vector<std::string> wait_for_change(WatchedFiles& files) {
     WatchPace pace(Clock::now());
     while (true) {
@@ -365,7 +365,7 @@ std::string name_of(const std::string& place) {
     return (path.has_filename() ? path.filename() : path).string();
 }
 
-/// Their names, with the folder where two would be called the same.
+/// The file names, with the folder if two are equal.
 std::string names_of(const std::vector<std::string>& paths) {
     constexpr size_t most = 3;
     std::map<std::string, size_t> counts;

@@ -28,29 +28,28 @@
 
 namespace app {
 
-/// Results of earlier batches, as far as there are any. What is wrong with the database is told
-/// once, and the batch goes on: without what it cannot do, and without the database altogether if
-/// it cannot even be read.
+/// Results of earlier batches, if any. Problems with the database are reported once, and the batch
+/// continues: without what does not work, and without the database if it cannot be read.
 class BatchStore {
 public:
-    /// The database that was asked for, else that of the first folder or project file that was
-    /// named, with those beside it; none for files alone. While files are watched there is always
-    /// one, in memory if nowhere else.
+    /// Opens the database named by --cache, else that of the first folder or project file in the
+    /// arguments, together with its sibling databases. No database if only files are named, except
+    /// that a watch then keeps one in memory.
     explicit BatchStore(const CheckOptions& options);
 
     /// The file of the database; empty if there is none.
     const std::string& path() const { return path_; }
 
-    /// For another run of the batch: a database that could not be used may be now.
+    /// Prepares for another run of the batch: retries a database that could not be used.
     void begin_again();
 
-    /// Lets a batch ask it, and keep in it what it finds out.
+    /// Connects the hooks of a batch, which look up and store results.
     void serve(BatchHooks& hooks);
 
-    /// Waits until all of it is written.
+    /// Waits until all results are written.
     void flush();
 
-    /// How many results were found again.
+    /// The number of results found in the database.
     size_t found() const { return found_; }
 
 private:
@@ -58,17 +57,17 @@ private:
     std::optional<ProgramResult> find(const CheckJob& job);
 
     std::unique_ptr<ResultStore> store_;
-    std::unique_ptr<SiblingStores> beside_; // null if a database was asked for
+    std::unique_ptr<SiblingStores> beside_; // null if --cache names a database
     std::mutex guard_;
     bool is_told_ = false;
-    std::atomic<bool> is_lost_ = false; // the database, for this run
+    std::atomic<bool> is_lost_ = false; // the database cannot be read in this run
     size_t found_ = 0;
     std::string path_;
 };
 
 namespace {
 
-/// Empty: results are not kept.
+/// Path of the database; empty if results are not stored.
 std::string place_of_store(const CheckOptions& options) {
     if (options.no_cache) return {};
     if (!options.cache.empty()) return options.cache;
@@ -144,7 +143,7 @@ void BatchStore::serve(BatchHooks& hooks) {
 
 namespace {
 
-/// Options that mean nothing for many programs.
+/// Refuses options that make no sense for many programs.
 core::Result<void> refuse_single_options(const CheckOptions& options) {
     const std::pair<const char*, bool> singles[] = {
         {"--save-stock", !options.stock.empty()},
@@ -160,7 +159,7 @@ core::Result<void> refuse_single_options(const CheckOptions& options) {
     return {};
 }
 
-/// Half of the machine's memory: the rest is for programs, findings, and everybody else.
+/// Half of the machine's memory: the rest is for programs, findings and other processes.
 double usual_memory() {
     const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
     return pages > 0 && size > 0 ? 0.5 * static_cast<double>(pages) * static_cast<double>(size)
@@ -172,11 +171,11 @@ BatchLimits limits_of(const CheckOptions& options) {
             .memory = options.memory ? *options.memory * 1e6 : usual_memory()};
 }
 
-/// What is to be done here, of a batch that other machines may have shares of.
+/// The work of this computer, which may be one shard of a batch.
 struct SharedWork {
     BatchPlan plan;
     std::vector<PlannedProgram> programs; // of the whole batch
-    std::vector<size_t> places;           // of the plan's programs among them
+    std::vector<size_t> places;           // indices of the plan's programs in `programs`
 };
 
 SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
@@ -187,9 +186,9 @@ SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
     return work;
 }
 
-/// The share of an earlier run must not be taken for that of a run that was killed, or could not
-/// begin. What is no share is somebody's file: whether it may be replaced is seen when it is
-/// written.
+/// Deletes the shard file of an earlier run, so that it is not mistaken for the result of a run
+/// that was killed or could not start. Any other file stays here: writing the output decides
+/// whether it may be replaced.
 core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets) {
         if (target.format != "shard" || !is_shard_file(target.path)) continue;
@@ -217,15 +216,15 @@ Shard shard_of(const ShardId& share, const SharedWork& work, const BatchResult& 
     return shard_of(std::move(shard), work.places, batch);
 }
 
-/// Between the passes of --watch.
+/// State that lasts from pass to pass of --watch.
 struct WatchState {
-    WatchedFiles* files = nullptr; // of this pass; null: nothing is watched
-    // What was said last of each program; what is known and the same is not said again.
+    WatchedFiles* files = nullptr; // of this pass; null without --watch
+    // The result last printed for each program. Known results that are equal are not printed again.
     std::map<std::string, ProgramResult> said = {};
     bool is_again = false; // not the first pass
 };
 
-/// Whether this is not what was said of the program before.
+/// Records the result; whether it differs from the one last printed for the program.
 bool note_said(WatchState& watch, ProgramResult result) {
     result.seconds = 0.0;
     const auto [place, is_first] = watch.said.try_emplace(result.program, result);
@@ -243,7 +242,8 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
     std::set<std::string> known; // programs
     if (hooks.known && watch.files)
         hooks.known = [&, find = hooks.known](const CheckJob& job) {
-            // The database asks for files where links led to when it was opened.
+            // Note the paths as given: the database asks for the files that links led to when it
+            // was opened.
             for (const std::string& path : {job.program, job.setup})
                 watch.files->note({core::FileQuestion::content, path, {}, {}});
             auto found = find(job);
@@ -272,13 +272,13 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
     return batch;
 }
 
-/// Nothing was found to check: old reports stay.
+/// Nothing was found to check. Leaves old reports in place.
 ExitCode all_failed(const std::vector<core::Error>& errors) {
     for (const core::Error& error : errors) print_error(error);
     return ExitCode::failed;
 }
 
-/// Once through the whole batch.
+/// One run of the whole batch.
 ExitCode pass(const CheckOptions& options, const CheckJob& asked,
               const std::vector<ReportTarget>& targets, BatchStore& store, WatchState& watch) {
     const Stopwatch time;
@@ -299,7 +299,7 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     batch.share = share_text(options, work);
     talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));
     if (store.found() > 0 && !watch.is_again)
-        talk.say(fmt::format("{} of {} results are those of earlier checks: nothing has changed\n",
+        talk.say(fmt::format("{} of {} results come from earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
     if (is_interrupted())
         print_note(fmt::format("feeler: interrupted; {} of {} programs were checked\n",

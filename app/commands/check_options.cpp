@@ -23,8 +23,8 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
         return refused("more -o than --format: give the format of each file");
     if (targets.size() > outputs.size() + 1)
         return refused(
-            "only one report can go to standard output: give an -o for each other one, in the "
-            "order of --format");
+            "only one report can go to standard output: give an -o for each of the others, in "
+            "the order of --format");
     for (size_t i = 0; i < outputs.size(); ++i) {
         targets[i].path = outputs[i];
         for (size_t k = 0; k < i; ++k)

@@ -16,14 +16,14 @@ class WatchedFiles;
 enum class Engine : uint8_t;
 struct CheckJob;
 
-/// The options of `feeler check`, as words of a command line.
+/// The options of `feeler check`, as given on the command line.
 struct CheckOptions {
     CheckArguments what; // without a program
     std::vector<std::string> programs;
     std::vector<std::string> formats, outputs;
     std::string stock, comparison, cache;
     bool no_cache = false;
-    Engine engine{}; // the exact one
+    Engine engine{}; // exact
     bool blocks = false;
     bool pairs = false;
     bool verdict_only = false;
@@ -41,26 +41,27 @@ struct ReportTarget {
     std::string path; // empty: standard output
 };
 
-/// Each --format with its --output, in order; one format may go without, to standard output.
+/// Pairs each --format with its --output, in order; one format may lack a file and goes to standard
+/// output.
 ///
-/// Errors: invalid_value when they do not pair up.
+/// Errors: invalid_value if they do not pair up.
 core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string>& formats,
                                                    const std::vector<std::string>& outputs);
 
-/// The check that the options ask for; its program is that of `what`.
+/// The check that the options describe, of the program in `what`.
 ///
 /// Errors: those of settings_of.
 core::Result<CheckJob> job_of(const CheckOptions& options);
 
-/// Checks many programs, prints a line for each, and writes the reports. A later call prints a line
-/// for each program that was checked again. The argument is null without --watch.
+/// Checks many programs, prints a line for each, and writes the reports. Later calls print a line
+/// only for programs that were checked again. The argument is null without --watch.
 using BatchPass = std::function<ExitCode(WatchedFiles*)>;
 
-/// The check of many programs. `options` and `targets` must outlive it.
+/// Prepares the check of many programs. `options` and `targets` must outlive it.
 core::Result<BatchPass> batch_pass(const CheckOptions& options,
                                    const std::vector<ReportTarget>& targets);
 
-/// The files that the targets name.
+/// The file paths of the targets.
 std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets);
 
 } // namespace app

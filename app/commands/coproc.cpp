@@ -26,7 +26,7 @@ core::Result<std::string> report_of(const CoprocOptions& options, const Coproces
     return coprocessor_text(result);
 }
 
-/// What the signals of a range of blocks are kept in, if somebody asked for them.
+/// The signals of a range of blocks, if --vcd is given.
 struct Trace {
     std::optional<hwsim::VcdTrace> vcd;
     size_t from = 0, to = 0;
@@ -66,7 +66,7 @@ core::Result<ExitCode> coproc(const CoprocOptions& options) {
             !safe)
             return tl::unexpected(std::move(safe).error());
     if (options.to && *options.to < *options.from)
-        return core::fail(core::ErrorCode::invalid_value, "--to must not lie before --from");
+        return core::fail(core::ErrorCode::invalid_value, "--to must not be less than --from");
     Trace trace;
     FEELER_TRY(const CoprocessorResult result, run(options, trace));
     if (trace.vcd && trace.from >= result.run.blocks.size())

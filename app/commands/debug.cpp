@@ -28,18 +28,18 @@
 
 namespace app {
 
-/// Reads lines from a terminal, with history and completion. While nobody types, the session
+/// Reads lines from a terminal, with history and completion. While the user is idle, the session
 /// records ahead.
 class LineReader {
 public:
-    /// Reads the history of earlier sessions; without a file, there is none.
+    /// Loads the history of earlier sessions; an empty `history_file` means no history.
     LineReader(Prompt& prompt, DebugSession& session, std::string history_file);
-    /// Writes the history.
+    /// Saves the history.
     ~LineReader();
     LineReader(const LineReader&) = delete;
     LineReader& operator=(const LineReader&) = delete;
 
-    /// The next line; an interrupt drops the line that is being written. Empty at the end.
+    /// The next line; an interrupt discards the line being typed. Empty at end of input.
     std::optional<std::string> next();
 
     struct Editor;
@@ -49,7 +49,7 @@ private:
     std::unique_ptr<Editor> editor_;
 };
 
-/// Where this user's history is kept; empty where there is no place for it.
+/// Path of this user's history file; empty if there is no suitable folder.
 std::string history_file();
 
 namespace {
@@ -57,7 +57,7 @@ namespace {
 constexpr int longest_history = 2000;
 constexpr unsigned char end_of_input = 'D' - '@'; // Ctrl-D
 
-/// The beginning that all names share.
+/// The longest common prefix.
 std::string common_beginning(const std::vector<std::string>& names) {
     std::string common = names.front();
     for (const std::string& name : names) {
@@ -75,10 +75,10 @@ struct LineReader::Editor {
     Editor& operator=(const Editor&) = delete;
     ~Editor();
 
-    /// The next byte of standard input: 1 when there is one, 0 at the end, -1 after an interrupt.
+    /// The next byte of standard input: 1 if there is one, 0 at the end, -1 after an interrupt.
     int read(wchar_t& character);
-    /// Completes the word before the cursor as far as all its continuations agree, and shows them
-    /// if they do not.
+    /// Completes the word before the cursor to the common prefix of all candidates, and lists them
+    /// if that adds nothing.
     unsigned char complete();
 
     Prompt& prompt;
@@ -94,7 +94,7 @@ LineReader::Editor& editor_of(EditLine* line);
 } // namespace
 
 int LineReader::Editor::read(wchar_t& character) {
-    constexpr double slice = 0.02;       // s: nobody feels that
+    constexpr double slice = 0.02;       // s: too short to notice
     constexpr int hurry = 0, rest = 100; // ms until the next slice
     bool goes_on = true;
     while (!was_interrupted()) {
@@ -103,7 +103,7 @@ int LineReader::Editor::read(wchar_t& character) {
             unsigned char byte = 0;
             const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
             if (count < 0) continue;
-            // What was typed as Ctrl-D during a walk comes as 0 when the terminal changes its mode.
+            // A Ctrl-D typed while a command runs arrives as 0 when the terminal changes its mode.
             character = byte == 0 ? end_of_input : byte;
             return static_cast<int>(count);
         }
@@ -147,7 +147,8 @@ LineReader::Editor::Editor(Prompt& its_prompt, DebugSession& its_session)
     ::el_set(line, EL_CLIENTDATA, this);
     ::el_set(line, EL_PROMPT, ask);
     ::el_set(line, EL_EDITOR, "emacs");
-    // Otherwise Ctrl-C takes away what poll has just promised, and the read waits for the next key.
+    // Without noflsh, Ctrl-C would discard the byte that poll just announced, and the read would
+    // block until the next key.
     ::el_set(line, EL_SETTY, "-d", "+noflsh", nullptr);
     ::el_set(line, EL_HIST, ::history, history);
     ::el_set(line, EL_GETCFN, read_one);
@@ -189,7 +190,8 @@ LineReader::~LineReader() {
 std::optional<std::string> LineReader::next() {
     while (true) {
         int length = 0;
-        // By itself it shows the prompt first: a Ctrl-D that comes at once would be lost.
+        // el_gets would print the prompt before it sets the terminal mode: a Ctrl-D typed at once
+        // would be lost.
         ::el_set(editor_->line, EL_PREP_TERM, 1);
         const char* read = ::el_gets(editor_->line, &length);
         if (was_interrupted()) {
@@ -235,7 +237,7 @@ void print(const std::string& text, FILE* to = stdout) {
     std::fflush(to);
 }
 
-/// A session at a prompt, whoever writes the commands.
+/// A debug session driven by scripts or by a terminal.
 class Console {
 public:
     explicit Console(DebugSession& session) : session_(session), prompt_(session) {
@@ -247,7 +249,8 @@ public:
         };
     }
 
-    /// Whether it went on to the end of the scripts; false where a command failed or ended it.
+    /// Runs the scripts. True if they ran to their end; false if a command failed or ended the
+    /// session.
     bool carry_out(const std::vector<Script>& scripts) {
         for (const Script& script : scripts) {
             if (!script.is_file) {
@@ -256,7 +259,7 @@ public:
             }
             std::ifstream file(script.text);
             if (!file) {
-                print(fmt::format("feeler: {}: this file cannot be read\n", script.text), stderr);
+                print(fmt::format("feeler: {}: cannot read this file\n", script.text), stderr);
                 failed = true;
                 return false;
             }
@@ -290,7 +293,7 @@ public:
     bool failed = false;
 
 private:
-    /// What was said of a walk's progress goes away before its answer comes.
+    /// Removes the progress line before the answer is printed.
     PromptAnswer answered(PromptAnswer answer) {
         line_.clear();
         forget_interrupt();

@@ -41,8 +41,8 @@ core::Result<ExitCode> compare(const DiffOptions& options) {
     if (!options.later_setup.empty()) later.setup = options.later_setup;
     if (later.program == job.program && later.setup == job.setup)
         return core::fail(core::ErrorCode::missing_value,
-                          "there is nothing to compare with: name a second program, or a second "
-                          "set-up with --setup-b");
+                          "nothing to compare with: give a second program, or a second set-up "
+                          "with --setup-b");
     if (auto safe =
             check_output(options.output, {job.program, job.setup, later.program, later.setup});
         !safe)

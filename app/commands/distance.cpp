@@ -16,16 +16,16 @@
 
 namespace app {
 
-/// A body as named on the command line.
+/// A body given on the command line.
 struct NamedBody {
     std::string name;
     MeasuredBody body;
-    std::vector<std::string> repairs; // of its mesh
+    std::vector<std::string> repairs; // of its mesh, as texts
 };
 
 /// Reads `sphere:R`, `box:X,Y,Z`, `cylinder:R,H` (axis Z), centred on the origin, or a mesh file.
 ///
-/// Errors: sizes that are not positive lengths, and those of read_mesh.
+/// Errors: sizes that are not positive lengths; those of read_mesh.
 core::Result<NamedBody> body_argument(const std::string& argument);
 
 namespace {
@@ -87,7 +87,7 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     add_vector(command, "--rotate", options->rotate,
                "Rotate B about its origin by RX,RY,RZ before the move, degrees, fixed axes");
     add_vector(command, "--sweep", options->sweep,
-               "Sweep B by X,Y,Z from there and take the least distance on the way, mm");
+               "Then sweep B by X,Y,Z and measure the least distance along the way, mm");
     command
         .add_option("--engine", options->engine,
                     "fast, or paper (the published search); both find the same distance")
@@ -117,7 +117,7 @@ core::Result<std::vector<double>> sizes(const std::string& argument, size_t colo
     }
     if (at == end && values.size() == count) return values;
     return core::fail(core::ErrorCode::invalid_value,
-                      fmt::format("\"{}\" is no body: write sphere:R, box:X,Y,Z or cylinder:R,H "
+                      fmt::format("\"{}\" is not a body: write sphere:R, box:X,Y,Z or cylinder:R,H "
                                   "with sizes in mm",
                                   argument));
 }

@@ -34,8 +34,9 @@ core::Result<std::vector<std::string>> places_of_stores(const HistoryOptions& op
                                   options.program));
 }
 
-/// What two databases have, as after another division of a library among machines, is one version,
-/// and was last seen when anybody did.
+/// Merges equal versions of several databases, which arise if a library is divided differently
+/// among machines. The merged version was first checked and last seen at the extremes of its
+/// copies.
 std::vector<StoredVersion> joined(std::vector<StoredVersion> all) {
     std::map<std::vector<std::string>, size_t> places;
     std::vector<StoredVersion> versions;
@@ -53,7 +54,7 @@ std::vector<StoredVersion> joined(std::vector<StoredVersion> all) {
     return versions;
 }
 
-/// All versions, that which was seen last at the end.
+/// All versions, the last seen at the end.
 core::Result<std::vector<StoredVersion>> versions_in(const std::vector<std::string>& places,
                                                      const std::string& program) {
     std::vector<ResultStore> stores;
@@ -85,7 +86,7 @@ core::Result<void> write_history(const HistoryOptions& options) {
     FEELER_TRY(const std::vector<StoredVersion> versions, versions_in(places, options.program));
     if (versions.empty())
         return core::fail(core::ErrorCode::missing_value,
-                          fmt::format("{} has no results of {}", places[0], options.program));
+                          fmt::format("{} has no results for {}", places[0], options.program));
     return write_output(options.output, options.format == "json"
                                             ? history_json(options.program, versions)
                                             : history_text(options.program, versions));

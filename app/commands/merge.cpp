@@ -36,7 +36,7 @@ core::Result<Shard> read_shard(const std::string& file) {
         return refused(
             {core::ErrorCode::unsupported,
              {},
-             fmt::format("was made by feeler {}; this is {}, and writes reports as that one does",
+             fmt::format("was written by feeler {}, but this is {}: merge with the same version",
                          shard->version, build_version()),
              {}});
     shard->file = file;
@@ -52,7 +52,7 @@ core::Result<std::vector<Shard>> read_shards(const std::vector<std::string>& fil
     return shards;
 }
 
-/// A check reads what its shares name; here only a report could take the place of it.
+/// Protects the inputs of the checks, named in the shards: a report must not replace them.
 void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
     for (const Shard& shard : shards) {
         for (const PlannedProgram& program : shard.programs) read.add(program.name);
@@ -67,7 +67,7 @@ void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
     }
 }
 
-/// What one run says while it goes on, and at its end.
+/// Prints what a single run of the batch would print.
 void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const BatchTalk& talk) {
     for (const ProgramResult& program : batch.programs) talk.say(program_text(program, talk.style));
     double seconds = 0.0;

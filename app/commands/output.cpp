@@ -17,7 +17,7 @@
 namespace app {
 namespace {
 
-// What this process has written; as with its signals there is one of it.
+// The files that this process has written.
 std::mutex written_guard;
 std::map<std::string, FileStamp> written_stamps; // by path
 
@@ -40,8 +40,8 @@ struct OutputStream::State {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
 
-    std::string path{};             // as the user gave it; empty: standard output
-    std::filesystem::path target{}; // that the finished file gets; empty: written as it goes
+    std::string path{};             // as given; empty: standard output
+    std::filesystem::path target{}; // final path; empty: written in place
     std::string fresh{};            // the file that is being written
     std::unique_ptr<std::FILE, Close> file{};
 
@@ -52,8 +52,8 @@ struct OutputStream::State {
     }
     tl::unexpected<core::Error> failed() const {
         if (path.empty()) return standard_output_failed();
-        return refused(path, target.empty() ? "could not be written to its end"
-                                            : "could not be written to its end; what was there "
+        return refused(path, target.empty() ? "could not be written completely"
+                                            : "could not be written completely; the old file "
                                               "is unchanged");
     }
 };
@@ -70,8 +70,9 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     const auto kind = std::filesystem::status(path, failure).type();
     const std::filesystem::path target = place_of(path);
     if (kind == std::filesystem::file_type::none || target.empty())
-        return refused(path, "cannot be written: "
-                                 + (failure ? failure.message() : "nobody knows where it is"));
+        return refused(path,
+                       "cannot be written: "
+                           + (failure ? failure.message() : "its location cannot be determined"));
     if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
     const bool replace = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
@@ -125,14 +126,14 @@ core::Result<void> OutputStream::give_up() {
 core::Result<void> check_output(const std::string& output,
                                 std::initializer_list<std::string> read) {
     for (const std::string& input : read) {
-        std::error_code ignored; // of files that are not there, which others complain of
+        std::error_code ignored; // missing inputs are reported elsewhere
         if (output.empty() || !std::filesystem::is_regular_file(output, ignored)
             || !std::filesystem::equivalent(output, input, ignored))
             continue;
         return tl::unexpected<core::Error>(
             {core::ErrorCode::invalid_value,
              {},
-             "is read here, and would be lost: give -o the name of another file",
+             "is an input and would be overwritten: choose another file for -o",
              output});
     }
     return {};
@@ -162,16 +163,15 @@ namespace {
 
 void take_away(const std::string& path) {
     std::error_code failure;
-    const std::filesystem::path file = std::filesystem::canonical(path, failure); // behind a link
+    const std::filesystem::path file = std::filesystem::canonical(path, failure); // follows links
     if (!failure) std::filesystem::remove(file, failure);
     if (failure)
         print_error({core::ErrorCode::io,
                      {},
-                     "tells of an earlier version, and cannot be taken away: " + failure.message(),
+                     "describes an earlier version and cannot be deleted: " + failure.message(),
                      path});
     else
-        print_note(
-            fmt::format("feeler: {}: told of an earlier version, and is taken away\n", path));
+        print_note(fmt::format("feeler: {}: described an earlier version; deleted\n", path));
 }
 
 } // namespace

@@ -14,24 +14,24 @@ namespace app {
 
 class WatchedFiles;
 
-/// Writes a result to a file, or to standard output when `path` is empty. A file is replaced only
-/// once all of the new one is on disk; the old one stays when something goes wrong. A device or
-/// pipe is written to as it is, a link is followed.
+/// Writes a result to a file, or to standard output if `path` is empty. Replaces an existing file
+/// only after the new one is completely on disk; on error the old one stays. Devices and pipes are
+/// written directly; links are followed.
 ///
 /// Errors: io, with the path.
 core::Result<void> write_output(const std::string& path, const std::string& text);
 
-/// The stamp of the file that this process has written last at a path, as it left it; none where it
-/// has written none.
+/// The stamp of the file that this process last wrote at a path, taken right after writing; an
+/// empty stamp if it wrote none.
 FileStamp written_stamp(const std::string& path);
 
-/// Refuses an output file that is one of the files that are read.
+/// Refuses an output file that is one of the files `read`.
 ///
 /// Errors: invalid_value, with the path.
 core::Result<void> check_output(const std::string& output, std::initializer_list<std::string> read);
 
-/// A result that is written piece by piece, to a file or to standard output, as write_output does.
-/// The old file stays unless the new one is finished.
+/// A result written piece by piece, to a file or to standard output, as by write_output. The old
+/// file stays until finish succeeds.
 class OutputStream {
 public:
     OutputStream(OutputStream&&) noexcept;
@@ -42,11 +42,11 @@ public:
 
     core::Result<void> write(std::string_view text);
 
-    /// Puts everything written in its place. Nothing may be written after.
+    /// Moves the finished file to its final path. Nothing may be written afterwards.
     core::Result<void> finish();
 
-    /// Leaves the old file as it is. What was written for it goes to standard output, whole files
-    /// only being what a name stands for.
+    /// Leaves the old file unchanged and copies the unfinished output to standard output, so that a
+    /// file name never holds a partial result.
     core::Result<void> give_up();
 
 private:
@@ -56,30 +56,29 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Prints to standard error, without control characters; what cannot be written there is lost.
+/// Prints to standard error, without control characters. Failures to write are ignored.
 void print_error(const core::Error& error);
 void print_note(const std::string& text);
 
-/// Prints an error: what the command then ends with.
+/// Prints an error and returns the exit status for it.
 ExitCode failed(const core::Error& error);
 
-/// What the passes of a watch write. A file that one of them has written tells of that version: it
-/// does not outlive a pass that could not write it anew.
+/// The output files of a watch. A file written by one pass describes that version of the inputs; it
+/// is deleted if a later pass could not rewrite it.
 class PassOutputs {
 public:
     explicit PassOutputs(const std::vector<std::string>& paths);
 
-    /// A pass begins.
     void begin_pass();
 
-    /// It is over: takes away what it has not written but one before it has, and says so. What was
-    /// there before the watch, what somebody else has written since, and what is read, stays.
+    /// Deletes the outputs that an earlier pass wrote and this one did not, and reports that. Files
+    /// from before the watch, files changed since by another process and files that were read stay.
     void end_pass(const WatchedFiles& read);
 
 private:
     struct Output {
         std::string path;
-        FileStamp before = {}; // as the last pass left it that wrote it
+        FileStamp before = {}; // what we had written at the start of the pass
     };
 
     std::vector<Output> outputs_;

@@ -44,17 +44,17 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
     command
         .add_option("--block-delete", arguments.block_delete, "on: skip blocks that begin with /")
         ->check(CLI::IsMember({"on", "off"}));
-    command.add_option("--parameters", arguments.parameters, "Variables file of LinuxCNC");
-    command.add_option("--tool-table", arguments.tool_table, "Tool table of LinuxCNC");
+    command.add_option("--parameters", arguments.parameters, "LinuxCNC variables file");
+    command.add_option("--tool-table", arguments.tool_table, "LinuxCNC tool table");
     command.add_option("--ini", arguments.ini,
-                       "Ini file of LinuxCNC: unit, variables, tool table and search path");
+                       "LinuxCNC ini file: unit, variables, tool table and search path");
     command
         .add_option("--machine-unit", arguments.machine_unit,
                     "Unit of lengths in the variables file and the tool table")
         ->check(CLI::IsMember({"mm", "inch"}));
     command
         .add_option("--no-decimal-point", arguments.no_decimal_point,
-                    "X1000 on Fanuc and Haas means 1000 units, or 1000 least input increments")
+                    "Fanuc, Haas: X1000 means 1000 units, or 1000 least input increments (steps)")
         ->check(CLI::IsMember({"units", "steps"}));
     command
         .add_option("--search-path", arguments.search_path,
@@ -140,14 +140,14 @@ void add_device_arguments(CLI::App& command, DeviceArguments& arguments) {
                      "Run the program with an emulated coprocessor and show its panel");
     command
         .add_option("--device", arguments.file,
-                    "The same with this device file (TOML), as for coproc --config")
+                    "Use this device file (TOML), as for coproc --config; implies --coprocessor")
         ->each([&arguments](const std::string&) { arguments.shown = true; });
 }
 
 CLI::Validator number_range(double low, double high) {
     const auto check = [low, high](const std::string& text) {
         double number = 0.0;
-        // Written so that NaN is refused as well.
+        // Written so that NaN is refused, too.
         if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high)
             return std::string();
         return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);

@@ -17,7 +17,7 @@
 namespace app {
 namespace {
 
-// Lock-free: set by a signal, read by any thread.
+// Lock-free: set by a signal handler, read by any thread.
 std::atomic<int64_t> interrupted_at = 0; // ms of the steady clock; 0: never
 
 int64_t milliseconds() {
@@ -26,8 +26,8 @@ int64_t milliseconds() {
     return int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
 }
 
-/// Who ends a whole group, as timeout does, sends a process the same signal twice at once: a second
-/// one counts after half a second.
+/// Tools that signal a process group, such as timeout, deliver the same signal twice at once. Only
+/// a second signal at least half a second later ends the process.
 extern "C" void note_interrupt(int signal) {
     int64_t first = 0;
     if (interrupted_at.compare_exchange_strong(first, milliseconds())) return;
@@ -49,7 +49,7 @@ std::string bar_text(double share, const std::string& what, double seconds) {
     std::string text =
         fmt::format("[{}{}] {:3.0f} %  {}", std::string(static_cast<size_t>(filled), '#'),
                     std::string(static_cast<size_t>(width - filled), '.'), 100.0 * share, what);
-    // Early guesses are worth nothing.
+    // Early estimates are unreliable.
     if (share > 0.02 && seconds > 1.0)
         text += fmt::format(", {} left", time_text(seconds * (1.0 - share) / share));
     return text.substr(0, 79);
@@ -59,7 +59,7 @@ std::string bar_text(double share, const std::string& what, double seconds) {
 
 void stop_on_interrupt() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
-    // nohup has said that the check is to outlive its terminal.
+    // SIGHUP stays ignored under nohup: the check is to outlive its terminal.
     if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
     outlive_readers();
 }

@@ -7,8 +7,8 @@ namespace app {
 struct BatchProgress;
 struct CheckProgress;
 
-/// From now on SIGINT, SIGTERM and SIGHUP ask a check to stop; a second signal, half a second later
-/// or more, ends the process. Includes outlive_readers.
+/// From now on SIGINT, SIGTERM and SIGHUP request a check to stop; a second signal at least half a
+/// second later ends the process. Includes outlive_readers.
 void stop_on_interrupt();
 
 /// From now on a closed pipe does not end the process: writing to it fails, and other reports are
@@ -18,7 +18,7 @@ void outlive_readers();
 /// Whether a stop was requested.
 bool is_interrupted();
 
-/// A progress line on standard error; nothing if that is not a terminal.
+/// A progress line on standard error; prints nothing if that is not a terminal.
 class ProgressLine {
 public:
     ProgressLine();
@@ -42,7 +42,7 @@ private:
     Clock::time_point last_ = start_;
 };
 
-/// The text of the line `seconds` after the start, at most 79 characters.
+/// Text of the line `seconds` after the start, at most 79 characters.
 std::string progress_text(const CheckProgress& progress, double seconds);
 std::string progress_text(const BatchProgress& progress, double seconds);
 

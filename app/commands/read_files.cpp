@@ -10,7 +10,7 @@
 namespace app {
 namespace {
 
-/// A device, and what a file is there.
+/// Device and inode of a file.
 using FileNumber = std::pair<uint64_t, uint64_t>;
 
 FileNumber number_of(const std::string& path) {

@@ -11,17 +11,17 @@
 namespace app {
 
 /// The files that a command has read, so that it does not overwrite them: programs, subprograms,
-/// set-ups, and the meshes, machines and tables that they name.
+/// set-ups, and the meshes, machines and tables named in set-ups.
 class ReadFiles {
 public:
-    /// Records the reads of this thread from now on.
+    /// Records all files that this thread reads from now on.
     ReadFiles();
 
-    /// Records an access of another thread.
+    /// Records an access by another thread.
     void note(const core::FileAccess& look);
-    void add(const std::string& path); // empty: nothing
+    void add(const std::string& path); // an empty path is ignored
 
-    /// Refuses an output file that is one of them, also under another name or link.
+    /// Refuses an output file that was read, also under another name or link.
     ///
     /// Errors: invalid_value, with the path.
     core::Result<void> check(const std::string& output) const;

@@ -12,25 +12,25 @@ struct BatchStyle;
 struct CheckRun;
 struct ReportViews;
 
-/// A check of one program and what its report is to contain.
+/// A check of one program and the contents of its report.
 struct ProgramReport {
     const CheckRun& run;
-    const std::string& setup; // its path; empty: inferred
+    const std::string& setup; // path; empty: inferred
     const ReportViews& views;
-    bool blocks = false;                // the text report has the table of all blocks that move
-    bool pairs = false;                 // every pair of bodies of every block
-    std::vector<std::string> told = {}; // assumptions that the terminal already shows
+    bool blocks = false;                // text: add the table of all blocks that move
+    bool pairs = false;                 // JSON: list every pair of bodies in every block
+    std::vector<std::string> told = {}; // assumptions already shown on the terminal
 };
 
-/// When a report of a check that did not run to its end may replace a file.
+/// When a report of an incomplete check may replace a file.
 enum class UnfinishedReport : uint8_t {
     never,
-    when_watching, // the file is from an earlier version of the program
-    always         // also of a check that could not begin
+    when_watching, // the file describes an earlier version of the program
+    always         // even if the check could not start
 };
 
-/// A format of reports. A new format is a writer, a row in report_formats.cpp, a row in
-/// docs/manual/json-and-other-formats.md, and its tests.
+/// A report format. To add one: a writer, a row in report_formats.cpp, a row in
+/// docs/manual/json-and-other-formats.md, and tests.
 struct ReportFormat {
     const char* name;
     const char* help; // in the list of formats that `check --help` shows; may be empty
@@ -40,16 +40,16 @@ struct ReportFormat {
     UnfinishedReport unfinished = UnfinishedReport::when_watching;
 };
 
-/// All formats in the order in which help lists them.
+/// All formats, in the order of the help.
 std::span<const ReportFormat> report_formats();
 
 /// The format with this name, which must exist.
 const ReportFormat& report_format(const std::string& name);
 
-/// The names of formats, those of report_formats or only those that a whole batch can have.
+/// The names of all formats, without "shard" if `with_shard` is false.
 std::vector<std::string> format_names(bool with_shard);
 
-/// The same for help: "text, json, jsonl (one object per line), ... or junit".
+/// The list for help: "text, json, jsonl (one object per line), ... or junit".
 std::string format_help(bool with_shard);
 
 } // namespace app

@@ -29,11 +29,11 @@ namespace app {
 
 constexpr int frames_per_second = 25;
 
-/// Pictures in order that become a film by ffmpeg, or else numbered pictures: `name-0001.png` and
-/// so on. They are numbered when the output is a .png, or there is no ffmpeg.
+/// Joins pictures to a film with ffmpeg. If the output is a .png or ffmpeg is missing, writes
+/// numbered pictures instead: `name-0001.png` and so on.
 class FilmWriter {
 public:
-    /// Errors: ffmpeg is there, but cannot write such a file; no room for the pictures.
+    /// Errors: ffmpeg exists but cannot write such a file; no folder for the pictures.
     static core::Result<std::unique_ptr<FilmWriter>> open(const std::string& output);
     FilmWriter(const FilmWriter&) = delete;
     FilmWriter& operator=(const FilmWriter&) = delete;
@@ -42,28 +42,27 @@ public:
     /// Errors: the picture cannot be written.
     core::Result<void> add(const render::Image& image);
 
-    /// Makes the film; what was there under its name before stays until it is whole. The names of
-    /// the pictures, where they are the result; empty for a film.
+    /// Makes the film. An existing file under its name stays until the film is complete. Returns
+    /// the names of the pictures if they are the result; empty for a film.
     ///
-    /// Errors: ffmpeg could not write it.
+    /// Errors: ffmpeg could not write the film.
     core::Result<std::string> finish();
 
 private:
     explicit FilmWriter(const std::string& output) : output_(output) {}
     core::Error refusal() const;
-    /// Where ffmpeg writes, with the extension that it knows the format by.
+    /// Path that ffmpeg writes to, with the extension that selects the format.
     std::string unfinished() const;
     std::string picture(size_t number) const;
 
     std::filesystem::path output_;
-    std::filesystem::path folder_; // of a film's pictures; empty when they are the result
+    std::filesystem::path folder_; // for the pictures of a film; empty if they are the result
     size_t count_ = 0;
 };
 
 namespace {
 
-/// Runs ffmpeg, which neither reads what is typed nor writes what a script would read; whether it
-/// is there and was content.
+/// Runs ffmpeg with standard input and output closed off. Whether it exists and succeeded.
 template <size_t count>
 bool run_ffmpeg(const std::array<const char*, count>& words) {
     posix_spawn_file_actions_t files;
@@ -111,7 +110,7 @@ core::Result<std::unique_ptr<FilmWriter>> FilmWriter::open(const std::string& ou
     }
     std::string folder = std::filesystem::temp_directory_path() / "feeler-film-XXXXXX";
     if (!::mkdtemp(folder.data()))
-        return core::fail(core::ErrorCode::io, "no folder can be made for the film's pictures");
+        return core::fail(core::ErrorCode::io, "cannot create a folder for the film's pictures");
     writer->folder_ = folder;
     return writer;
 }
@@ -126,8 +125,8 @@ FilmWriter::~FilmWriter() {
 core::Error FilmWriter::refusal() const {
     return {core::ErrorCode::io,
             {},
-            fmt::format("ffmpeg cannot write the film {}: name a file that can be written, of a "
-                        "kind that it knows, such as .mp4",
+            fmt::format("ffmpeg cannot write the film {}: choose a writable file of a type "
+                        "that ffmpeg supports, such as .mp4",
                         output_.string())};
 }
 
@@ -227,7 +226,7 @@ core::Result<void> shoot_block(const ShotOptions& options, const render::Viewpor
     return render::write_png(image, options.output);
 }
 
-/// Blocks with findings, in order, and the numbers of these.
+/// Blocks with findings, in order, and the indices of their findings.
 std::vector<std::pair<size_t, std::vector<size_t>>> blocks_with_findings(const ViewModel& model) {
     std::map<size_t, std::vector<size_t>> blocks;
     for (size_t i = 0; i < model.findings.size(); ++i) {
@@ -302,7 +301,7 @@ core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport
     return {};
 }
 
-/// A picture takes the place of no other file than a picture: it may be a mesh that is read later.
+/// A picture may replace only a picture: any other file may be needed, such as a mesh.
 core::Result<void> check_replaced(const std::string& output) {
     constexpr std::string_view signature = "\x89PNG";
     std::error_code ignored;
@@ -332,7 +331,7 @@ core::Result<void> shoot(const ShotOptions& options) {
     if (!offscreen->model.has_rows() && offscreen->model.stopped)
         return tl::unexpected(*offscreen->model.stopped);
     if (!offscreen->model.has_rows())
-        return core::fail(core::ErrorCode::missing_value, "the program runs no block");
+        return core::fail(core::ErrorCode::missing_value, "the program executes no block");
     if (options.device.shown)
         if (const auto run = offscreen->run_device(options.device.file); !run) return run;
     if (options.sheet) return shoot_sheet(options, *offscreen);
@@ -340,7 +339,7 @@ core::Result<void> shoot(const ShotOptions& options) {
     return shoot_block(options, size, *offscreen);
 }
 
-/// What is to be seen: one of these.
+/// Options that select what is shown; they exclude each other.
 void add_subject(CLI::App& command, ShotOptions& options) {
     auto* block =
         command.add_option("--block", options.block,
@@ -348,10 +347,11 @@ void add_subject(CLI::App& command, ShotOptions& options) {
     auto* worst = command.add_flag("--worst", options.worst,
                                    "Show the block with the least margin (default)");
     auto* finding = command.add_option("--finding", options.finding,
-                                       "Show the block of this finding, counted from 1");
+                                       "Show the block of this finding, numbered from 1");
     auto* sheet = command.add_flag("--sheet", options.sheet, "Show all findings on one sheet");
-    auto* from = command.add_option("--from", options.from, "Make a film from this block ...");
-    auto* to = command.add_option("--to", options.to, "... to this one");
+    auto* from =
+        command.add_option("--from", options.from, "Make a film that begins with this block");
+    auto* to = command.add_option("--to", options.to, "Last block of the film");
     for (CLI::Option* one : {block, worst, finding, sheet})
         for (CLI::Option* other : {block, worst, finding, sheet, from, to})
             if (one != other) one->excludes(other);
@@ -377,8 +377,8 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     add_subject(command, *options);
     command
         .add_option("-o,--output", options->output,
-                    "Picture (.png), or film (.mp4 or another type that ffmpeg writes; else "
-                    "numbered pictures)")
+                    "Picture (.png), or film (.mp4 or another type that ffmpeg writes; without "
+                    "ffmpeg, numbered pictures)")
         ->required();
     add_looks(command, *options);
     add_device_arguments(command, options->device);

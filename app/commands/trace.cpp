@@ -16,7 +16,7 @@
 namespace app {
 namespace {
 
-constexpr size_t buffer_size = 65536; // bytes that are written at once
+constexpr size_t buffer_size = 65536; // bytes per write
 
 struct TraceOptions {
     std::string program, setup, output;
@@ -24,7 +24,7 @@ struct TraceOptions {
     std::string format = "text";
 };
 
-/// What the program is read in, but for the dialect, which is empty when nobody states it.
+/// The environment of the program. `dialect` is empty if neither options nor set-up state it.
 core::Result<gcode::Environment> environment_of(const TraceOptions& options,
                                                 std::optional<gcode::DialectId>& dialect) {
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
@@ -40,7 +40,7 @@ core::Result<gcode::Environment> environment_of(const TraceOptions& options,
     return environment;
 }
 
-/// The dialect that was stated, else the one the program looks like, which is said.
+/// The stated dialect, else the recognised one, which is printed as a note.
 core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> stated,
                                               const gcode::Program& program) {
     if (!stated) {
@@ -55,7 +55,7 @@ core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> st
                                   gcode::dialect(*stated).name));
 }
 
-/// A trace on its way: each block is written before the next one is read.
+/// A trace in progress: each block is written before the next one is read.
 struct Tracing {
     const TraceOptions& options;
     const gcode::Environment& environment;
@@ -83,7 +83,8 @@ struct Tracing {
         return written;
     }
 
-    /// Errors: of the program, after what came before it was written; io of the output.
+    /// Errors: those of the program, after everything before the error was written; io of the
+    /// output.
     core::Result<void> run(const gcode::Program& program) {
         gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
                                       environment.search_path);
@@ -116,7 +117,7 @@ core::Result<void> run_trace(const TraceOptions& options) {
     std::optional<gcode::DialectId> stated;
     FEELER_TRY(gcode::Environment environment, environment_of(options, stated));
     FEELER_TRY(environment.dialect, choose_dialect(stated, program));
-    // A block of Klartext may have several lines, which must stand side by side.
+    // A Klartext block may span several lines, which must be adjacent in memory.
     if (gcode::dialect(environment.dialect).language == gcode::Language::klartext
         && program.windows) {
         FEELER_TRY(program, gcode::read_program(options.program));

@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-/// A folder of the user, from the environment or below home; empty when neither is known.
+/// A user folder, from an environment variable or below the home folder; empty if neither is known.
 std::filesystem::path user_folder(const char* variable, const char* below_home) {
     if (const char* stated = std::getenv(variable); stated && *stated) return stated;
     if (const char* home = std::getenv("HOME"); home && *home)
@@ -21,7 +21,7 @@ std::filesystem::path user_folder(const char* variable, const char* below_home) 
     return {};
 }
 
-/// Where pictures go: the user's folder for them, else beside the program.
+/// Folder for pictures: the user's pictures folder, else that of the program.
 std::filesystem::path pictures_folder(const std::string& program) {
     const std::filesystem::path pictures = user_folder("XDG_PICTURES_DIR", "Pictures");
     std::error_code ignored;
@@ -53,7 +53,7 @@ ExitCode view(const ViewOptions& options) {
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);
     if (shown) return ExitCode::clear;
-    print_note(fmt::format("feeler: {}; feeler shot {} --worst -o picture.png needs none\n",
+    print_note(fmt::format("feeler: {}; feeler shot {} --worst -o picture.png needs no display\n",
                            shown.error().message,
                            arguments.program.empty() ? "PROGRAM" : arguments.program));
     return ExitCode::failed;

@@ -28,7 +28,7 @@ TEST(BatchCache, ChecksNothingTwice) {
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results.db"));
     const auto second =
         feeler({"check", folder.path().string(), "--format", "jsonl", "-o", folder / "2"});
-    EXPECT_TRUE(says(second, "3 of 3 results are those of earlier checks")) << second.out;
+    EXPECT_TRUE(says(second, "3 of 3 results come from earlier checks")) << second.out;
     EXPECT_EQ(second.status, first.status);
     folder.write("b.nc", clear_program + "( changed )\n");
     const auto third = feeler({"check", folder.path().string()});
@@ -105,14 +105,14 @@ TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-1of2.db"));
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-2of2.db"));
     EXPECT_FALSE(std::filesystem::exists(folder / ".feeler/results.db"));
-    EXPECT_TRUE(says(check("1/2"), "2 of 2 results are those of earlier checks"));
+    EXPECT_TRUE(says(check("1/2"), "2 of 2 results come from earlier checks"));
     const std::string before = test_support::bytes_of(folder / ".feeler/results-1of2.db");
-    EXPECT_TRUE(says(check("2/3"), "1 of 1 results are those of earlier checks"));
-    EXPECT_TRUE(says(check(""), "3 of 3 results are those of earlier checks"));
+    EXPECT_TRUE(says(check("2/3"), "1 of 1 results come from earlier checks"));
+    EXPECT_TRUE(says(check(""), "3 of 3 results come from earlier checks"));
     folder.write("b.nc", clear_program + "( changed, and so the largest )\n");
-    EXPECT_TRUE(says(check(""), "2 of 3 results are those of earlier checks"));
+    EXPECT_TRUE(says(check(""), "2 of 3 results come from earlier checks"));
     EXPECT_EQ(test_support::bytes_of(folder / ".feeler/results-1of2.db"), before);
-    EXPECT_TRUE(says(check("1/2"), "1 of 1 results are those of earlier checks"));
+    EXPECT_TRUE(says(check("1/2"), "1 of 1 results come from earlier checks"));
     const auto history = feeler({"history", folder / "b.nc"});
     EXPECT_TRUE(says(history, "2 versions")) << history.out << history.err;
 }
@@ -132,7 +132,7 @@ TEST(BatchCache, HistoryEndsWithTheProgramAsItIsAlsoIfAShareHasSeenItBefore) {
     feeler({"check", parts});
     EXPECT_NE(last_of_history(), first);
     folder.write("b.nc", clear_program);
-    EXPECT_TRUE(says(feeler({"check", parts}), "3 of 3 results are those of earlier checks"));
+    EXPECT_TRUE(says(feeler({"check", parts}), "3 of 3 results come from earlier checks"));
     EXPECT_EQ(last_of_history(), first);
     EXPECT_TRUE(says(feeler({"history", b}), ": 2 versions"));
 }
@@ -161,13 +161,12 @@ protected:
 TEST_F(Library, IsCheckedOnceFromWhereverItIsNamed) {
     from(".", {"lib", "--format", "jsonl", "-o", "1"});
     const auto inside = from("lib", {".", "--format", "jsonl"});
-    EXPECT_NE(inside.err.find("2 of 2 results are those of earlier"), std::string::npos)
-        << inside.err;
+    EXPECT_NE(inside.err.find("2 of 2 results come from earlier"), std::string::npos) << inside.err;
     EXPECT_EQ(inside.out.find("lib/"), std::string::npos) << inside.out;
     EXPECT_NE(inside.out.find("\"setup\":\"setups/s.toml\""), std::string::npos) << inside.out;
-    EXPECT_TRUE(says(from("lib/setups", {".."}), "2 of 2 results are those of earlier"));
+    EXPECT_TRUE(says(from("lib/setups", {".."}), "2 of 2 results come from earlier"));
     const auto whole = from("/", {folder / "lib"});
-    EXPECT_TRUE(says(whole, "2 of 2 results are those of earlier")) << whole.out;
+    EXPECT_TRUE(says(whole, "2 of 2 results come from earlier")) << whole.out;
     EXPECT_TRUE(says(whole, folder / "lib/wrong.nc:1:1: G999")) << whole.out;
     EXPECT_TRUE(says(feeler({"history", folder / "lib/a.nc"}), ": 1 version\n"));
 }
@@ -181,7 +180,7 @@ TEST_F(Library, NeverSpeaksOfPathsAsAnotherCallNamedThem) {
     EXPECT_TRUE(says(inside, "\"control.ini: none.var does not exist")) << inside.out;
     EXPECT_EQ(inside.out.find("lib/"), std::string::npos) << inside.out;
     const auto again = from("lib", {".", "--ini", "control.ini"});
-    EXPECT_TRUE(says(again, "2 of 2 results are those of earlier")) << again.out;
+    EXPECT_TRUE(says(again, "2 of 2 results come from earlier")) << again.out;
     const std::string history = feeler({"history", folder / "lib/a.nc"}).out;
     EXPECT_NE(history.find(": 1 version\n"), std::string::npos) << history;
 }

@@ -43,7 +43,7 @@ TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
         const std::string before = bytes_of(folder / name);
         const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / name});
         EXPECT_EQ(ran.status, 2) << name;
-        EXPECT_THAT(ran.err, HasSubstr("is read here, and would be lost")) << name;
+        EXPECT_THAT(ran.err, HasSubstr("is an input and would be overwritten")) << name;
         // What a check finds again is put down in the database.
         const bool is_database = before.starts_with("SQLite format 3");
         const size_t length = is_database ? 16 : std::string::npos;
@@ -58,7 +58,7 @@ TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
              {"coproc", folder / "lib/call.nc", "--no-fit", "-o", called}}) {
         const Ran ran = feeler(words);
         EXPECT_EQ(ran.status, 2) << words[0];
-        EXPECT_THAT(ran.err, HasSubstr("is read here, and would be lost")) << words[0];
+        EXPECT_THAT(ran.err, HasSubstr("is an input and would be overwritten")) << words[0];
         EXPECT_EQ(bytes_of(called), before) << words[0];
     }
 }

@@ -67,7 +67,7 @@ TEST_F(TwoVersions, AreFoundFromADeeperFolderAndByName) {
     fs::copy_file(program, folder / "jobs/today/new.ngc");
     const auto unknown = feeler({"history", folder / "jobs/today/new.ngc"});
     EXPECT_EQ(unknown.status, 2);
-    EXPECT_NE(unknown.err.find("has no results of"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("has no results for"), std::string::npos) << unknown.err;
     fs::rename(folder / ".feeler/results.db", folder / "kept.db");
     fs::remove_all(folder / ".feeler");
     EXPECT_EQ(feeler({"history", program, "--cache", folder / "kept.db"}).status, 0);

@@ -365,7 +365,7 @@ TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
                 HasSubstr("foreign: is a share of a batch that was cut off or changed"));
     foreign = app::sealed(foreign.substr(0, foreign.rfind(",\n\"seal\"")));
     EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
-                HasSubstr("was made by feeler 9"));
+                HasSubstr("was written by feeler 9"));
 }
 
 TEST_F(Merge, NeverLosesAShareThatItReads) {
@@ -373,7 +373,7 @@ TEST_F(Merge, NeverLosesAShareThatItReads) {
     const std::string before = bytes_of(share(2));
     const Ran ran = merge(2, {"--format", "json", "-o", share(2)});
     EXPECT_EQ(ran.status, 2);
-    EXPECT_THAT(ran.err, HasSubstr("2.share: is read here, and would be lost"));
+    EXPECT_THAT(ran.err, HasSubstr("2.share: is an input and would be overwritten"));
     EXPECT_EQ(bytes_of(share(2)), before);
 }
 
@@ -385,7 +385,7 @@ TEST_F(Merge, NeverLosesWhatItsSharesHaveRead) {
         const Ran ran = merge(2, {"--format", "csv", "-o", folder / name});
         EXPECT_EQ(ran.status, 2) << name;
         EXPECT_EQ(ran.out, "") << name;
-        EXPECT_THAT(ran.err, HasSubstr(": is read here, and would be lost")) << name;
+        EXPECT_THAT(ran.err, HasSubstr(": is an input and would be overwritten")) << name;
         EXPECT_EQ(bytes_of(folder / name), before) << name;
     }
 }

@@ -168,7 +168,7 @@ TEST_F(Watch, SaysInTheReportsThatTheProgramStopped) {
     EXPECT_THAT(seen, Not(HasSubstr("<html"))) << "nobody wants to read that";
     EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("STOPPED"));
     EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("G777"));
-    EXPECT_THAT(seen, HasSubstr("r.csv: told of an earlier version, and is taken away"));
+    EXPECT_THAT(seen, HasSubstr("r.csv: described an earlier version; deleted"));
     EXPECT_FALSE(fs::exists(folder / "r.csv"));
     folder.write("plate.nc", fine);
     pass(terminal);
@@ -196,7 +196,7 @@ TEST_F(Watch, TakesAwayWhatTellsOfAnEarlierVersion) {
             folder.write("plate.toml", "[stock");
             folder.write("feeler.toml", "[rules]\nnone\n");
         });
-        EXPECT_THAT(pass(terminal), HasSubstr("is taken away"));
+        EXPECT_THAT(pass(terminal), HasSubstr("an earlier version; deleted"));
         EXPECT_FALSE(fs::exists(report)) << word;
         EXPECT_EQ(end(terminal), 2);
     }

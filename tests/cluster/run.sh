@@ -193,7 +193,7 @@ wait_for 400 'the end of all shares, and of merge' is_over
 [[ $(says Restarts "${job}_$task") == 1 && $(says NodeList "${job}_$task") == n2 ]] || die "share $task did not begin again on n2"
 say "all shares are there; $task was begun again on n2"
 
-found=$(grep -oE '^[0-9]+ of [0-9]+ results are those of earlier checks' "share-$task.log" | cut -d' ' -f1)
+found=$(grep -oE '^[0-9]+ of [0-9]+ results come from earlier checks' "share-$task.log" | cut -d' ' -f1)
 ((${found:-0} >= before)) || die "of $before results that share $task had, it found ${found:-none} again"
 say "share $task began again, and found $found results in its database"
 
@@ -211,7 +211,7 @@ say "one run that checks all anew gives the same in ${formats[*]}, but for the s
 
 mapfile -t options < <(to_files again)
 feeler check library --jobs 1 "${options[@]}" >again.out || true
-grep -q '^40 of 40 results are those of earlier checks' again.out || die 'one run does not find what the shares kept'
+grep -q '^40 of 40 results come from earlier checks' again.out || die 'one run does not find what the shares kept'
 for format in "${formats[@]}"; do cmp "merged.$format" "again.$format" || die "the $format is another"; done
 say "one run that finds all again gives the same, byte for byte"
 say "passed: all of them end with $status"
