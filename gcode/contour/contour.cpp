@@ -32,7 +32,7 @@ core::Error no_motion(const CornerWord& word, std::string_view what) {
                                what));
 }
 
-/// A feed move in the plane; empty when it does not stay in the plane.
+/// The geometry of a feed move in the plane; empty when it leaves the plane.
 std::optional<CornerSide> side_of(const CanonicalCommand& command, const Position& start,
                                   Plane plane) {
     const PlaneAxes axes = axes_of(plane);
@@ -57,7 +57,8 @@ Position moved_in_plane(Position place, Plane plane, FlatPoint to) {
     return place;
 }
 
-/// The motion of a block after a corner; empty when the corner must wait longer.
+/// The motion of a block that follows a corner; empty when the block has none and the corner must
+/// wait for a later one.
 core::Result<std::optional<CornerSide>> motion_behind(const Corners& corners,
                                                       const ExecutedBlock& block) {
     const CornerWord& word = *corners.word;
@@ -123,7 +124,7 @@ void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& c
     const Position to = moved_in_plane(corner, plane, cut.to);
     if (auto* arc = std::get_if<ArcFeed>(&motion)) arc->end = from;
     if (auto* line = std::get_if<StraightFeed>(&motion)) line->end = from;
-    // An arc that ends where it starts would be a full circle.
+    // The first motion vanishes. As an arc it would end where it starts, which means a full circle.
     if (cut.takes_first) {
         commands.pop_back();
         block.result.columns.pop_back();
@@ -225,7 +226,7 @@ namespace {
 
 constexpr size_t most_pending = 100000;
 
-/// The end of a motion; null for anything else.
+/// The end of a motion; null for other commands.
 const Position* end_of(const CanonicalCommand& command) {
     if (const auto* move = std::get_if<StraightTraverse>(&command)) return &move->end;
     if (const auto* move = std::get_if<StraightFeed>(&command)) return &move->end;
@@ -252,8 +253,8 @@ double feed_of(const CanonicalCommand& command) {
     return 0.0;
 }
 
-/// A move of the tool centre as a command for the controlled point, which is `tip` away. The other
-/// axes stand still round a corner.
+/// Converts a move of the tool centre to a command for the controlled point, which is `tip` away
+/// from it. Axes outside the plane do not move while the tool rounds a corner.
 CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand& programmed,
                             const Position& start, Plane plane, FlatPoint tip) {
     const Position end =
@@ -264,7 +265,8 @@ CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand&
     return ArcFeed{end, plane, {centre.u, centre.v}, move.arc->turns, feed_of(programmed)};
 }
 
-/// A command is identified by its block, counted from the start of the run, and its index in it.
+/// A move's id encodes the block, counted from the start of the run, and the index of the command
+/// in it.
 constexpr size_t commands_of_a_block = size_t(1) << 20;
 
 void place_move(Contour& contour, const CompensatedMove& move) {
@@ -283,7 +285,7 @@ void place_move(Contour& contour, const CompensatedMove& move) {
              "backwards here and cuts into the contour"});
 }
 
-/// Moves the blocks without waiting motions to the ready ones, in order.
+/// Moves leading blocks without waiting motions to the ready ones.
 void release(Contour& contour) {
     while (!contour.pending.empty()) {
         PendingBlock& block = contour.pending.front();
@@ -315,8 +317,8 @@ core::Result<void> end_path(Contour& contour) {
     return {};
 }
 
-/// Fanuc controls look ahead a few blocks. Where too many of them have no move in the plane, the
-/// tool ends beside the end of the previous move and cuts into an inside corner.
+/// Fanuc controls look ahead only a few blocks. If too many of them have no move in the plane, the
+/// tool goes to the offset end point of the previous move and cuts into an inside corner.
 void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
     constexpr size_t harmless = 1;
     const RadiusCompensation& path = *contour.path;
@@ -331,7 +333,7 @@ void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& 
                      number - before - 1)});
 }
 
-/// Adds one motion of the last pending block.
+/// Adds one motion of the last pending block to the contour.
 core::Result<void> take_motion(Contour& contour, size_t index) {
     PendingBlock& block = contour.pending.back();
     const CanonicalCommand& command = block.result.commands[index];
@@ -355,9 +357,9 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
     return {};
 }
 
-/// The controlled point of a turning tool relative to the centre of its nose, for a radius of 1:
-/// the crossing of the lines along X and Z that touch the nose on the side to which the tool
-/// points.
+/// The controlled point of a turning tool relative to the centre of its nose, for a nose radius of
+/// 1. It is the intersection of the lines along X and Z that touch the nose on the side to which
+/// the tool points.
 FlatPoint tip_of(int orientation, Plane plane) {
     constexpr int along_x[] = {0, -1, -1, 1, 1, 0, -1, 0, 1, 0};
     constexpr int along_z[] = {0, 1, -1, -1, 1, 1, 0, -1, 0, 0};

@@ -22,18 +22,18 @@ struct CornerWord {
     std::string written{};
 };
 
-/// An executed block with the modal state before and after it.
+/// An executed block and the modal states before and after it.
 struct ExecutedBlock {
     BlockCommands result;
     ModalState before, after;
 };
 
 /// The corners of a run. A block that ends in a corner is held back until the next motion is known,
-/// and so are the blocks between them. Part of the interpreter's state.
+/// together with the blocks in between. Part of the interpreter's state.
 struct Corners {
-    std::optional<CornerWord> asked{}; // of the block being executed
-    std::optional<CornerWord> word{};  // of the first waiting block
-    CornerSide first{};                // its motion in the plane
+    std::optional<CornerWord> asked{}; // in the block being executed
+    std::optional<CornerWord> word{};  // in the first waiting block
+    CornerSide first{};                // motion of the first waiting block, in the plane
     std::vector<ExecutedBlock> waiting{};
 
     bool is_idle() const { return !asked && !word; }
@@ -46,20 +46,19 @@ struct Corners {
 /// Errors: invalid_value when the corner does not fit, missing_value when no motion in the plane
 ///         follows. The waiting blocks are dropped in both cases.
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Optional chamfering and corner R": which blocks
-///         may come between the two motions, and that there is no corner within one degree of
-///         straight on.
+///         may come between the two motions; no corner is inserted where the directions differ by
+///         less than one degree.
 core::Result<std::vector<ExecutedBlock>> take_for_corners(Corners& corners, ExecutedBlock block);
 
-/// Reports a corner that still waits at the end of the program.
+/// Reports a corner that is still waiting at the end of the program.
 ///
-/// Errors: missing_value when one does.
+/// Errors: missing_value if there is one.
 core::Result<void> end_corners(Corners& corners);
 
-/// Returns the waiting blocks as programmed and clears them.
+/// Returns the waiting blocks as programmed, without the corner, and clears them.
 std::vector<ExecutedBlock> give_up_corners(Corners& corners);
 
-/// A block whose motions are being offset by the cutter radius: its commands and what each has
-/// become so far.
+/// A block whose motions are being offset by the cutter radius, with the results so far.
 struct PendingBlock {
     struct Slot {
         Position start;                        // as programmed
@@ -71,14 +70,14 @@ struct PendingBlock {
     std::vector<Slot> slots; // one for each command
 };
 
-/// Corners and cutter radius compensation of a run: takes blocks as programmed and returns them
-/// with the moves of the tool centre as soon as these are final. Part of the interpreter's state.
+/// Corners and cutter radius compensation of a run. Takes blocks as programmed and returns them
+/// with the moves of the tool centre once these are final. Part of the interpreter's state.
 struct Contour {
-    Corners corners{};                      // blocks waiting here have not been compensated yet
+    Corners corners{};                      // blocks waiting here are not compensated yet
     std::optional<RadiusCompensation> path; // while compensation is on
     Plane plane = Plane::xy;
     FlatPoint tip{};     // from the centre of a turning tool's nose to the controlled point
-    bool pauses = false; // the block being executed takes the tool away from the contour
+    bool pauses = false; // the block being executed leaves the contour
     ContourStyle style = ContourStyle::rs274;
     std::deque<PendingBlock> pending{};
     std::deque<BlockCommands> ready{};
@@ -91,15 +90,15 @@ struct Contour {
     bool operator==(const Contour& other) const;
 };
 
-/// Takes an executed block with the state before and after it.
+/// Adds an executed block, with the state before and after it.
 ///
-/// Errors: those of the corners, of add_move and of end_compensation. The block is not taken then.
+/// Errors: those of the corners, of add_move and of end_compensation. Then the block is not added.
 core::Result<void> take_block(Contour& contour, const BlockCommands& block,
                               const ModalState& before, const ModalState& after);
 
 /// Ends the program: all waiting moves become final as they are.
 ///
-/// Errors: a corner still waits for a motion.
+/// Errors: a corner is still waiting for a motion.
 core::Result<void> end_contour(Contour& contour);
 
 /// Ends the compensation: all waiting moves become final as they are.

@@ -47,7 +47,7 @@ FlatPoint nearest_on(const CornerSide& side, FlatPoint to) {
     return centre + length(side.start - centre) * direction(to - centre);
 }
 
-/// The position of a point along the motion: 0 at its start, 1 at its end.
+/// The parameter of a point along the motion: 0 at its start, 1 at its end.
 double share_of(const CornerSide& side, FlatPoint at) {
     if (!side.arc) {
         const FlatPoint way = side.end - side.start;
@@ -63,7 +63,8 @@ double share_of(const CornerSide& side, FlatPoint at) {
     return angle_to(at) / (whole < fuzz ? 2.0 * std::numbers::pi : whole);
 }
 
-/// The line or circle offset to the left of a motion; to the right when the distance is negative.
+/// A line or circle parallel to a motion, offset to the left; to the right if the distance is
+/// negative.
 struct Beside {
     bool is_line;
     FlatPoint point; // of the line, or the centre
@@ -86,7 +87,7 @@ FlatPoint nearer(const Crossings& crossings, FlatPoint to) {
     return first ? crossings.first : crossings.second;
 }
 
-/// The point where two of them meet, nearest to the corner.
+/// The intersection of two offset curves that is nearest to the corner.
 std::optional<FlatPoint> meeting_point(const Beside& a, const Beside& b, FlatPoint corner) {
     if (a.is_line && b.is_line) {
         const double sine = cross(a.along, b.along);

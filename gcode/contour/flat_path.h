@@ -25,7 +25,7 @@ inline FlatPoint direction(FlatPoint a) { return (1.0 / length(a)) * a; }
 /// The displacement turned 90 degrees counterclockwise.
 constexpr FlatPoint left_of(FlatPoint a) { return {-a.v, a.u}; }
 
-/// The data of an arc beyond its start and end.
+/// An arc without its start and end.
 struct FlatArc {
     FlatPoint centre;
     int turns = 0; // as in LinuxCNC: +1 up to one turn counterclockwise, -2 up to two clockwise
@@ -39,21 +39,22 @@ inline FlatPoint tangent(const FlatArc& arc, FlatPoint at) {
     return arc.turns > 0 ? to_left : -1.0 * to_left;
 }
 
-/// The angle an arc turns through between two points, radians, never negative.
+/// The angle of an arc between two of its points, radians, never negative.
 double turned_angle(const FlatArc& arc, FlatPoint start, FlatPoint end);
 
-/// The two points at which paths cross. Both are the same where the paths are tangent.
+/// The two intersections of two paths. They are equal where the paths are tangent.
 struct Crossings {
     FlatPoint first, second;
 };
 
-/// Where an infinite line meets a circle; `first` comes first along the line.
-/// Result: empty where they do not meet.
+/// The intersections of an infinite line and a circle; `first` comes first along the line.
+/// Result: empty if there are none.
 std::optional<Crossings> cross_line_and_circle(FlatPoint through, FlatPoint way, FlatPoint centre,
                                                double radius);
 
-/// Where two circles meet; `first` is to the left of the line from centre to other centre.
-/// Result: empty where they do not meet, and for concentric circles.
+/// The intersections of two circles; `first` is to the left of the line from `centre` to
+/// `other_centre`.
+/// Result: empty if there are none, and for concentric circles.
 std::optional<Crossings> cross_circles(FlatPoint centre, double radius, FlatPoint other_centre,
                                        double other_radius);
 
@@ -72,7 +73,7 @@ enum class CornerFit : uint8_t {
     no_length,   // one of the motions has no length
     straight_on, // there is no corner
     none,        // no corner of that size touches both motions
-    too_large,   // it is longer than one of the motions
+    too_large,   // the cut is longer than one of the motions
 };
 
 /// The rounding or chamfer that replaces a corner.
@@ -81,7 +82,7 @@ struct CornerCut {
     FlatPoint from, to;           // where it leaves the first motion and reaches the second
     std::optional<FlatArc> arc{}; // of a rounding
     FlatPoint heading;            // at its end, unit length
-    bool takes_first = false;     // nothing is left of the first motion
+    bool takes_first = false;     // the first motion vanishes completely
     bool takes_second = false;
 };
 
@@ -90,19 +91,19 @@ struct CornerCut {
 CornerCut cut_corner(const CornerSide& first, const CornerSide& second, CornerKind kind,
                      double size);
 
-/// The unit direction of a motion at one of its points.
+/// Unit direction of a motion at one of its points.
 FlatPoint heading_at(const CornerSide& side, FlatPoint at);
 
-/// Whether a motion has a length. An arc always does.
+/// Whether a motion has a length; always true for an arc.
 bool has_length(const CornerSide& side);
 
 /// The change of direction at a corner, from 0 (straight on) to pi (reversal).
 double bend_between(const CornerSide& first, const CornerSide& second);
 
-/// The angle an arc turns through, radians, positive counter-clockwise seen from the plane's
-/// normal.
+/// The angle of an arc, radians; positive if counter-clockwise as seen against the normal of the
+/// plane.
 ///
-/// An end within a millionth of a radian of the start is a full turn (LinuxCNC: CIRCLE_FUZZ).
+/// An end within 1e-6 radians of the start is a full turn (LinuxCNC: CIRCLE_FUZZ).
 inline double arc_angle(const double (&start)[2], const double (&end)[2], const double (&centre)[2],
                         int turns) {
     constexpr double full_turn = 2.0 * std::numbers::pi;

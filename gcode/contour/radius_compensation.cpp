@@ -12,20 +12,20 @@ namespace {
 /// Bends up to this angle, radians, count as straight on (LinuxCNC: TOLERANCE_CONCAVE_CORNER).
 constexpr double slight_bend = 0.05;
 
-/// A move left shorter than this by inside corners, mm, has no direction.
+/// A move that inside corners shorten to less than this, mm, has no direction.
 constexpr double degenerate = 1e-6;
 
 tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string message) {
     return core::fail(core::ErrorCode::invalid_value, std::move(message), where);
 }
 
-/// The displacement from a point of the contour to the tool centre beside it.
+/// The displacement from a point of the contour to the tool centre, normal to the heading.
 FlatPoint beside(const RadiusCompensation& compensation, FlatPoint heading) {
     const FlatPoint left = compensation.radius * left_of(heading);
     return compensation.side == ContourSide::left ? left : -1.0 * left;
 }
 
-/// Whether the tool runs on the same side as the centre of the arc.
+/// Whether the tool is on the same side of the contour as the centre of the arc.
 bool is_inside(ContourSide side, const FlatArc& arc) {
     return (side == ContourSide::left) == (arc.turns > 0);
 }
@@ -37,11 +37,11 @@ double compensated_radius(const RadiusCompensation& compensation, const FlatArc&
                                              : radius + compensation.radius;
 }
 
-/// The programmed end of the last move and the directions of the contour there.
+/// The programmed end of the last move, with the directions of the contour before and after it.
 struct Corner {
     FlatPoint at;
     FlatPoint arriving, leaving;           // directions of the contour
-    FlatPoint tool_arriving, tool_leaving; // the tool centre beside each
+    FlatPoint tool_arriving, tool_leaving; // positions of the tool centre for each
 };
 
 Corner corner_before(const RadiusCompensation& compensation, const ContourMove& move) {
@@ -61,8 +61,9 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
-        // There is a gap between an arc that the tool passes on the outside and whatever is tangent
-        // to it. LinuxCNC tests the arc that leaves, and the one that arrives only before a line.
+        // There is a gap between the offset paths of an arc passed on the outside and of whatever
+        // is tangent to it. LinuxCNC tests the leaving arc, and the arriving arc only if a line
+        // follows.
         const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
         const bool between = arc && !is_inside(compensation.side, *arc);
         return between ? Bend::inside : Bend::outside;
@@ -127,7 +128,7 @@ CompensatedMoves end_waiting(RadiusCompensation& compensation, FlatPoint end) {
 }
 
 /// The check of LinuxCNC at inside corners and at G40: the waiting move must keep its direction.
-/// The entry is not checked.
+/// The entry is exempt.
 core::Result<void> check_direction(const RadiusCompensation& compensation, FlatPoint end) {
     if (compensation.waiting.empty() || compensation.entering || !turns_round(compensation, end))
         return {};
@@ -141,7 +142,7 @@ core::Result<void> check_direction(const RadiusCompensation& compensation, FlatP
                                          : ""));
 }
 
-/// Makes the move the waiting one, with its end as far as that is known.
+/// Makes a move the waiting one. Its end is preliminary until the next move is known.
 void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPoint tool_end,
                const std::optional<FlatArc>& arc) {
     compensation.waiting.push_back(
@@ -154,7 +155,7 @@ void wait_with(RadiusCompensation& compensation, const ContourMove& move, FlatPo
     compensation.tool = tool_end;
 }
 
-/// The circle through the start of the tool that meets the end as the programmed arc does.
+/// The circle through the start of the tool that has the tangent of the programmed arc at the end.
 std::optional<FlatArc> entry_arc(FlatPoint start, FlatPoint end, const FlatArc& programmed) {
     const FlatPoint to_centre = direction(programmed.centre - end);
     const FlatPoint chord = start - end;
@@ -172,7 +173,7 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
                                            compensation.radius, radius));
 }
 
-/// On Fanuc the entry ends beside the start of the next move, wherever that is.
+/// On Fanuc the entry ends at the offset start point of the next move.
 core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
                                               const ContourMove& move) {
     if (move.arc)
@@ -246,7 +247,7 @@ core::Result<CompensatedMoves> pass_straight(RadiusCompensation& compensation, c
     return moves;
 }
 
-/// Outside corner on LinuxCNC: an arc, or a straight line before a rapid.
+/// Outside corner on LinuxCNC: an arc; a straight line if a rapid follows.
 CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corner,
                             const ContourMove& move) {
     CompensatedMoves moves = end_waiting(compensation, corner.tool_arriving);
@@ -277,7 +278,7 @@ core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, con
     return end_waiting(compensation, met);
 }
 
-/// Ends the waiting moves and moves the tool to the start of the next move.
+/// Ends the waiting moves so that the tool is at the start of the next move.
 core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corner& corner,
                                     const ContourMove& move) {
     if (compensation.extends_corners && compensation.entering) {

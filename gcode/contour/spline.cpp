@@ -119,8 +119,8 @@ core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve) {
     const double last = curve.spans();
     const double step = last / static_cast<double>(curve.points.size() * 15);
     std::vector<SplinePoint> chords;
-    // The parameter is accumulated, not multiplied: whether the sum is still below the last knot
-    // after the last step but one decides whether there is one more chord.
+    // The parameter is accumulated, not multiplied: rounding of the sum decides whether there is
+    // one more chord before the last knot, and LinuxCNC accumulates.
     for (double parameter = step; parameter < last; parameter += step) {
         const SplinePoint at = point_at(curve, parameter);
         if (!std::isfinite(at.x) || !std::isfinite(at.y))

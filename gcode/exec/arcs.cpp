@@ -13,7 +13,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// An arc seen along its normal: coordinates along the plane's first and second axis.
+/// An arc in its plane: coordinates along the plane's first and second axis.
 struct SeenArc {
     core::SourceSpan where;
     std::string code; // G2 or G3, for messages
@@ -21,7 +21,8 @@ struct SeenArc {
     double start[2], end[2];
 };
 
-/// How far an R word may fall short of reaching the end (LinuxCNC: RADIUS_TOLERANCE).
+/// By how much the diameter from an R word may fall short of the distance to the end (LinuxCNC:
+/// RADIUS_TOLERANCE).
 constexpr double reach_tolerance = 0.00127;
 
 core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const double* centre) {
@@ -49,7 +50,7 @@ core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const d
     return {};
 }
 
-/// The offset words of the plane's axes, I for X, J for Y, K for Z.
+/// The centre words of the plane's axes: I for X, J for Y, K for Z.
 struct CentreWords {
     const Word* first;
     const Word* second;
@@ -87,7 +88,8 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
     return checked;
 }
 
-/// The centre lies on the line that halves the chord, on the side that R's sign and the turn say.
+/// The centre lies on the perpendicular bisector of the chord, on the side given by the sign of R
+/// and the direction of the arc.
 core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, double radius,
                                       double* centre) {
     const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
@@ -140,7 +142,7 @@ core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, con
                       arc.where);
 }
 
-/// The centre, with the check that the arc ends where it should.
+/// Finds the centre and checks that the arc ends at the programmed point.
 core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
                                double* centre) {
     auto found = centre_of_words(execution, arc, axes, centre);
@@ -182,9 +184,9 @@ constexpr double chord_tolerance = 0.001; // mm
 
 double& along(Position& place, size_t axis) { return *place[axis]; }
 
-/// An arc with R whose axes G51 scales unequally: on the machine it is an arc with the larger of
-/// the scales, between the scaled ends. Here it is written as chords, since the frame makes
-/// ellipses of arcs.
+/// Moves along an R arc whose axes G51 scales unequally. On the machine it is an arc between the
+/// scaled ends with the larger of the scale factors. It is emitted as chords, because the frame
+/// would turn an arc into an ellipse.
 ///
 /// Source: Fanuc 0i and 30i user's manuals, "Scaling of circular interpolation".
 core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& axes,

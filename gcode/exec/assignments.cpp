@@ -20,8 +20,8 @@ bool calls_macro(const Block& block) {
     });
 }
 
-/// The value of a word. In lengths and angles, but not in arguments of macros, ROUND may be to the
-/// smallest step of the control.
+/// The value of a word. In lengths and angles, but not in macro arguments, ROUND may round to the
+/// least increment of the control.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN, "Arithmetic and logic operation", ROUND; Haas mill
 ///         operator's manual 96-8000, "Notes on functions".
@@ -37,7 +37,7 @@ core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) 
                     assigning.parameters, arithmetic);
 }
 
-/// Words that turn out to be nothing are taken out: Fanuc's vacant variables.
+/// Evaluates the words and removes those whose value is vacant (Fanuc).
 core::Result<void> work_out_words(const Assigning& assigning) {
     std::vector<Word>& words = assigning.block.words;
     size_t kept = 0;
@@ -84,7 +84,7 @@ core::Result<void> set(const Assigning& assigning, const Assignment& entry, doub
                       assigning.result);
 }
 
-/// All right-hand sides are worked out before the first parameter is set.
+/// Evaluates all right-hand sides before setting the first parameter.
 core::Result<void> assign(const Assigning& assigning) {
     std::vector<Value>& values = assigning.values;
     values.clear();

@@ -8,7 +8,7 @@
 
 namespace gcode {
 
-/// A parameter that a block has set, and what it was before.
+/// A parameter set by a block, with its previous value.
 struct AssignmentUndo {
     bool is_named;
     double number;
@@ -24,11 +24,11 @@ struct Assigning {
     std::vector<AssignmentUndo>& undos; // receives the assignments in order
     std::vector<Value>& values;         // scratch space
     BlockCommands& result;
-    bool inch; // unit of lengths
+    bool inch; // lengths are in inches
 };
 
 /// Evaluates the words of a block and sets its parameters: first the words, then all right-hand
-/// sides, then the parameters; on some controls one by one in the order written.
+/// sides, then the parameters. Some controls do this one by one in the order written.
 ///
 /// Errors: those of the expressions and parameters.
 core::Result<void> work_out_block(const Assigning& assigning);
@@ -36,17 +36,17 @@ core::Result<void> work_out_block(const Assigning& assigning);
 /// Restores the old values of parameters.
 void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramParameters& parameters);
 
-/// Executes an assignment to #3000, an alarm, or #3006, a stop with a message. The message is the
+/// Executes an assignment to #3000 (alarm) or #3006 (stop with a message). The message is the
 /// comment of the block.
 ///
-/// Errors: invalid_value for an alarm, where the control stops.
+/// Errors: invalid_value for an alarm, at which the control stops.
 core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
                               Value value, core::SourceSpan where, BlockCommands& result);
 
-/// Warns once that the program reads a clock, which does not run here.
+/// Warns once that the program reads a clock, which is not simulated in real time.
 void note_clock(const Block& block, InterpreterState& state, BlockCommands& result);
 
-/// Emits what changed in the offsets since a block began.
+/// Emits the offsets if they changed during a block.
 void announce_offsets(const Offsets& before, const ModalState& modal, BlockCommands& result);
 
 } // namespace gcode

@@ -20,7 +20,7 @@ constexpr int rs274_g[] = {50,  51,  52,  53,  280, 281, 300, 301, 330, 331, 382
                            810, 820, 830, 840, 850, 860, 870, 880, 890, 920, 980};
 constexpr int rs274_m[] = {60, 480, 490, 500, 510, 520, 530, 620, 630, 640, 650, 660, 670, 680};
 
-// Codes with which the tool leaves its contour on Fanuc controls: reference points, machine
+// Codes by which the tool leaves the contour on Fanuc controls: reference points, machine
 // coordinates, offsets, canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
 constexpr int fanuc_g[] = {270, 280, 290,  300, 520, 530,  540, 541, 550, 560, 570, 580,
                            590, 730, 740,  760, 810, 820,  830, 840, 850, 860, 870, 880,
@@ -33,7 +33,7 @@ bool is_among(std::span<const int> codes, int code) {
 
 bool changes_plane(const Execution& execution, const CodeWord& entry) {
     constexpr int planes[] = {170, 180, 190, 171, 181, 191};
-    const Contour& contour = *execution.state.contour; // the mode already has the new plane
+    const Contour& contour = *execution.state.contour; // the modal state already has the new plane
     const Plane plane = contour.path ? contour.plane : execution.modal().plane;
     return entry.code->group == ModalGroup::plane
            && planes[static_cast<size_t>(plane)] != entry.code->tenths;
@@ -51,7 +51,7 @@ bool breaks_contour(const Execution& execution, const CodeWord& entry) {
            || (rs274 ? is_among(rs274_g, code) : is_among(fanuc_g, code));
 }
 
-/// Reports codes that would take the tool off its contour.
+/// Reports codes that would move the tool off the contour.
 core::Result<void> check_contour(Execution& execution) {
     const char* const on = execution.modal().compensation == Side::left ? "G41" : "G42";
     for (const CodeWord& entry : execution.statement.codes()) {
@@ -74,7 +74,7 @@ core::Result<void> check_contour(Execution& execution) {
     return {};
 }
 
-/// The number of the offset: from the D word, else from an earlier one, else that of the tool.
+/// The number of the offset: from the D word, else from an earlier D, else that of the tool.
 core::Result<int> radius_number(Execution& execution) {
     const Word* word = execution.statement.word('D');
     ModalState& modal = execution.modal();
@@ -90,8 +90,8 @@ core::Result<int> radius_number(Execution& execution) {
     return number;
 }
 
-/// The orientation of a turning tool: from the L word with G41.1, else from the tool table. 0 is a
-/// mill.
+/// The orientation of a turning tool: from the L word with G41.1, else from the tool table. 0 means
+/// a mill.
 core::Result<int> turning_orientation(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('L');
     int orientation = 0;
@@ -114,7 +114,7 @@ core::Result<int> turning_orientation(Execution& execution, const CodeWord& entr
                       word ? word->span : entry.word->span);
 }
 
-/// The scaling factor of G51 in the plane. It scales the contour but not the tool.
+/// The scale factor of G51 in the plane. It scales the contour but not the tool.
 core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord& entry) {
     const auto& scaling = execution.modal().transforms.scaling;
     if (!scaling) return 1.0;
@@ -149,7 +149,7 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
                                        written(*entry.word)));
         return 0.0;
     }
-    // Many shops use D31 for tool 1, so only the number of another tool is a mistake.
+    // Many shops use D31 for tool 1, so only the number of another tool is reported.
     const ModalState& modal = execution.modal();
     const bool is_another = modal.tool && number != value_of(*modal.tool)
                             && execution.environment.tool_diameters.count(core::ToolNumber(number));

@@ -9,8 +9,8 @@
 
 namespace gcode {
 
-/// A block being executed: its words, the state it changes and its commands. The functions below
-/// are the steps of a block; each executes its words, or does nothing.
+/// A block being executed: its words, the state it changes and its commands. Each of the functions
+/// below is a step: it executes its words, or does nothing.
 struct Execution {
     ProgramLibrary& library;
     const Environment& environment;
@@ -31,7 +31,7 @@ struct Execution {
         result.warnings.push_back({severity, where, std::move(message)});
     }
 
-    /// Emits a rapid or a feed and moves there.
+    /// Emits a rapid or a feed to `end` and updates the position.
     void traverse(const Position& end);
     void feed(const Position& end, double rate);
 };
@@ -42,19 +42,19 @@ bool in_machine_coordinates(const Execution& execution);
 /// The word that makes the block move: its motion or cycle code, else its first axis word.
 const Word& moving_word(const Execution& execution);
 
-/// The length a word gives, in mm.
+/// The length given by a word, in mm.
 double length_of(const Execution& execution, const Word& word);
 
-/// The same of the word with this letter; empty where the statement has none.
+/// The length of the word with this letter, in mm; empty if there is none.
 std::optional<double> length_word(const Execution& execution, char letter);
 
-/// The most commands that one block makes.
+/// The maximum number of commands of one block.
 inline constexpr size_t most_commands = 200000;
 
 /// Whether an H word without G43 changes the active length offset.
 bool changes_length_alone(const Execution& execution);
 
-/// The value of an axis word: mm, degrees for a rotary axis, half of it for X with G7.
+/// The value of an axis word: mm; degrees for a rotary axis; halved for X with G7.
 double axis_value(const Execution& execution, size_t axis, const Word& word);
 
 /// The end position given by the axis words, in program coordinates.
@@ -65,21 +65,21 @@ core::Result<Position> target_of(const Execution& execution);
 /// Errors: missing_value, invalid_value, syntax or unsupported where no single end follows.
 core::Result<void> place_by_angle(const Execution& execution, Position& target);
 
-/// The length of a straight way as feed rates count it: of X, Y and Z; of U, V and W where these
-/// stand; else of the rotary axes, in degrees. Empty where an end is not known.
+/// The length of a straight move as the feed rate counts it: along X, Y, Z; if these do not move,
+/// along U, V, W; else along the rotary axes, in degrees. Empty if an end is unknown.
 std::optional<double> way_between(const Position& from, const Position& to);
 
 /// The feed rate along a path in mm/min.
 ///
-/// Errors: missing_value without F (in this block under G93), without a turning spindle under G95,
-///         without a known path length under G93; invalid_value for F0.
+/// Errors: missing_value without F (with G93: in this block), with a stopped spindle under G95, or
+///         with an unknown path length under G93; invalid_value for F0.
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length);
 
-/// Changes the offsets without moving the machine: program coordinates change instead.
+/// Changes the offsets without moving the machine; the program coordinates change instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
 void change_offsets(ModalState& modal, const Offsets& offsets);
 
-core::Result<void> check_words(Execution& execution); // unused words
+core::Result<void> check_words(Execution& execution); // reports unused words
 core::Result<void> note_assumed_units(Execution& execution);
 core::Result<void> set_feed_mode(Execution& execution);         // G93 G94 G95
 core::Result<void> set_feed(Execution& execution);              // F
@@ -122,14 +122,14 @@ core::Result<void> move_along_arc(Execution& execution);             // G2 G3
 core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
 core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
 core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
-core::Result<void> call_macro(Execution& execution); // G65 to G67, and what G66 calls
+core::Result<void> call_macro(Execution& execution); // G65 to G67, and the calls of G66
 
-/// The diameter in the control's table that a block's D word means, mm; 0 with a warning where
-/// nothing is known of it.
+/// The diameter in the control's table for the D word of a block, mm; 0 with a warning if it is
+/// unknown.
 core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
 
-/// G10 L10 to L13: the table of tool offsets, P its number and R the value; L2 P0: the external
-/// work offset; L3, L50, L52: warned of and passed over.
+/// G10 L10 to L13: tool offset table, with P the number and R the value. L2 P0: external work
+/// offset. L3, L50, L52: ignored with a warning.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Entering compensation values from a program", and
 ///         B-63944EN, 7.2.2.

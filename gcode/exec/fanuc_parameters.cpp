@@ -17,11 +17,11 @@ constexpr int milliseconds_timer = 3001, hours_timer = 3002, date = 3011, time_o
 constexpr int tool_of_8000s = 8550;
 constexpr double seconds_of_block = 1.0;
 
-/// A stretch of variables that mean the same thing of one axis, offset or tool after another.
+/// A range of variables for consecutive axes, offsets or tools.
 struct Range {
     int first, last;
     Value (*read)(const InterpreterState& state, int index);
-    void (*write)(InterpreterState& state, int index, double value); // null: only shown
+    void (*write)(InterpreterState& state, int index, double value); // null: read-only
 };
 
 double shown(const InterpreterState& state, size_t axis, double value) {
@@ -36,7 +36,7 @@ Value shown(const InterpreterState& state, size_t axis, std::optional<double> va
     return value ? Value(shown(state, axis, *value)) : Value{};
 }
 
-// --- places ---
+// --- positions ---
 
 Value block_end(const InterpreterState& state, int index) {
     const auto axis = static_cast<size_t>(index);
@@ -49,7 +49,7 @@ Value machine_place(const InterpreterState& state, int index) {
                  machine_from_program(state.modal.offsets, state.modal.position)[axis]);
 }
 
-/// The place of the gauge line: tool compensation is in it.
+/// The position of the gauge line in program coordinates: includes the tool offset.
 Value work_place(const InterpreterState& state, int index) {
     const auto axis = static_cast<size_t>(index);
     std::optional<double> place = state.modal.position[axis];
@@ -64,7 +64,7 @@ Value tool_compensation(const InterpreterState& state, int index) {
 
 // --- work offsets ---
 
-/// Puts the table's values into effect; the machine stays.
+/// Activates the values of the table without moving the machine.
 void use_work_offset(InterpreterState& state) {
     Offsets offsets = state.modal.offsets;
     offsets.work = work_offset(*state.tables, offsets.active);
@@ -73,7 +73,7 @@ void use_work_offset(InterpreterState& state) {
     change_offsets(state.modal, offsets);
 }
 
-constexpr int stride = 20; // from one offset to the next
+constexpr int stride = 20; // variables per offset
 
 Value external_offset(const InterpreterState& state, int index) {
     const auto axis = static_cast<size_t>(index);
@@ -154,7 +154,7 @@ void set_tool_part(InterpreterState& state, int index, double value) {
     change_offsets(state.modal, offsets);
 }
 
-/// Haas: what #8550 names the tool of.
+/// Haas: data of the tool whose number is in #8550.
 template <Part part>
 Value named_tool_part(const InterpreterState& state, int) {
     const double tool = state.parameters->numbered(tool_of_8000s).value_or(0.0);
@@ -183,7 +183,7 @@ Value spindle_speed(const InterpreterState& state, int) {
     return state.modal.spindle == core::SpindleDirection::stopped ? 0.0 : state.modal.speed;
 }
 
-// No program has a clock while it is only read: it is always noon of the first day of 2020.
+// Programs are checked without a clock: it is always noon on 1 January 2020.
 Value day(const InterpreterState&, int) { return 20200101.0; }
 Value noon(const InterpreterState&, int) { return 120000.0; }
 
@@ -223,7 +223,7 @@ constexpr Range haas_ranges[] = {
     {2601, 2800, tool_part<diameter_wear>, set_tool_part<diameter_wear>},
     {3026, 3026, tool_in_spindle, nullptr},
     {3027, 3027, spindle_speed, nullptr},
-    {5041, 5049, block_end, nullptr}, // the tip: tool compensation is taken off
+    {5041, 5049, block_end, nullptr}, // the tip: without the tool offset
     {8553, 8553, named_tool_part<length>, nullptr},
     {8554, 8554, named_tool_part<length_wear>, nullptr},
     {8555, 8555, named_tool_part<diameter>, nullptr},
@@ -244,7 +244,7 @@ const Range* range_of(const Environment& environment, int number) {
     return haas ? range_of(haas_ranges, number) : range_of(fanuc_ranges, number);
 }
 
-/// Kept as the program sets them, and 0 before: inputs and outputs, timers, switches, counters.
+/// Variables stored as written, initially 0: inputs and outputs, timers, switches, counters.
 bool is_zero_at_first(int number) {
     return (number >= 1000 && number <= 1135) || (number >= 3001 && number <= 3010)
            || number == 3901 || number == 3902;
@@ -258,7 +258,7 @@ std::optional<Value> fanuc_parameter(const InterpreterState& state, const Enviro
     if (const Range* range = range_of(environment, number))
         return range->read(state, number - range->first);
     if (is_zero_at_first(number)) return Value(state.parameters->numbered(number).value_or(0.0));
-    // Where the last G31 met something; without one, where the machine is.
+    // The position at which the last G31 made contact; if there was none, the current position.
     if (number >= 5061 && number <= 5069 && !state.parameters->numbered(number))
         return work_place(state, number - 5061);
     return std::nullopt;

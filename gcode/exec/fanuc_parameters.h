@@ -6,26 +6,26 @@
 
 namespace gcode {
 
-/// The value of a system variable of Fanuc or Haas, as the dialect says; empty when the number is
-/// not one of them, a vacant value if it is unknown.
+/// The value of a system variable of Fanuc or Haas, depending on the dialect; empty when the number
+/// is not a system variable, a vacant value if it is unknown.
 ///
-/// Units:  lengths in those of the program, angles in degrees.
+/// Units:  lengths in the units of the program, angles in degrees.
 /// Source: Fanuc B-64304, system variables, with tool compensation memory C; Haas mill operator's
 ///         manual, macro system variables.
 std::optional<Value> fanuc_parameter(const InterpreterState& state, const Environment& environment,
                                      int number);
 
-/// Whether the number is a system variable that the control takes something from: offsets change at
-/// once, and the machine stays where it is.
+/// Sets a system variable that the control reacts to; returns whether the number is one. Offsets
+/// change at once, and the machine does not move.
 ///
-/// Errors: invalid_value when the control only shows it.
+/// Errors: invalid_value when the variable is read-only.
 core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environment& environment,
                                        int number, Value value, core::SourceSpan where);
 
-/// Whether this is a variable of the clock, which a program that is only read does not have.
+/// Whether this is a clock variable. Programs are checked without a clock.
 bool is_of_clock(int number);
 
-/// Lets the timers go on by a block, where the program has set them.
+/// Advances the timers by one block, if the program has set them.
 void advance_timers(InterpreterState& state);
 
 } // namespace gcode

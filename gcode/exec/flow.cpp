@@ -64,7 +64,7 @@ void leave(InterpreterState& state) {
 void leave_to(InterpreterState& state, uint32_t line) {
     Frame& frame = state.frames.back();
     if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
-    // Fanuc B-64304, modal call: the local variables are not set anew for each call.
+    // Fanuc B-64304, modal call: local variables keep their values between the calls.
     if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
         state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
     state.next = {frame.called_from.source, line};
@@ -72,7 +72,7 @@ void leave_to(InterpreterState& state, uint32_t line) {
 }
 
 core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
-    constexpr uint64_t interval = 16; // jumps between two looks
+    constexpr uint64_t interval = 16; // jumps between two checks
     const bool back = state.next.source != from.source || state.next.line <= from.line;
     LoopWatch& watch = state.watch;
     if (!back || ++watch.jumps % interval != 0) return {};

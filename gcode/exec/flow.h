@@ -16,38 +16,38 @@ struct FlowStep {
     BlockCommands& result;
 };
 
-/// Carries out a flow statement: sets the line that is run next, calls and returns.
+/// Executes a flow statement: sets the line to be executed next, calls and returns.
 ///
 /// Effect: on an error nothing has changed.
-/// Errors: syntax when the other end of a loop or branch is missing, or a subprogram is not to be
-///         found; invalid_value when calls go too deep.
+/// Errors: syntax when the other end of a loop or branch is missing, or a subprogram is not found;
+///         invalid_value when calls are nested too deeply.
 core::Result<void> run_flow(const FlowStep& step);
 
-/// Whether the condition of a block holds.
+/// Evaluates the condition of a block.
 core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
                                    const Dialect& dialect);
 
 /// Enters a new call level at its first line.
 ///
-/// Errors: invalid_value when calls go too deep.
+/// Errors: invalid_value when calls are nested too deeply.
 core::Result<void> enter(InterpreterState& state, const Environment& environment, Frame frame,
                          core::SourceSpan where);
 
-/// Returns from the current call level to the line after the call, or repeats the level.
+/// Returns from the current call level to the line after the call, or starts its next repetition.
 void leave(InterpreterState& state);
 
 /// Returns from the current call level to a line of the caller, without further repetitions.
 void leave_to(InterpreterState& state, uint32_t line);
 
-/// The line of a block number in a program, searched after a line, then from the start of the
-/// program; empty if there is none. In a file with several programs each ends where the next one
-/// begins.
+/// The line with a block number in a program. The search starts after a line and continues from the
+/// start of the program; empty if there is none. In a file with several programs, each ends where
+/// the next begins.
 std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
                                       uint32_t from);
 
-/// Checks whether a jump back has led to a state that the program was in before.
+/// Checks whether a backward jump has led to a state that the program was in before.
 ///
-/// Errors: invalid_value then: it will never end.
+/// Errors: invalid_value if so: the program would never end.
 core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from);
 
 } // namespace gcode

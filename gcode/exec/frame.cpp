@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t most_sources = 1000;
 
-/// Whether a name names a file in a folder, and neither another folder nor the way out of it.
+/// Whether a name is a plain file name that does not lead out of its folder.
 bool is_plain(const std::string& name) {
     return !name.empty() && name.find_first_of("/\\:") == std::string::npos && name != "."
            && name != ".." && name.find('\0') == std::string::npos;

@@ -18,7 +18,7 @@ struct FlowIndex;
 struct Program;
 enum class SiemensType : uint8_t;
 
-/// A line of one of the programs that are read; source 0 is the main program.
+/// A line of one of the programs that were read; source 0 is the main program.
 struct Place {
     uint32_t source = 0;
     uint32_t line = 1;
@@ -30,38 +30,38 @@ struct Place {
 struct ModalMacro {
     std::string name;
     Place begin;                 // its first line
-    LocalParameters arguments{}; // as the last call left them
+    LocalParameters arguments{}; // as left by the last call
     int64_t rounds = 1;
-    bool each_block = false; // G66.1: every block is its arguments
+    bool each_block = false; // G66.1: every block is a list of its arguments
 
     bool operator==(const ModalMacro&) const = default;
 };
 
-/// One level of calls; the first is the main program.
+/// One call level; the first is the main program.
 struct Frame {
     Place called_from;  // the line of the call
     Place begin;        // the first line of what was called
     std::string name{}; // of the subprogram; empty for the main program
     LocalParameters locals{};
-    bool shares_locals = false; // M98: #1 to #33 are those of the caller
+    bool shares_locals = false; // M98: uses #1 to #33 of the caller
     NamedValues named{};
-    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names other than REAL
-    std::map<uint32_t, int64_t> repeats{};                   // line of `repeat`: repetitions left
-    int64_t rounds_left = 0;                                 // of M98 L
+    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names that are not REAL
+    std::map<uint32_t, int64_t> repeats{};     // remaining repetitions, by the line of `repeat`
+    int64_t rounds_left = 0;                   // remaining repetitions of M98 L
     std::optional<LocalParameters> again{};    // locals at the start of each repetition
     Shared<std::optional<ModalState>> saved{}; // M70, M73
-    bool restores = false;                     // M73: at the return
-    size_t modal_macro = 0;                    // the G66 that called it, from 1; 0 for none
+    bool restores = false;                     // M73: restore at the return
+    size_t modal_macro = 0;                    // the G66 that called it, counted from 1; 0 for none
 
     bool operator==(const Frame&) const = default;
 };
 
-/// The programs of a run: the main one and the subprograms found so far. Files are only read from
-/// the folders of the search path.
+/// The programs of a run: the main program and the subprograms found so far. Files are only read
+/// from the folders of the search path.
 class ProgramLibrary {
 public:
-    /// The main program must outlive it. Without a search path, the main program's own folder
-    /// is searched.
+    /// The main program must outlive the library. Without a search path, subprograms are searched
+    /// in the folder of the main program.
     ProgramLibrary(const Program& main, const Dialect& dialect,
                    std::vector<std::string> search_path = {});
     ~ProgramLibrary();
@@ -72,16 +72,15 @@ public:
 
     /// The labels and flow statements of a program.
     ///
-    /// Cost: reads all of its lines the first time.
+    /// Cost: reads all lines of the program on the first call.
     const FlowIndex& index(uint32_t source);
 
-    /// The program in the first file of the search path that has one of these names; empty when
-    /// there is none.
+    /// The first file of the search path with one of these names; empty when there is none.
     ///
-    /// Errors: io and syntax as read_program, and when names leave the search path.
+    /// Errors: io and syntax as read_program; names that lead out of the search path.
     core::Result<std::optional<uint32_t>> find(const std::vector<std::string>& file_names);
 
-    /// The same without regard to case; the names are in capitals.
+    /// As find, but ignores case; the names are in capitals.
     core::Result<std::optional<uint32_t>>
     find_in_any_case(const std::vector<std::string>& file_names);
 

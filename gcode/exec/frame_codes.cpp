@@ -14,7 +14,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// A centre: its word, else where the machine is.
+/// A coordinate of a centre: from its word, else the current position.
 core::Result<double> centre_along(const Execution& execution, const CodeWord& entry, size_t axis) {
     if (const Word* word = execution.statement.word(axis_letters[axis]))
         return axis_value(execution, axis, *word);
@@ -42,7 +42,7 @@ core::Result<double> factor_of(Execution& execution, const Word& word) {
     return factor;
 }
 
-/// G51. A direction whose factor is 1 needs no centre.
+/// G51. An axis with a scale factor of 1 needs no centre.
 core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
     const Statement& statement = execution.statement;
     const Word* all = statement.word('P');
@@ -67,7 +67,7 @@ core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// G51.1, and Haas's G101: the axes that are named are reflected as well.
+/// G51.1, and Haas's G101: mirrors the named axes in addition to earlier ones.
 void set_mirror(Execution& execution) {
     MirrorImage& mirror = execution.modal().transforms.mirror;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -78,7 +78,7 @@ void set_mirror(Execution& execution) {
     }
 }
 
-/// G50.1, G100: for the axes that are named, or all.
+/// G50.1, G100: cancels mirroring of the named axes, or of all.
 void cancel_mirror(Execution& execution) {
     MirrorImage& mirror = execution.modal().transforms.mirror;
     const bool all = !execution.statement.has_axis_word();
@@ -89,7 +89,7 @@ void cancel_mirror(Execution& execution) {
         }
 }
 
-/// The angle of G68; under G91 it may be counted from the one before.
+/// The angle of G68; with G91 it may be relative to the previous angle.
 core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('R');
     if (!word)
@@ -106,7 +106,7 @@ core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry)
     return before->degrees + word->value;
 }
 
-/// G68: both words of the centre are absolute, also under G91.
+/// G68: both words of the centre are absolute, even with G91.
 core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     ModalState& modal = execution.modal();
     for (const char letter : {'I', 'J', 'K'})
@@ -119,7 +119,7 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     const PlaneAxes axes = axes_of(modal.plane);
     FEELER_TRY(const double degrees, rotation_angle(execution, entry));
     core::Vec3 centre(0.0);
-    // The words are coordinates as they would be without the rotation.
+    // The words of the centre are coordinates without the old rotation.
     ProgramTransforms without = modal.transforms;
     if (without.rotation) {
         without.rotation.reset();
@@ -138,7 +138,7 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// Refuses changes of the frame while cutter radius compensation is on.
+/// Reports changes of the frame while cutter radius compensation is on as an error.
 core::Result<void> check_contour_is_off(const Execution& execution, const CodeWord& entry) {
     const ModalState& modal = execution.modal();
     const int code = entry.code->tenths;
@@ -232,7 +232,7 @@ core::Result<void> check_arc_in_frame(const Execution& execution, const PlaneAxe
 
 namespace {
 
-/// The angles of I, J and K, degrees; 0 where a word is not there.
+/// The angles from I, J and K, degrees; 0 for missing words.
 core::Vec3 angles_of(const Execution& execution) {
     core::Vec3 angles(0.0);
     for (int i = 0; i < 3; ++i)
@@ -240,7 +240,7 @@ core::Vec3 angles_of(const Execution& execution) {
     return angles;
 }
 
-/// I about X, J about Y and K about Z of the work coordinates, in the order that Q's digits say.
+/// I about X, J about Y and K about Z of the work coordinates, in the order of the digits of Q.
 core::Result<core::Mat3> by_roll_pitch_yaw(const Execution& execution) {
     const core::Vec3 angles = angles_of(execution);
     int order = 123;
@@ -282,13 +282,13 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     return turned_about(2, angles[0]) * turned_about(0, angles[1]) * turned_about(2, angles[2]);
 }
 
-/// What a rotary axis of the machine counts more than that of the program.
+/// Difference between the machine's and the program's value of a rotary axis.
 double rotary_offset(const Offsets& offsets, size_t axis) {
     return offsets.work.origin[axis] + offsets.local[axis] + offsets.axis[axis].value_or(0.0)
            + offsets.tool[axis];
 }
 
-/// The values of the machine's axes with the tool along a direction of the program's coordinates.
+/// Machine axis values that point the tool in a direction of the program coordinates.
 core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
                                  const core::Vec3& direction) {
     const Offsets& offsets = execution.modal().offsets;

@@ -7,7 +7,7 @@
 namespace gcode {
 namespace {
 
-/// Home in machine coordinates; if not stated, machine zero, with a warning once.
+/// Home in machine coordinates; if not given, machine zero with a warning on first use.
 Position home_of(Execution& execution, const CodeWord& entry) {
     Position home =
         entry.code->tenths == tenths(28) ? execution.modal().home : execution.modal().second_home;
@@ -24,7 +24,7 @@ Position home_of(Execution& execution, const CodeWord& entry) {
     return home;
 }
 
-/// The place between, for G29: axes that this block does not name keep theirs.
+/// Stores the intermediate point for G29. Axes that this block does not name keep theirs.
 void keep_way_home(Execution& execution, bool all) {
     ModalState& modal = execution.modal();
     const Position machine = machine_from_program(modal.offsets, modal.position);
@@ -53,8 +53,8 @@ core::Result<void> go_home(Execution& execution) {
         moves[axis] = all || execution.statement.word(axis_letters[axis]);
         if (moves[axis]) machine[axis] = home[axis];
     }
-    // In a turned frame a motion along one axis of the machine changes all three coordinates. Where
-    // a work offset is turned, LinuxCNC goes along the axes of the program instead.
+    // In a rotated frame, a motion of one machine axis changes all three coordinates. With a
+    // rotated work offset, LinuxCNC moves along the axes of the program instead.
     const bool turned = modal.offsets.has_frame || is_fixed_to_work(modal.offsets);
     const Position place =
         program_from_machine(without_rotary_tool(modal.offsets), turned ? machine : home);
@@ -98,7 +98,7 @@ core::Result<void> return_from_home(Execution& execution) {
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (execution.statement.word(axis_letters[axis])) over[axis] = between[axis];
     execution.traverse(over);
-    // Under G91 the words count from the place between.
+    // With G91 the words are relative to the intermediate point.
     FEELER_TRY(const Position end, target_of(execution));
     execution.traverse(end);
     return {};

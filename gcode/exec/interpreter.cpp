@@ -36,7 +36,7 @@ struct BeforeBlock {
     Shared<SplineState> spline;
     SharedLanguageState language;
     bool speaks_iso;
-    // Only of blocks that call or return.
+    // Only saved for blocks that call or return.
     bool has_calls = false;
     std::vector<Frame> frames;
     std::vector<ModalMacro> modal_macros;
@@ -45,16 +45,17 @@ struct BeforeBlock {
 void keep(const InterpreterState& state, BeforeBlock& before);
 void restore(InterpreterState& state, const BeforeBlock& before);
 
-/// The levels of calls are large, so they are kept apart from the rest and only for few blocks.
+/// Call levels are large, so they are saved separately and only for the few blocks that change
+/// them.
 void keep_calls(const InterpreterState& state, BeforeBlock& before);
 void restore_calls(InterpreterState& state, const BeforeBlock& before); // if they were kept
 
-/// Warns once of a program that writes some lengths with a decimal point and some without one: on
-/// controls that count their smallest steps the latter are a thousandth of what they look like.
+/// Warns once if a program writes some lengths with a decimal point and some without: controls that
+/// count least increments read the latter as a thousandth.
 void note_points(const Block& block, InterpreterState& state, BlockCommands& result);
 
-/// Makes lengths and angles without a decimal point what a control that counts its smallest steps
-/// reads: 0.001 mm, 0.0001 inch, 0.001 degrees. F, P and counts are left as they are.
+/// Scales lengths and angles without a decimal point to least increments: 0.001 mm, 0.0001 inch,
+/// 0.001 degrees. F, P and counts are not changed.
 void count_smallest_steps(Block& block, const ModalState& modal);
 
 namespace {
@@ -67,7 +68,7 @@ bool changes_level(FlowKind kind) {
            || kind == FlowKind::call_program || is_siemens_statement(kind);
 }
 
-/// Whether a line is skipped without parsing its words, which may be for another machine.
+/// Whether a line is skipped without parsing. Its words may be for another machine.
 bool is_deleted(std::string_view line) {
     const size_t first = line.find_first_not_of(" \t");
     return first != std::string_view::npos && line[first] == '/';
@@ -87,7 +88,7 @@ struct Interpreter::Scratch {
     BeforeBlock before{};
     std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
-    std::unique_ptr<Environment> iso_environment{}; // Siemens, behind G291
+    std::unique_ptr<Environment> iso_environment{}; // Siemens, after G291
     std::unique_ptr<Scratch> iso{};
 
     Scratch& speaking(const InterpreterState& state);
@@ -107,7 +108,7 @@ struct Interpreter::Scratch {
     void place_in_lines();
 };
 
-/// The scratch data of the language at the current block: a control may have two.
+/// The scratch data for the active language. Siemens controls have two languages.
 Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
     if (!state.speaks_iso) return *this;
     if (!iso) {
@@ -118,7 +119,7 @@ Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& sta
     return *iso;
 }
 
-/// Reads the next line that says something; false at the end of the text.
+/// Reads the next line with something to execute; false at the end of the text.
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     while (true) {
         const Program& program = library.program(state.next.source);
@@ -127,7 +128,7 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         const uint32_t number = state.next.line++;
         std::string_view text = language.block_at ? language.block_at(program, number) : *found;
         if (language.lines_of) state.next.line = number + language.lines_of(text);
-        if (program.windows) text = line_text.assign(text); // flow statements look at other lines
+        if (program.windows) text = line_text.assign(text); // flow statements read other lines
         if (environment.block_delete && is_deleted(text)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
@@ -148,13 +149,13 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     }
 }
 
-/// Where O numbers are programs of their own, one ends where the next one begins.
+/// Where O numbers begin separate programs, a program ends where the next begins.
 bool Interpreter::Scratch::begins_another_program(const InterpreterState& state) const {
     const bool numbered = !block.words.empty() && block.words.front().letter == 'O';
     return numbered && dialect.has_fanuc_flow && (state.frames.size() > 1 || state.next_block > 0);
 }
 
-/// The words of the block before, which macros can ask for, and the time it took.
+/// Stores the words of the last block, which macros can read, and advances the timers.
 void Interpreter::Scratch::remember_words(InterpreterState& state) const {
     if (!remembers_words(dialect.system_parameters)) return;
     advance_timers(state);
@@ -162,8 +163,8 @@ void Interpreter::Scratch::remember_words(InterpreterState& state) const {
         if (const size_t number = argument_number(word.letter)) state.said[number] = word.value;
 }
 
-/// What the end of a text means: the end of the run, unless a subprogram should have gone back or
-/// does so by itself, so that there is more to read.
+/// Handles the end of a text: ends the run, or returns from a subprogram where the control does so.
+/// Otherwise an error in a subprogram. Returns whether there is more to read.
 core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
     if (state.ending == Ending::running && state.frames.size() > 1 && dialect.text_end_returns) {
         keep_calls(state, before);
@@ -195,7 +196,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, Place pla
     result.warnings.clear();
 }
 
-/// Gives the parameters of a block that failed their old values.
+/// Restores the parameters after a block that failed.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);
@@ -268,8 +269,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     return true;
 }
 
-/// Takes a line that is a straight move and nothing else; false when it is not, and nothing has
-/// changed then. Nothing can fail here, so nothing is kept to be taken back.
+/// Executes a line that is only a straight move; otherwise returns false and changes nothing. It
+/// cannot fail, so nothing is saved.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     if (!language.read_plain || environment.counts_smallest_steps
         || state.next_block >= environment.limits.blocks || asks_for_stop(state)
@@ -290,7 +291,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     return true;
 }
 
-/// Where a place of the block really is: a block may have several lines.
+/// Position in the file of a position in the block, which may have several lines.
 core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
     const bool several = language.position_in_file && where.line == block.line;
     return several ? language.position_in_file(block.text, where) : where;
@@ -301,7 +302,7 @@ void Interpreter::Scratch::place_in_lines() {
 }
 namespace {
 
-/// Gives a block that waits for later ones a text of its own.
+/// Gives a block that waits for later ones its own copy of its text.
 void keep_text(BlockCommands& result) {
     result.own_text = std::make_shared<const std::string>(result.text);
     result.text = *result.own_text;
@@ -355,7 +356,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
         error.where = scratch.place_of(error.where);
         if (error.file.empty()) error.file = scratch.library.program(source).file;
         if (state.contour->is_idle()) return tl::unexpected(std::move(error));
-        // What came before is complete but for the moves that waited for this one.
+        // Earlier blocks are complete except for moves that waited for this one.
         Contour& contour = state.contour.write();
         give_up(contour);
         contour.failure = std::move(error);
@@ -396,7 +397,7 @@ InterpreterState initial_state(const Environment& environment) {
         modal.offsets.machine = environment.machine.get();
     begin_with_kept_offsets(state, environment);
     Position start = environment.start;
-    // Axes beyond X, Y and Z without a stated position are at zero, or absent.
+    // Axes beyond X, Y and Z without a given position are at zero, or absent.
     for (size_t axis = 3; axis < axis_count; ++axis)
         if (!start[axis]) start[axis] = 0.0;
     modal.position = program_from_machine(modal.offsets, start);
@@ -495,7 +496,7 @@ bool has_code(const Block& block, char letter, Wanted wanted) {
     });
 }
 
-/// Whether X, Y, Z, I and J of a block are something else than lengths.
+/// Whether X, Y, Z, I and J of a block are not lengths.
 bool has_other_meanings(const Block& block) {
     return has_code(block, 'G', [](double code) {
         return code == 4.0 || code == 10.0 || code == 65.0 || code == 66.0 || code == 66.1;
@@ -530,7 +531,7 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
 
 void count_smallest_steps(Block& block, const ModalState& modal) {
     const bool waits = has_code(block, 'G', [](double code) { return code == 4.0; });
-    if (waits) return; // X is a time, and counts milliseconds anyway
+    if (waits) return; // X is a time; without a point it is in milliseconds anyway
     const bool to_inch = has_code(block, 'G', [](double code) { return code == 20.0; });
     const bool to_mm = has_code(block, 'G', [](double code) { return code == 21.0; });
     const bool inch = to_inch || (modal.unit == LengthUnit::inch && !to_mm);

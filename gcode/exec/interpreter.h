@@ -26,28 +26,28 @@ struct SplineState;
 /// Whether and how a program ended.
 enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
 
-/// Finds endless loops: stores the hash of one state at growing intervals, so that a state that
-/// recurs is found however long the loop is.
+/// Finds endless loops. Stores the hash of one state at growing intervals, so that a recurring
+/// state is found however long the loop is.
 ///
 /// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
 struct LoopWatch {
     uint64_t jumps = 0, next_note = 1, noted = 0;
 };
 
-/// Whether a program writes lengths with a decimal point, without one, or both ways.
+/// Whether a program has written lengths with a decimal point, without one, or both.
 struct DecimalPoints {
     bool present = false, missing = false, said = false;
 
     bool operator==(const DecimalPoints&) const = default;
 };
 
-/// The state between two blocks. A plain value: copy it to go back in time. Copies share large
-/// parts until one of them changes them.
+/// The state between two blocks. A plain value: copy it to step back. Copies share large members
+/// until one of them changes.
 struct InterpreterState {
     InterpreterState();
 
     ModalState modal;
-    Place next; // the line that is read next
+    Place next; // the line to be read next
     uint32_t next_block = 0;
     bool tape_open = false; // after a %
     bool said_unit = false; // the note about assumed units was issued
@@ -57,32 +57,32 @@ struct InterpreterState {
     Ending ending = Ending::running;
     std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
     std::vector<ModalMacro> modal_macros;              // G66, in the order programmed
-    LocalParameters said{}; // Fanuc: the last words, by the numbers of arguments
+    LocalParameters said{}; // Fanuc: the last values of words, by argument number
     Shared<Parameters> parameters;
     Shared<Tables> tables;
     Shared<Contour> contour; // blocks held back by cutter radius compensation
     Shared<SplineState> spline;
     SharedLanguageState language;
-    bool speaks_iso = false; // Siemens: ISO codes since G291
+    bool speaks_iso = false; // Siemens: ISO mode since G291
     LoopWatch watch;
     RuleWatch rules;
 };
 
-/// Whether a program continues in the same way from two states: everything is equal except the
-/// memory of the rules and of the search for endless loops.
+/// Whether a program continues identically from two states: everything is equal except the data of
+/// the rules and of the search for endless loops.
 bool continue_alike(const InterpreterState& a, const InterpreterState& b);
 
-/// Whether blocks wait for later ones, for cutter radius compensation or a corner.
+/// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.
 bool holds_blocks_back(const InterpreterState& state);
 
-/// A hash of everything that decides how a program continues: all but the count of blocks and the
+/// A hash of everything that determines how a program continues: all but the block count and the
 /// search for endless loops.
 uint64_t digest_of(const InterpreterState& state);
 
 /// The state before the first block.
 InterpreterState initial_state(const Environment& environment);
 
-/// Executes programs block by block. It holds no state of a program itself.
+/// Executes programs block by block. It has no program state of its own.
 class Interpreter {
 public:
     /// The library and the environment must outlive it.
@@ -92,9 +92,8 @@ public:
     /// Executes the next block that does something. The result is valid until the next call; null
     /// when the program has ended (see `state.ending`).
     ///
-    /// Errors: those of parse_line and of the codes, with file, line, column and word; programs
-    ///         that never end, as far as that can be seen. Nothing has changed then: `state` is as
-    ///         before the block at fault.
+    /// Errors: those of parse_line and of the codes, with file, line, column and word; endless
+    ///         loops, where they can be recognised. Then `state` is as before the faulty block.
     /// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
     core::Result<const BlockCommands*> next(InterpreterState& state);
 
@@ -107,9 +106,9 @@ private:
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state);
 
-/// A whole program, which is not read in windows, up to its end or its first error.
+/// The result of running a whole program, which is not read in windows, to its end or first error.
 struct Run {
-    std::shared_ptr<ProgramLibrary> library; // what the blocks' texts refer to
+    std::shared_ptr<ProgramLibrary> library; // owns the texts that blocks refer to
     std::vector<BlockCommands> blocks;
     std::optional<Warning> ending; // as ending_warning
     std::optional<core::Error> error;

@@ -6,7 +6,7 @@ namespace gcode {
 
 class Digest;
 
-/// What a language stores between two blocks beside the modes.
+/// What a language stores between two blocks in addition to the modes.
 class LanguageState {
 public:
     virtual ~LanguageState() = default;
@@ -15,7 +15,7 @@ public:
     virtual void add_to(Digest& digest) const = 0;
 };
 
-/// The state of one language. A function `add(Digest&, const T&)` must exist.
+/// The state of one language. Requires a function `add(Digest&, const T&)`.
 template <typename T>
 class StateOf final : public LanguageState {
 public:
@@ -30,8 +30,8 @@ public:
     void add_to(Digest& digest) const override { add(digest, value); }
 };
 
-/// The state of the language of a program; copies share it until one of them is written to. Empty
-/// for languages without one.
+/// The language state of a program. Copies share it until one of them is written to. Empty for
+/// languages without state.
 class SharedLanguageState {
 public:
     SharedLanguageState() = default;
@@ -39,7 +39,7 @@ public:
 
     const LanguageState* get() const { return state_.get(); }
 
-    /// The language must be the one whose state is T.
+    /// T must be the state type of the active language.
     template <typename T>
     const T& as() const {
         return static_cast<const StateOf<T>&>(*state_).value;

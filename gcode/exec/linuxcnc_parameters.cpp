@@ -20,7 +20,7 @@ bool is_axis_of(int number, int first) {
     return number >= first && number < first + static_cast<int>(axis_count);
 }
 
-/// A length as parameters hold it; angles stay angles.
+/// A value in the units of a parameter; angles are not converted.
 double shown(double value, size_t axis, LengthUnit unit) {
     return is_rotary(axis) ? value : from_mm(value, unit);
 }
@@ -33,10 +33,10 @@ Value of_position(const Position& position, int number, int first, LengthUnit un
     return shown(position[axis].value_or(0.0), axis, unit);
 }
 
-/// Which work offset a number is of, and which of its values.
+/// The work offset of a parameter number, and which of its values.
 struct OffsetPlace {
     size_t offset;
-    int value; // 0 to 8 an axis, 9 the rotation
+    int value; // 0 to 8: an axis; 9: the rotation
 };
 
 std::optional<OffsetPlace> offset_place(int number) {
@@ -54,7 +54,7 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
     const auto entry = state.tables->lengths.find(core::OffsetNumber(tool));
     const LengthOffset known =
         entry != state.tables->lengths.end() ? entry->second : LengthOffset{};
-    // Of the tool in the spindle, whatever offset is on.
+    // Values of the tool in the spindle, whether or not its offset is active.
     if (is_axis_of(number, first_tool_offset)) {
         const auto axis = static_cast<size_t>(number - first_tool_offset);
         const double value =
@@ -68,7 +68,7 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
     return static_cast<double>(known.orientation);
 }
 
-/// The motion code in tenths as #<_motion_mode> has it.
+/// The motion code in tenths, as in #<_motion_mode>.
 double motion_mode(const ModalState& modal) {
     if (modal.cycle) return modal.cycle->code;
     return modal.motion ? tenths_of(*modal.motion) : tenths(80);

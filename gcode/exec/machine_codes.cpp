@@ -31,7 +31,7 @@ core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// M66: the input is unknown; the program continues as if it stayed off.
+/// M66: the state of the input is unknown; the program continues as if it were off.
 core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
     const bool digital = execution.statement.word('P') != nullptr;
     const bool analog = execution.statement.word('E') != nullptr;

@@ -26,7 +26,7 @@ core::Result<void> set_feed_mode(Execution& execution) {
         mode = FeedMode::per_minute;
         break;
     }
-    // A rate of one mode means nothing in another.
+    // A feed rate of one mode has no meaning in another.
     const bool clears = execution.dialect.feed_mode_clears_feed && mode != FeedMode::inverse_time;
     if (mode != before || clears) execution.modal().feed.reset();
     return {};
@@ -65,7 +65,7 @@ core::Result<void> set_speed(Execution& execution) {
 
 namespace {
 
-/// M19 R P Q: an angle, the way there and the longest time for it.
+/// Checks M19 R P Q: angle, direction, and maximum time.
 core::Result<void> check_orientation(const Execution& execution, const CodeWord& entry) {
     if (entry.code->tenths != tenths(19)) return {};
     const Word* angle = execution.statement.word('R');
@@ -178,7 +178,7 @@ core::Result<void> select_plane(Execution& execution) {
 
 namespace {
 
-/// Reinterprets the stored words of a cycle in other units: LinuxCNC keeps the numbers.
+/// Converts the stored words of a cycle after a change of units: LinuxCNC keeps the numbers.
 void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
     const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
     for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})
@@ -274,13 +274,13 @@ namespace {
 
 bool has_tool_offset(const ModalState& modal) { return modal.offsets.tool != AxisValues{}; }
 
-/// F as the control stores it: in the units and the feed mode in which it was programmed.
+/// F as stored by the control: in the units and feed mode in which it was programmed.
 double feed_number(const ModalState& modal) {
     const double feed = modal.feed.value_or(0.0);
     return modal.feed_mode == FeedMode::inverse_time ? feed : from_mm(feed, modal.unit);
 }
 
-/// The feed is restored with one decimal, and not at all from G93.
+/// The feed as restored: rounded to one decimal, and not restored at all from G93.
 std::optional<double> restored_feed(const ModalState& now, const ModalState& saved) {
     if (saved.feed_mode == FeedMode::inverse_time) return std::nullopt;
     const double number = feed_number(saved);
@@ -293,14 +293,15 @@ double restored_speed(const ModalState& now, const ModalState& saved) {
     return saved.speed == now.speed ? now.speed : std::round(saved.speed);
 }
 
-/// Mist is noted before flood: of what was on, only what is noted otherwise now is switched.
+/// As on LinuxCNC: coolant that was on is switched on; coolant is switched off only if both were
+/// off.
 void restore_coolant(ModalState& modal, const ModalState& saved) {
     if (!saved.mist && !saved.flood) modal.mist = modal.flood = false;
     modal.mist |= saved.mist;
     modal.flood |= saved.flood;
 }
 
-/// What was off stays as it is, and with the feed override both come back.
+/// Overrides that were on are enabled. A changed feed override also enables the speed override.
 void restore_overrides(ModalState& modal, const ModalState& saved) {
     if (saved.feed_override != modal.feed_override) {
         modal.feed_override |= saved.feed_override;

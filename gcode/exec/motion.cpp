@@ -60,7 +60,7 @@ double axis_value(const Execution& execution, size_t axis, const Word& word) {
 
 namespace {
 
-/// G53 with @ or ^, which are about the origin of the program.
+/// Reports @ or ^ with G53 as an error: they are relative to the program origin.
 core::Result<void> refuse_polar_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* word = statement.polar_radius ? statement.polar_radius : statement.polar_angle;
@@ -72,8 +72,8 @@ core::Result<void> refuse_polar_words(const Execution& execution) {
                       word->span);
 }
 
-/// @ and ^: X and Y by their distance from the origin and the angle there, in every plane. What is
-/// not said is that of the present place.
+/// @ and ^: X and Y from the distance to the origin and the angle, in every plane. A missing one
+/// keeps the value of the current position.
 core::Result<void> place_polar(const Execution& execution, Position& target) {
     const Statement& statement = execution.statement;
     const Word& first = statement.polar_radius ? *statement.polar_radius : *statement.polar_angle;

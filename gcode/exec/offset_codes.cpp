@@ -9,7 +9,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// Which work offset a P word means: 1 is G54, 0 the active one.
+/// The work offset of a P word: 1 is G54, 0 the active one.
 core::Result<size_t> work_offset_index(const Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('P');
     if (!word)
@@ -24,7 +24,7 @@ core::Result<size_t> work_offset_index(const Execution& execution, const CodeWor
     return number > 0 ? static_cast<size_t>(number - 1) : execution.modal().offsets.active;
 }
 
-/// The origin or shift as the words of G10 L2 leave it. Under G91 some controls add to it.
+/// Writes the axis words of G10 L2 to an origin or shift. With G91 some controls add them.
 void write_values(const Execution& execution, AxisValues& values) {
     const bool adds = execution.dialect.offset_writes_follow_g91
                       && execution.modal().distance == DistanceMode::incremental;
@@ -33,13 +33,13 @@ void write_values(const Execution& execution, AxisValues& values) {
             values[axis] = (adds ? values[axis] : 0.0) + axis_value(execution, axis, *word);
 }
 
-/// G10 L2: the origin itself, and how far it is turned.
+/// G10 L2: the origin and its rotation.
 void write_origin(const Execution& execution, WorkOffset& offset) {
     write_values(execution, offset.origin);
     if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
 }
 
-/// G10 L20: the origin that makes the present place read as the words say.
+/// G10 L20: the origin for which the current position has the given coordinates.
 core::Result<void> write_origin_here(const Execution& execution, WorkOffset& offset) {
     const ModalState& modal = execution.modal();
     const Position machine = machine_from_program(modal.offsets, modal.position);
@@ -62,14 +62,15 @@ core::Result<void> write_origin_here(const Execution& execution, WorkOffset& off
                 word->span);
         read[axis] = axis_value(execution, axis, *word);
     }
-    // The origin moves by what the wanted reading is off from the machine's place.
+    // The origin moves by the difference between the machine position and where these coordinates
+    // would be.
     const Position meant = machine_from_program(there, read);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (meant[axis] && machine[axis]) offset.origin[axis] += *machine[axis] - *meant[axis];
     return {};
 }
 
-/// Whether R may turn a work offset: not on all controls.
+/// Checks whether this control allows R to rotate a work offset.
 core::Result<void> check_turn(const Execution& execution) {
     const Word* word = execution.statement.word('R');
     if (!word || execution.dialect.work_offsets_turn) return {};
@@ -79,14 +80,15 @@ core::Result<void> check_turn(const Execution& execution) {
         word->span);
 }
 
-/// The offset as it is in effect: what the table has, and Fanuc's external one.
+/// The effective offset: the one in the table plus Fanuc's external one.
 WorkOffset in_effect(const Tables& tables, size_t index) {
     WorkOffset offset = work_offset(tables, index);
     for (size_t axis = 0; axis < axis_count; ++axis) offset.origin[axis] += tables.external[axis];
     return offset;
 }
 
-/// The work offset a code selects: G54 to G59.3; G54.1 P, G54 P, Haas's G154 P and G110 to G129.
+/// The work offset selected by a code: G54 to G59.3; G54.1 P, G54 P; Haas's G154 P and G110 to
+/// G129.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN, 7.2.6 "Adding workpiece coordinate systems"; Haas
 ///         mill operator's manual 96-8000, G110 to G129 and G154.
@@ -136,8 +138,8 @@ void use(Execution& execution, const Offsets& offsets) {
     execution.emit(SetOffset{offsets});
 }
 
-/// After G10 LinuxCNC works out where it stands as if there were no G92 or G52. Where the offset is
-/// turned otherwise than before, it is then wrong about it.
+/// After G10, LinuxCNC recomputes its position ignoring G92 or G52. If the rotation of the offset
+/// has changed, that position is wrong.
 ///
 /// Source: rs274 2.9, probed.
 void use_written_offset(Execution& execution, const CodeWord& entry) {
@@ -237,7 +239,7 @@ core::Result<void> write_offset(Execution& execution) {
 
 namespace {
 
-/// G92 and G52 without an axis.
+/// Checks that G92 or G52 names an axis.
 core::Result<void> need_an_axis(const Execution& execution) {
     if (execution.statement.has_axis_word() || !execution.dialect.local_offset_is_axis_offset)
         return {};
@@ -285,7 +287,7 @@ core::Result<void> set_axis_offset(Execution& execution) {
         offsets.axis = modal.suspended_axis = zero_position;
         break;
     case tenths(92, 2):
-        offsets.axis = zero_position; // what G92 said stays for G92.3
+        offsets.axis = zero_position; // the offset of G92 stays stored for G92.3
         break;
     case tenths(92, 3):
         offsets.axis = modal.suspended_axis;
@@ -297,8 +299,8 @@ core::Result<void> set_axis_offset(Execution& execution) {
             if (!word) continue;
             const std::optional<double> place = modal.position[axis];
             const double wanted = axis_value(execution, axis, *word);
-            // The machine stays and this place takes a new name; of an unknown place, only the
-            // name is known.
+            // The machine does not move; its position gets the given coordinate. From an unknown
+            // position only that coordinate is known, not the offset.
             if (place && offsets.axis[axis])
                 *offsets.axis[axis] += *place - wanted;
             else
@@ -320,7 +322,7 @@ namespace {
 
 using core::OffsetNumber;
 
-/// Adds under G91, replaces under G90.
+/// Adds with G91, replaces with G90.
 void write(const Execution& execution, double value, double& place) {
     const bool adds = execution.dialect.offset_writes_follow_g91
                       && execution.modal().distance == DistanceMode::incremental;

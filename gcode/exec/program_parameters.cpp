@@ -14,7 +14,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// The number of a parameter; a computed one may be off by rounding.
+/// The number of a parameter. A computed number may be off by a rounding error.
 core::Result<int> parameter_number(double number, int lowest, const Dialect& dialect,
                                    core::SourceSpan where) {
     const double whole = std::round(number);
@@ -34,7 +34,7 @@ core::Result<int> parameter_number(double number, int lowest, const Dialect& dia
 ProgramParameters::ProgramParameters(InterpreterState& state, const Environment& environment)
     : state_(state), environment_(environment), dialect_(gcode::dialect(environment.dialect)) {}
 
-/// The call level whose local parameters apply: M98 uses those of its caller.
+/// The call level whose local parameters are used: M98 uses those of its caller.
 Frame& ProgramParameters::locals() {
     size_t level = state_.frames.size() - 1;
     while (level > 0 && state_.frames[level].shares_locals) --level;
@@ -49,7 +49,7 @@ bool ProgramParameters::is_global(std::string_view name) const {
     return name.starts_with('_') && !dialect_.names_are_declared;
 }
 
-/// Names that begin with `_` are of all levels, others of the one that runs.
+/// Names that begin with `_` are global, others local to the current call level.
 const NamedValues& ProgramParameters::named_values(std::string_view name) const {
     return is_global(name) ? state_.parameters->named() : state_.frames.back().named;
 }

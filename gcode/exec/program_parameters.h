@@ -6,7 +6,7 @@
 
 namespace gcode {
 
-/// The parameters as expressions of a program see them: its own ones and the system variables.
+/// The parameters as seen by expressions: those of the program and the system variables.
 class ProgramParameters : public ParameterReader {
 public:
     ProgramParameters(InterpreterState& state, const Environment& environment);
@@ -15,15 +15,15 @@ public:
     core::Result<Value> named(std::string_view name, core::SourceSpan where) const override;
     bool exists(std::string_view name) const override;
 
-    /// Errors: invalid_value when there is no such parameter, or the control keeps it itself.
+    /// Errors: invalid_value when there is no such parameter, or it is read-only.
     core::Result<void> set_numbered(double number, Value value, core::SourceSpan where);
     core::Result<void> set_named(std::string_view name, Value value, core::SourceSpan where);
 
     /// The stored value of a number, ignoring system variables; empty if there is none.
     Value kept(double number) const;
 
-    /// Restores the stored value of a parameter, or removes it. Offsets and modes that follow a
-    /// system variable are not touched.
+    /// Restores the stored value of a parameter, or removes it. Offsets and modes set through a
+    /// system variable are not changed.
     void restore_numbered(double number, Value kept);
     void restore_named(std::string_view name, Value value);
 
@@ -39,23 +39,22 @@ private:
     const Dialect& dialect_;
 };
 
-/// The parameters in which a control shows and takes its state; empty when a number or name is not
-/// one of them.
+/// The value of a system variable; empty when the number or name is not one.
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       int number);
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       std::string_view name);
 
-/// Whether the number is one in which the control takes its state; the state follows then.
+/// Sets a system variable and the state it controls; returns whether the number is one.
 ///
-/// Errors: invalid_value when the control only shows it.
+/// Errors: invalid_value when the variable is read-only.
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
                                         int number, Value value, core::SourceSpan where);
 
-/// Takes the parameters of the environment over into the state before the first block.
+/// Copies the parameters of the environment to the state before the first block.
 void load_parameters(InterpreterState& state, const Environment& environment);
 
-/// A value as a variable of a type holds it.
+/// Converts a value to the type of a variable.
 double held_as(SiemensType type, double value);
 
 } // namespace gcode

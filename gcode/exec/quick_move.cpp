@@ -9,7 +9,7 @@ namespace {
 constexpr MotionCode rapid = MotionCode::rapid;
 constexpr MotionCode straight = MotionCode::straight;
 
-/// The index of an axis by its letter; axis_count for a letter that is none.
+/// The index of an axis by its letter; axis_count for other letters.
 constexpr std::array<uint8_t, 26> axes_by_letter = [] {
     std::array<uint8_t, 26> axes{};
     axes.fill(axis_count);
@@ -18,7 +18,7 @@ constexpr std::array<uint8_t, 26> axes_by_letter = [] {
     return axes;
 }();
 
-/// A block as it is read: what it changes.
+/// The changes that a block makes, collected while it is read.
 struct Move {
     MotionCode motion = rapid;
     std::optional<double> feed{}; // mm/min

@@ -6,14 +6,14 @@
 
 namespace gcode {
 
-/// Whether the modes are such that a block of G0, G1, axis words, F and N is nothing but a straight
-/// move: no cycle, no compensation, no map of coordinates that a word may change, feeds by the
-/// minute, and no rule, macro or contour that waits for a motion.
+/// Whether, in the active modes, a block of G0, G1, axis words, F and N is only a straight move: no
+/// cycle, no compensation, no coordinate transform that a word may change, feed per minute, and no
+/// rule, macro or contour waiting for a motion.
 bool moves_quickly(const InterpreterState& state);
 
-/// Carries out such a block; false when it holds anything else, and nothing has changed then.
+/// Executes such a block; if it contains anything else, returns false and changes nothing.
 ///
-/// The outcome is that of the steps of execution.h, at a third of their cost.
+/// The result is that of the steps in execution.h, at a third of their cost.
 bool take_quick_move(const Block& block, InterpreterState& state, BlockCommands& result);
 
 } // namespace gcode

@@ -23,20 +23,20 @@ bool feeds(const BlockCommands& block) {
     return std::any_of(block.commands.begin(), block.commands.end(), is_feed);
 }
 
-/// Both runs at the first feed.
+/// The states of both runs at the first feed.
 struct Meeting {
-    ModalState before, after; // of the run from the beginning, around that block
+    ModalState before, after; // of the run from the start, around that block
     ModalState alone;         // of the run from the line
     bool alone_failed = false;
-    std::optional<MotionCode> motion; // that a block on the way went on with, and the other had not
+    std::optional<MotionCode>
+        motion; // modal motion code of an earlier block that the other run lacked
 };
 
 bool is_motion(const CanonicalCommand& command) {
     return is_feed(command) || std::holds_alternative<StraightTraverse>(command);
 }
 
-/// Whether a block moves as the motion code before it says: not home, by a cycle, or to a place of
-/// the machine.
+/// Whether a block moves by the modal motion code: not home, in a cycle, or to a machine position.
 bool goes_on_moving(const BlockCommands& block) {
     const auto has = [&](std::string_view code) {
         return block.text.find(code) != std::string_view::npos;
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    /// Whether a value differs that the failed block would not have set itself.
+    /// Whether a value differs and the failed block would not have set it.
     template <typename Value>
     bool lacks(Value ModalState::*value) const {
         if (at_.after.*value == at_.alone.*value) return false;
@@ -143,7 +143,7 @@ private:
     std::vector<std::string> needs_;
 };
 
-/// Lets both runs go on side by side; empty when no feed follows.
+/// Runs both in step up to the first feed; empty when no feed follows.
 std::optional<Meeting> meet(ProgramLibrary& library, const Environment& environment,
                             InterpreterState whole, InterpreterState alone) {
     Interpreter first(library, environment), second(library, environment);

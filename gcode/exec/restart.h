@@ -8,24 +8,24 @@
 
 namespace gcode {
 
-/// A program that is started in its middle.
+/// A program started in the middle.
 struct Restart {
-    InterpreterState state;           // of a control that was just switched on, at that line
-    uint32_t line = 0;                // where it begins
-    std::vector<std::string> missing; // words that the lines before have set, that the cut needs
-                                      // and that the lines from here on do not repeat
+    InterpreterState state; // of a control just switched on, at that line
+    uint32_t line = 0;      // where the program starts
+    std::vector<std::string>
+        missing; // words set by earlier lines that the cut needs and that later lines do not repeat
 };
 
-/// The line that a user means by its number in the file, as "120", or by its block number, as
-/// "N210" (of a Heidenhain program as "210").
+/// The line that a user means: its number in the file, as "120", or its block number, as "N210" (in
+/// a Heidenhain program "210").
 ///
 /// Errors: invalid_value when the program has no such line.
 core::Result<uint32_t> line_meant(const Program& program, const Dialect& dialect,
                                   std::string_view text);
 
-/// The start of a program at a line, with the control in the state after switching on and `tool` in
-/// its spindle. The program is run twice to its first feed after that line, from its own beginning
-/// and from the line, and what then differs is missing.
+/// Prepares the start of a program at a line, with the control as after switching on and `tool` in
+/// the spindle. Runs the program twice up to the first feed after that line, from the start and
+/// from the line; words by which the two states differ are missing.
 ///
 /// Errors: invalid_value when a run from the start of the program never reaches that line.
 core::Result<Restart> restart_at(ProgramLibrary& library, const Environment& environment,

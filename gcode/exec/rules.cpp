@@ -30,7 +30,7 @@ bool has_code(const Execution& execution, ModalGroup group, int tenths_of_code) 
     return entry && entry->code->tenths == tenths_of_code;
 }
 
-/// G28, G30, G53: places of the machine, not of the work; G53.1 turns rotary axes alone.
+/// G28, G30, G53: targets in machine coordinates. G53.1 moves only rotary axes.
 bool goes_to_machine_place(const Execution& execution) {
     if (has_g53_1(execution)) return true;
     const CodeWord* action = execution.statement.of(ModalGroup::action);
@@ -45,7 +45,7 @@ void advise(Execution& execution, SourceSpan where, std::string_view rule, std::
         {severity, where, std::move(message), rule, std::move(cure)});
 }
 
-/// What turns, scales or offsets the path and is still on, for a sentence.
+/// Lists the active modes that rotate, scale or offset the path, for a message.
 std::string left_over(const ModalState& modal, bool at_end) {
     std::string found;
     const auto add = [&](bool on, std::string_view what) {
@@ -88,13 +88,13 @@ void look_at_length_codes(Execution& execution) {
     if (!cancels) watch.lacks_length = false;
 }
 
-/// The first Z motion in work coordinates tells whether the length of the tool was thought of.
+/// The first Z move in work coordinates shows whether the program handles the tool length.
 void look_at_length(Execution& execution, const ModalState& before) {
     RuleWatch& watch = execution.state.rules;
     if (!watch.lacks_length && !watch.length_cancelled) return;
     const ModalState& modal = execution.modal();
     if (goes_to_machine_place(execution) || modal.position[2] == before.position[2]) return;
-    if (!moves(execution)) return; // a frame gave the place another name
+    if (!moves(execution)) return; // a frame changed the coordinates, not the position
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
     const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
@@ -114,7 +114,7 @@ void look_at_length(Execution& execution, const ModalState& before) {
         advise(execution, where, "length-offset-cancelled",
                fmt::format("tool {} moves down after G49 cancelled its length offset", tool), cure);
     else
-        return; // up and away after G49
+        return; // moves up after G49
     watch.lacks_length = watch.length_cancelled = false;
 }
 

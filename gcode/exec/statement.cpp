@@ -16,7 +16,7 @@ bool is_cycle(const Code& code) {
     return code.group == ModalGroup::cycle && code.tenths != tenths(80);
 }
 
-/// The code of the block that this one cannot stand beside. G80 gets on with any motion.
+/// A code of the block that cannot be combined with this one. G80 can be combined with any motion.
 const CodeWord* rival_of(const Statement& statement, const Code& code, const Dialect& dialect) {
     if (code.group == ModalGroup::other) return nullptr;
     if (const CodeWord* same = statement.of(code.group)) return same;
@@ -26,7 +26,7 @@ const CodeWord* rival_of(const Statement& statement, const Code& code, const Dia
     return is_cycle(code) ? statement.of(ModalGroup::motion) : nullptr;
 }
 
-/// Whether a control of another kind calls a subprogram, jumps or returns with this word.
+/// Whether this word calls a subprogram, jumps or returns on some control.
 bool goes_elsewhere(const Word& word) {
     for (const DialectId id :
          {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
@@ -35,8 +35,8 @@ bool goes_elsewhere(const Word& word) {
     return false;
 }
 
-/// An M code that the table does not have is passed over, unless the order of the blocks may hang
-/// on it or no control can read it.
+/// Accepts an unknown M code, unless it may change the order of execution or is not valid on any
+/// control.
 core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
                                       const Dialect& dialect, const Environment& environment) {
     if (environment.known_m_codes.count(static_cast<int>(word.value))) return {};
@@ -57,7 +57,7 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
     return {};
 }
 
-/// What a code of other controls is called here.
+/// Hint at the equivalent code on this control.
 std::string_view meant_instead(const Word& word) {
     if (word.value == 70.0) return "; if it means inches, use G20";
     if (word.value == 71.0) return "; if it means millimetres, use G21";
@@ -143,7 +143,7 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
         } else if (word.letter == '^') {
             statement.polar_angle = &word;
         } else if (word.letter >= 'i' && word.letter <= 'k') {
-            continue; // I1, J1 and K1 of CIP, which looks them up itself
+            continue; // I1, J1 and K1 of CIP, which it looks up itself
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
             statement.letters |= letter_bit(word.letter);

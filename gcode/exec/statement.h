@@ -11,7 +11,7 @@ namespace gcode {
 
 struct Environment;
 
-/// A G or M word with the code it names.
+/// A G or M word and its code.
 struct CodeWord {
     const Code* code = nullptr;
     const Word* word = nullptr;
@@ -28,7 +28,7 @@ constexpr uint32_t letter_bits(std::string_view letters) {
 constexpr uint32_t axis_letter_bits = letter_bits(axis_letters);
 constexpr uint32_t corner_bit = 1u << 26; // ,R or ,C
 
-/// A block with its words looked up. Refers to the block's words.
+/// A block with its words looked up. Refers to the words of the block.
 struct Statement {
     static constexpr size_t most_codes = 32;
 
@@ -39,9 +39,9 @@ struct Statement {
     const Word* angle = nullptr;                 // ,A
     std::array<CodeWord, most_codes> code_words; // in the order written
     size_t code_count = 0;
-    uint64_t groups = 0;                        // a bit for each modal group present
-    uint32_t letters = 0;                       // a bit for each of `words` present
-    std::vector<const Word*> unknown_m_codes{}; // a machine builder's
+    uint64_t groups = 0;                        // one bit for each modal group present
+    uint32_t letters = 0;                       // one bit for each of `words` present
+    std::vector<const Word*> unknown_m_codes{}; // of a machine builder
     std::vector<const Word*> arguments{};       // of a macro call: the words after G65 or G66
 
     std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }
@@ -54,28 +54,29 @@ struct Statement {
         return (letters & axis_letter_bits) != 0 || polar_radius || polar_angle;
     }
 
-    /// The code that uses the axis words instead of the motion: G10, G28, G30, G52, G92, G43.1, and
-    /// a G4 that has no P.
+    /// The code that takes the axis words instead of the motion: G10, G28, G30, G52, G92, G43.1, or
+    /// a G4 without P.
     const CodeWord* taker_of_axis_words() const;
 
 private:
     const CodeWord* find(ModalGroup group) const;
 };
 
-/// Looks up what a block's words mean in a dialect. Under G66.1 all but the G codes are arguments.
+/// Looks up the meaning of a block's words in a dialect. Under G66.1 all words except G codes are
+/// arguments.
 ///
-/// Effect: `statement` is overwritten.
-/// Errors: unsupported for a G code the dialect or this version does not have, and for an M code
-///         that moves the machine, changes its state or jumps; syntax for two codes of one modal
-///         group.
+/// Effect: overwrites `statement`.
+/// Errors: unsupported for a G code that the dialect or this version does not have, and for an M
+///         code that moves the machine, changes its state or jumps; syntax for two codes of one
+///         modal group.
 core::Result<void> look_up(const Block& block, const Dialect& dialect,
                            const Environment& environment, Statement& statement,
                            bool words_are_arguments = false);
 
-/// The word as a person would write it, such as X10.5.
+/// A word as written in a program, such as X10.5.
 std::string written(const Word& word);
 
-/// The value of a word that counts or names something.
+/// The value of a word that is a count or a number of something.
 ///
 /// Errors: invalid_value when it is not a whole number from `lowest` to `highest`.
 core::Result<int> whole_number(const Word& word, int lowest = 0, int highest = 99999999);

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 11> endings = {
     "", ".nc", ".NC", ".ngc", ".tap", ".TAP", ".txt", ".TXT", ".cnc", ".CNC", ".gcode"};
 
-/// O1234.nc, O1234, 1234.nc ..., also with zeros before the number.
+/// File names of a program number: O1234.nc, O1234, 1234.nc ..., also with leading zeros.
 std::vector<std::string> file_names(int number) {
     std::vector<std::string> digits;
     for (const int width : {1, 4, 5, 8}) {
@@ -36,7 +36,7 @@ std::vector<std::string> file_names(int number) {
     return names;
 }
 
-/// The first line after a tape mark and a program number.
+/// The first line after a tape mark and program number.
 uint32_t first_line(const Program& program, const FlowIndex& index) {
     uint32_t line = 1;
     for (; line <= program.line_count(); ++line) {
@@ -59,7 +59,7 @@ std::optional<Place> place_in_programs(ProgramLibrary& library, uint32_t source,
     return source == 0 ? std::nullopt : place_in(library, 0, number);
 }
 
-/// A file that is named for the program may leave its number out, where O words do not need it.
+/// A file named for the program need not contain its number, on controls without O words.
 core::Result<std::optional<Place>> place_in_files(ProgramLibrary& library, int number) {
     FEELER_TRY(const std::optional<uint32_t> source, library.find(file_names(number)));
     if (!source) return std::nullopt;
@@ -105,7 +105,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// The line of the block that a word names, in a program of the library.
+/// The line of the block that a word refers to, in a program of the library.
 core::Result<uint32_t> block_named(Execution& execution, const Word& word, Place from,
                                    std::string_view where) {
     FEELER_TRY(const int number, whole_number(word));
@@ -116,7 +116,7 @@ core::Result<uint32_t> block_named(Execution& execution, const Word& word, Place
                       word.span);
 }
 
-/// How often the call is made: its L word.
+/// The number of repetitions of a call, from its L word.
 core::Result<int> rounds_of(Execution& execution) {
     const Word* word = execution.statement.word('L');
     if (!word) return 1;
@@ -136,7 +136,7 @@ core::Result<void> enter_rounds(Execution& execution, Place begin, std::string n
                  execution.statement.of(ModalGroup::subprogram)->word->span);
 }
 
-/// M97, and M98 with a Q alone: from a block of the same program on.
+/// M97, and M98 with Q only: calls the same program from a block on.
 core::Result<void> call_block(Execution& execution, const Word& word) {
     const uint32_t source = execution.state.next.source;
     FEELER_TRY(const int rounds, rounds_of(execution));
@@ -151,7 +151,7 @@ struct Called {
     Place begin;
 };
 
-/// The program that M98 means. Where no L stands, digits before the last four of P may be one.
+/// The program that M98 calls. Without L, digits before the last four of P may be the repetitions.
 core::Result<Called> called_by(Execution& execution, const Word& word, bool files_first) {
     FEELER_TRY(int number, whole_number(word));
     FEELER_TRY(int rounds, rounds_of(execution));
@@ -196,7 +196,7 @@ core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
     return enter_rounds(execution, called.begin, fmt::format("O{}", called.number), called.rounds);
 }
 
-/// M99, in a subprogram and in the main program, with and without the block to go on at.
+/// M99, in a subprogram or the main program, with or without the block to continue at.
 core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
     InterpreterState& state = execution.state;
     const Word* target = execution.statement.word('P');
@@ -232,7 +232,8 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// M96 jumps while an input is off. One that jumps back waits for it, so it will come.
+/// M96 jumps while an input is off. A backward jump waits for the input, which is assumed to come
+/// on.
 core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
     const Word* target = execution.statement.word('P');
     if (!target)
@@ -255,7 +256,7 @@ core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// Some controls read the block of a call for the call alone.
+/// On some controls a call must be alone in its block.
 core::Result<void> check_company(const Execution& execution, const CodeWord& entry) {
     if (!execution.dialect.calls_stand_alone) return {};
     for (const Word& word : execution.block.words) {
@@ -292,8 +293,8 @@ core::Result<void> call_subprogram(Execution& execution) {
 
 namespace {
 
-// Fanuc B-64304, argument specification I, for A to Z. G, L, N, O and P have the places that are
-// left, which G66.1 and the variables of the block before (#4101 and on) use.
+// Fanuc B-64304, argument specification I, for A to Z. G, L, N, O and P have the remaining numbers,
+// which G66.1 and the variables of earlier blocks (#4101 and up) use.
 constexpr size_t numbers[26] = {1,  2,  3,  7,  8,  9,  10, 11, 4,  5,  6,  12, 13,
                                 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
 
@@ -307,7 +308,7 @@ const Word* argument(const Execution& execution, char letter) {
     return nullptr;
 }
 
-/// The words of the call's block but for its P and L.
+/// The words of the call's block except P and L.
 std::vector<const Word*> words_of_call(const Execution& execution) {
     std::vector<const Word*> words;
     for (const Word* word : execution.statement.arguments)
@@ -315,7 +316,7 @@ std::vector<const Word*> words_of_call(const Execution& execution) {
     return words;
 }
 
-/// The macro that G65 or G66 names, with its arguments.
+/// The macro called by G65 or G66, with its arguments.
 core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry) {
     const Word* program = argument(execution, 'P');
     if (!program)
@@ -354,7 +355,7 @@ core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, si
     return enter(execution.state, execution.environment, std::move(frame), where);
 }
 
-/// The macro that G66 calls after a motion, and G66.1 for each block.
+/// Calls the macro of G66 after a motion, or that of G66.1 for a block.
 core::Result<void> call_modal_macro(Execution& execution) {
     const size_t modal = modal_macro_in_effect(execution.state);
     if (modal == 0) return {};

@@ -9,32 +9,32 @@
 
 namespace gcode {
 
-/// Where the program of a number begins: the line after its O word. It is searched in the
-/// program that asks, in the main program, then in the files of the search path that are named for
-/// the number; or in the files first. Empty when there is none.
+/// The first line of the program with a number: the line after its O word. Searches the calling
+/// program, the main program, then files of the search path named for the number; or the files
+/// first. Empty when there is none.
 ///
 /// Errors: as ProgramLibrary::find.
 core::Result<std::optional<Place>> find_program(ProgramLibrary& library, uint32_t source,
                                                 int number, bool files_first = false);
 
-/// The message for a missing program: where it was searched, and what is there.
+/// The message for a missing program: where it was searched, and which programs exist.
 std::string missing_program(ProgramLibrary& library, uint32_t source, int number);
 
-/// The number of the local variable that a letter of a macro call sets, 1 to 26: A is #1, Z #26.
-/// 0 for what is no letter.
+/// The local variable that a letter of a macro call sets, 1 to 26: A is #1, Z #26. 0 if it is not a
+/// letter.
 size_t argument_number(char letter);
 
-/// The local variables of a macro call. I, J and K may come again, up to ten times: the second I is
-/// #7. Later words win.
+/// The local variables of a macro call. I, J and K may be repeated up to ten times: the second I is
+/// #7. Later words override earlier ones.
 ///
 /// Errors: syntax for a word that cannot be an argument; invalid_value for an eleventh I, J or K.
 core::Result<LocalParameters> arguments_of(const std::vector<const Word*>& words);
 
-/// Which of the modal macros is called by the blocks that run now, counted from 1; 0 for none. In
-/// one of them it is the one that was said before it.
+/// The modal macro called by the blocks that run now, counted from 1; 0 for none. Inside a modal
+/// macro it is the one programmed before it.
 size_t modal_macro_in_effect(const InterpreterState& state);
 
-/// Whether blocks are nothing but arguments now (G66.1).
+/// Whether blocks are only arguments at present (G66.1).
 bool blocks_are_arguments(const InterpreterState& state);
 
 } // namespace gcode

@@ -22,7 +22,7 @@ void use_offset(Execution& execution, std::optional<OffsetNumber> number, const 
     execution.emit(UseToolLengthOffset{number, offset, follows_tip});
 }
 
-/// The offset under a number: along Z its length, else as the table says.
+/// The tool offset with a number: `length` along Z, the table's values along the other axes.
 AxisValues offset_under(const Execution& execution, int number, double length) {
     AxisValues offset{};
     const auto& lengths = execution.state.tables->lengths;
@@ -32,7 +32,7 @@ AxisValues offset_under(const Execution& execution, int number, double length) {
     return offset;
 }
 
-/// The number G43 means: its H word, else what the dialect says.
+/// The offset number of G43: its H word, else as defined by the dialect.
 core::Result<std::optional<int>> length_number(const Execution& execution) {
     if (const Word* word = execution.statement.word('H')) {
         FEELER_TRY(const int number, whole_number(*word));
@@ -73,7 +73,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     return {};
 }
 
-/// G43.1: the offset is in the block.
+/// G43.1: the offset is given in the block.
 core::Result<void> use_given_offset(Execution& execution) {
     AxisValues offset = execution.modal().offsets.tool;
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -83,7 +83,7 @@ core::Result<void> use_given_offset(Execution& execution) {
     return {};
 }
 
-/// G43.2: one more offset on top of what is on, from the table or from the block.
+/// G43.2: adds another offset, from the table or the block, to the active one.
 core::Result<void> add_table_offset(Execution& execution, const Word& word) {
     AxisValues sum = execution.modal().offsets.tool;
     const Word* number = execution.statement.word('H');
@@ -110,7 +110,7 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
     return {};
 }
 
-/// G43.4 and G43.5: the control keeps the tip where the program says, seen from the work.
+/// G43.4 and G43.5: the control keeps the tip on the programmed path relative to the work.
 core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
     ProgramTransforms transforms = execution.modal().transforms;
     transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
@@ -124,7 +124,7 @@ core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord&
     return use_table_length(execution, *entry.word, +1.0, true);
 }
 
-/// Once a plain length offset or none is on, motions do not say where the tool points to.
+/// Ends G43.5: with a plain length offset or none, moves no longer specify the tool direction.
 void leave_vectors(Execution& execution) {
     if (!execution.modal().transforms.follows_vectors) return;
     ProgramTransforms transforms = execution.modal().transforms;
@@ -226,7 +226,7 @@ core::Result<void> need_a_value(const Execution& execution) {
                       statement.of(ModalGroup::action)->word->span);
 }
 
-/// The radius, the angles and the way a turning tool points, which L1, L10 and L11 take alike.
+/// Reads the radius, the angles and the orientation of a turning tool, for L1, L10 and L11.
 core::Result<void> take_shape(const Execution& execution, LengthOffset& entry) {
     const Statement& statement = execution.statement;
     if (const Word* word = statement.word('R')) entry.diameter = 2.0 * length_of(execution, *word);
@@ -238,7 +238,7 @@ core::Result<void> take_shape(const Execution& execution, LengthOffset& entry) {
     return {};
 }
 
-/// Of the frame in which L10 and L11 read the place: the active one, or that of G59.3.
+/// The offsets for which L10 and L11 compare the position: the active ones, or those of G59.3.
 Offsets reading_offsets(const Execution& execution, bool in_last_offset) {
     Offsets offsets = execution.modal().offsets;
     offsets.tool = {};
@@ -247,7 +247,7 @@ Offsets reading_offsets(const Execution& execution, bool in_last_offset) {
     return offsets;
 }
 
-/// What an entry would shift, as a place without any other offset.
+/// The tool offset of an entry, as a position.
 Position shift_of(const LengthOffset& entry) {
     Position shift;
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -255,8 +255,8 @@ Position shift_of(const LengthOffset& entry) {
     return shift;
 }
 
-/// The tool offsets that would make the present place read as the words say. Where the offset is
-/// turned, the entry keeps what it has along the turned axes that are not named.
+/// Sets the tool offsets for which the current position has the given coordinates. Rotated axes
+/// that are not named keep their offsets in rotated coordinates.
 core::Result<void> take_offsets_here(const Execution& execution, bool in_last_offset,
                                      LengthOffset& entry) {
     const ModalState& modal = execution.modal();

@@ -14,7 +14,7 @@ using core::ErrorCode;
 
 constexpr std::string_view letters_that_need_a_code = "DEHIJKLPQR";
 constexpr uint32_t bits_that_need_a_code = letter_bits(letters_that_need_a_code);
-constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R are often none
+constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R often have other meanings
 
 /// The code of the active motion or cycle.
 const Code* going_on(const Execution& execution) {
@@ -24,7 +24,7 @@ const Code* going_on(const Execution& execution) {
     return nullptr;
 }
 
-/// G30 P2, the place that G30 means by itself.
+/// Whether the block has G30 P2, which is the same as G30.
 bool names_second_home(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* place = execution.statement.word('P');
@@ -32,7 +32,7 @@ bool names_second_home(const Execution& execution) {
            && place && place->value == 2.0;
 }
 
-/// A P that makes G30 a place that nobody told.
+/// Reports a P that selects a reference position of G30 that is not supported.
 core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* place = statement.word('P');
@@ -48,7 +48,8 @@ core::Result<void> refuse_unknown_home(const Execution& execution) {
     return {};
 }
 
-/// G54 P3, which is G54.1 P3. A P that another code of the block wants is that one's.
+/// Whether a P selects an extended offset: G54 P3 is G54.1 P3. P may belong to another code of the
+/// block instead.
 bool names_extended_offset(const Execution& execution) {
     const CodeWord* offset = execution.statement.of(ModalGroup::work_offset);
     return execution.dialect.has_extended_offsets && offset && offset->code->tenths == tenths(54);
@@ -174,12 +175,12 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target) 
 
 namespace {
 
-/// How fast the spindle turns, rev/min. Under G96 that hangs on the distance from its axis: that of
-/// where the motion begins is taken for the whole of it.
+/// The spindle speed, rev/min. With G96 it depends on the distance from the spindle axis; the
+/// distance at the start of the motion is used for all of it.
 double turns_a_minute(const ModalState& modal) {
     if (!modal.surface_speed) return modal.speed;
     const double speed = modal.speed * (modal.unit == LengthUnit::inch ? 304.8 : 1000.0); // mm/min
-    constexpr double least_radius = 0.01; // mm; at the axis itself no speed is fast enough
+    constexpr double least_radius = 0.01; // mm; at the axis itself the speed would be infinite
     const double radius = std::max(std::abs(modal.position[0].value_or(0.0)), least_radius);
     const double turns = speed / (2.0 * std::numbers::pi * radius);
     return modal.fastest_speed > 0.0 ? std::min(turns, modal.fastest_speed) : turns;
@@ -188,7 +189,7 @@ double turns_a_minute(const ModalState& modal) {
 } // namespace
 
 std::optional<double> way_between(const Position& from, const Position& to) {
-    // The rate is along X, Y, Z, or, when these stand, along U, V, W, or the rotary axes.
+    // The feed applies to X, Y, Z; if these do not move, to U, V, W; else to the rotary axes.
     for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
         double squared = 0.0;
         for (size_t axis = first; axis < first + 3; ++axis) {
